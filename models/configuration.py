@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The configuration of a pipeline: the one source of its numbers.
+
+Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats follow from two
+bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Everything from slope to depth is linear, so
+the largest value a node can hold is an L1 norm, and that norm is taken from the bit-accurate model itself, run on unit
+vectors of floats (models/round_saturate.py).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+
+from models.dst_forward import dst_forward
+from models.dst_inverse import dst_inverse
+from models.orders import makhoul
+from models.round_saturate import Monitor
+from models.sdf_fft import twiddle_stages
+from models.twiddle_multiply import coefficient_gain
+
+GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits as gladly as 24
+DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: room for a contact that reads a little deep
+COARSEST_LSB_PX = 1.0  # of any node behind the divide: coarser than this a word carries no depth
+
+SIZES = (16, 512)
+DATA_WIDTHS = (12, 32)
+COEFFICIENT_WIDTHS = (10, 24)
+
+
+class ConfigurationError(ValueError):
+    """A configuration that cannot be built: says what was given, what is accepted, how to mend it."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """A signed fixed-point word: value = code * 2**-fraction."""
+
+    width: int
+    fraction: int
+
+    @classmethod
+    def holding(cls, bound: float, width: int) -> Format:
+        """The finest format of `width` bits that holds every magnitude up to `bound`."""
+        return cls(width, width - 1 - math.ceil(math.log2(bound * (1 + 2.0 ** (2 - width)))))
+
+    @property
+    def limit(self) -> float:
+        """Full scale, exclusive."""
+        return 2.0 ** (self.width - 1 - self.fraction)
+
+    @property
+    def lsb(self) -> float:
+        return 2.0**-self.fraction
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A pipeline, chosen.
+
+    Attributes
+    ----------
+    size : int
+        Rows and columns of the grid, a power of two.
+    data_width, coefficient_width : int
+        Bits of a stored word and of a coefficient.
+    depth_range_px : float
+        Largest depth that formats are sized for, in grid pixels; None: a quarter of the grid.
+    gradient_limit : float
+        Largest slope, a power of two.
+    bits_per_channel : int
+        Bits of each colour that index the gradient table.
+    """
+
+    size: int = 128
+    data_width: int = 24
+    coefficient_width: int = 18
+    depth_range_px: float | None = None
+    gradient_limit: float = 1.0
+    bits_per_channel: int = 4
+
+    def __post_init__(self) -> None:
+        def within(name: str, value: int, accepted: tuple[int, int]) -> None:
+            if not accepted[0] <= value <= accepted[1]:
+                raise ConfigurationError(
+                    f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}"
+                )
+
+        within("N", self.size, SIZES)
+        if self.size & (self.size - 1):
+            lower = 1 << (self.size.bit_length() - 1)
+            raise ConfigurationError(
+                f"N={self.size} is not a power of two: try N={lower} or N={min(2 * lower, SIZES[1])}"
+            )
+        within("DATA_WIDTH", self.data_width, DATA_WIDTHS)
+        within("COEFF_WIDTH", self.coefficient_width, COEFFICIENT_WIDTHS)
+        if self.depth_range_px is None:
+            object.__setattr__(self, "depth_range_px", self.size / 4)
+        if not (self.depth_limit_px > 0 and math.isfinite(self.depth_limit_px)):
+            raise ConfigurationError(
+                f"the depth range is {self.depth_range_px} pixels: it must be a positive, finite number"
+            )
+        coarsest = self.column_inverse.lsb * self.depth_limit_px
+        if coarsest > COARSEST_LSB_PX:
+            bits = math.ceil(math.log2(coarsest / COARSEST_LSB_PX))
+            raise ConfigurationError(
+                f"DATA_WIDTH={self.data_width} cannot hold the formats of N={self.size} and a depth range of "
+                f"{self.depth_range_px:g} pixels (one step of a mode would be {coarsest:.3g} pixels): "
+                f"try DATA_WIDTH={self.data_width + bits} or a smaller DEPTH_RANGE"
+            )
+
+    # Widths.
+
+    @property
+    def log2_size(self) -> int:
+        return self.size.bit_length() - 1
+
+    @property
+    def arithmetic_width(self) -> int:
+        """Bits inside the transforms and the divide."""
+        return self.data_width + GUARD_BITS
+
+    @property
+    def depth_limit_px(self) -> float:
+        """Full scale of the depth code, in grid pixels."""
+        assert self.depth_range_px is not None
+        return DEPTH_HEADROOM * self.depth_range_px
+
+    # Formats, in the order of the stream. Slopes, divergence and forward modes count in slopes (pixels per pixel);
+    # everything behind the divide counts in units of `depth_limit_px`.
+
+    @cached_property
+    def row_forward(self) -> Format:
+        return Format.holding(self._bounds.row_forward * self.gradient_limit, self.arithmetic_width)
+
+    @property
+    def gradient(self) -> Format:
+        """Slopes have the fraction bits of the row transform: nothing is dropped on the way there."""
+        fraction = self.row_forward.fraction
+        return Format(fraction + 1 + int(math.log2(self.gradient_limit)), fraction)
+
+    @property
+    def divergence(self) -> Format:
+        return Format(self.gradient.width + 2, self.gradient.fraction)
+
+    @cached_property
+    def row_modes(self) -> Format:
+        """The first frame store."""
+        return Format.holding(self._bounds.row_modes * self.gradient_limit, self.data_width)
+
+    @cached_property
+    def column_forward(self) -> Format:
+        return Format.holding(self._bounds.column_forward * self.gradient_limit, self.arithmetic_width)
+
+    @cached_property
+    def column_inverse(self) -> Format:
+        return Format.holding(self._bounds.column_inverse / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @cached_property
+    def depth_modes(self) -> Format:
+        """The second frame store."""
+        return Format.holding(self._bounds.depth_modes / DEPTH_HEADROOM, self.data_width)
+
+    @cached_property
+    def row_inverse(self) -> Format:
+        return Format.holding(self._bounds.row_inverse / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @property
+    def depth(self) -> Format:
+        return Format(self.data_width, self.data_width - 1)
+
+    @property
+    def depth_lsb_px(self) -> float:
+        """Depth of code 1, in grid pixels."""
+        return self.depth.lsb * self.depth_limit_px
+
+    # Gain.
+
+    @property
+    def transform_gain(self) -> float:
+        """What the coefficients' gain leaves of a value after two forward and two inverse transforms."""
+        return coefficient_gain(self.coefficient_width) ** (4 * (twiddle_stages(self.size) + 1))
+
+    @property
+    def _bounds(self) -> Bounds:
+        return bounds(self.size)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Largest magnitude at the nodes of each core for slopes up to 1 (first three) and depths up to 1."""
+
+    row_forward: float
+    row_modes: float
+    column_forward: float
+    column_inverse: float
+    depth_modes: float
+    row_inverse: float
+
+
+def _variation(response: np.ndarray) -> np.ndarray:
+    """L1 norm over axis 0 of a response seen through the backward difference of the divergence."""
+    return np.abs(np.diff(response, axis=0, append=0)).sum(axis=0)
+
+
+class _Responses(Monitor):
+    """Keeps the whole response of each node instead of its norm."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.responses: dict[str, np.ndarray] = {}
+
+    def linear(self, node: str, response: np.ndarray) -> None:
+        self.responses[node] = response.reshape(response.shape[0], -1)
+
+
+@cache
+def bounds(size: int) -> Bounds:
+    """L1 norms of every node of the spectral solver, from the models run on unit vectors."""
+    wide = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
+    forward, inverse = _Responses(), _Responses()
+    modes = dst_forward(unit, monitor=forward, node="forward", **wide)
+    dst_inverse(modes, monitor=inverse, node="inverse", **wide)
+
+    def largest(nodes: _Responses, norm) -> float:  # type: ignore[no-untyped-def]
+        return max(float(norm(response).max()) for response in nodes.responses.values())
+
+    def l1(response: np.ndarray) -> np.ndarray:
+        return np.abs(response).sum(axis=0)
+
+    def row(response: np.ndarray) -> np.ndarray:  # gx along the row, gy of this row and of the row before
+        return _variation(response) + 2 * l1(response)
+
+    def column(response: np.ndarray) -> np.ndarray:  # outer product with every row mode
+        x, y = l1(modes), _variation(modes)
+        return np.maximum.reduce([v * l1(response) + u * _variation(response) for u, v in zip(x, y, strict=True)])
+
+    largest_mode = float(l1(modes).max())
+    return Bounds(
+        row_forward=largest(forward, row),
+        row_modes=float(row(modes).max()),
+        column_forward=largest(forward, column),
+        column_inverse=largest_mode * max(largest(inverse, l1), largest_mode),
+        depth_modes=largest_mode,
+        row_inverse=largest(inverse, l1),
+    )

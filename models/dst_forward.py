@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/dst_forward.sv: DST-II of a burst by Makhoul's method."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.orders import bit_reversed
+from models.round_saturate import Monitor, round_saturate
+from models.sdf_fft import sdf_fft
+from models.twiddle_multiply import coefficient
+
+
+def phase_rom(size: int, coefficient_width: int) -> np.ndarray:
+    """cos and sin of pi k / 2N for the mode k at each position of a burst, int64 (size, 2)."""
+    angle = np.pi * bit_reversed(size) / (2 * size)
+    return coefficient(np.stack((np.cos(angle), np.sin(angle)), axis=-1), coefficient_width)
+
+
+def alternate_sign(x: np.ndarray) -> np.ndarray:
+    """Negate the samples of odd index of bursts (..., N) in Makhoul order: they are the second half.
+
+    (-1)^n x turns a DST-II into a DCT-II of reversed modes.
+    """
+    y = x.copy()
+    y[..., y.shape[-1] // 2 :] *= -1
+    return y
+
+
+def dst_forward(
+    x: np.ndarray,
+    input_drop: int,
+    width: int,
+    coefficient_width: int,
+    output_drop: int,
+    output_width: int,
+    monitor: Monitor | None = None,
+    node: str = "dst_forward",
+) -> np.ndarray:
+    """DST-II along the last axis.
+
+    Parameters
+    ----------
+    x : int64 array (..., N), Makhoul order
+    input_drop, output_drop : int
+        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and from
+        there to the `output_width` bits of the output.
+
+    Returns
+    -------
+    int64 array (..., N): sum over n of x[n] sin(pi (2n + 1) (N - k) / 2N) at position p, k = bit_reversed(N)[p], times
+    the gain 2**-halvings (1 - 2**(1 - coefficient_width)) ** (twiddle_stages + 1).
+    """
+    signed = round_saturate(alternate_sign(x), input_drop, width, monitor, node + ".input")
+    re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficient_width, monitor, node + ".fft")
+    cos, sin = phase_rom(x.shape[-1], coefficient_width).T
+    drop = coefficient_width - 1 + output_drop
+    return round_saturate(re * cos + im * sin, drop, output_width, monitor, node + ".output")

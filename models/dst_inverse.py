@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/dst_inverse.sv: the inverse of dst_forward."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.dst_forward import alternate_sign, phase_rom
+from models.mode_pairs import mode_pairs
+from models.round_saturate import Monitor, round_saturate
+from models.sdf_fft import sdf_fft
+
+
+def dst_inverse(
+    modes: np.ndarray,
+    input_drop: int,
+    width: int,
+    coefficient_width: int,
+    output_drop: int,
+    output_width: int,
+    monitor: Monitor | None = None,
+    node: str = "dst_inverse",
+) -> np.ndarray:
+    """Inverse DST-II along the last axis.
+
+    Parameters
+    ----------
+    modes : int64 array (..., N), bit-reversed order, as dst_forward puts them out
+    input_drop, output_drop : int
+        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and from
+        there to the `output_width` bits of the output.
+
+    Returns
+    -------
+    int64 array (..., N), Makhoul order: dst_inverse(dst_forward(x)) is x, times the coefficients' gain
+    (1 - 2**(1 - coefficient_width)) ** (2 (twiddle_stages + 1)).
+    """
+    mode, mirrored = mode_pairs(modes)
+    cos, sin = phase_rom(modes.shape[-1], coefficient_width).T
+    drop = coefficient_width - 1 + input_drop
+    re = round_saturate(cos * mode + sin * mirrored, drop, width, monitor, node + ".phase.re")
+    im = round_saturate(sin * mode - cos * mirrored, drop, width, monitor, node + ".phase.im")
+    re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
+    return round_saturate(alternate_sign(re), output_drop, output_width, monitor, node + ".output")

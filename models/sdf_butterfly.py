@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/sdf_butterfly.sv."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.round_saturate import Monitor, round_saturate
+
+if TYPE_CHECKING:
+    from models.sdf_fft import Stage
+
+
+def sdf_butterfly(
+    re: np.ndarray,
+    im: np.ndarray,
+    stage: Stage,
+    inverse: bool,
+    width: int,
+    monitor: Monitor | None = None,
+    node: str = "butterfly",
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sums, then differences, of words `stage.delay` apart in each block of twice that.
+
+    Parameters
+    ----------
+    re, im : int64 arrays (..., N), in stream order along the last axis
+
+    Returns
+    -------
+    re, im : int64 arrays (..., N), saturated to `width` bits
+    """
+    if stage.rotate:
+        re, im = _rotate_last_quarter(re, im, stage.block, inverse)
+    drop = int(stage.halve)
+    return (
+        round_saturate(_butterfly(re, stage.delay), drop, width, monitor, node + ".re"),
+        round_saturate(_butterfly(im, stage.delay), drop, width, monitor, node + ".im"),
+    )
+
+
+def _butterfly(x: np.ndarray, delay: int) -> np.ndarray:
+    pairs = x.reshape(*x.shape[:-1], -1, 2, delay)
+    first, second = pairs[..., 0, :], pairs[..., 1, :]
+    return np.stack((first + second, first - second), axis=-2).reshape(x.shape)
+
+
+def _rotate_last_quarter(
+    re: np.ndarray, im: np.ndarray, block: int, inverse: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Multiply the last quarter of each block by -j (inverse: +j)."""
+    sign = -1 if inverse else 1
+    quarters = (*re.shape[:-1], -1, 4, block // 4)
+    turned_re, turned_im = re.copy(), im.copy()
+    turned_re.reshape(quarters)[..., 3, :] = sign * im.reshape(quarters)[..., 3, :]
+    turned_im.reshape(quarters)[..., 3, :] = -sign * re.reshape(quarters)[..., 3, :]
+    return turned_re, turned_im

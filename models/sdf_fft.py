@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/sdf_fft.sv: radix-2^2 single-path delay feedback FFT (He and Torkelson, IPPS 1996)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.round_saturate import Monitor
+from models.sdf_butterfly import sdf_butterfly
+from models.twiddle_multiply import twiddle_multiply
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage in stream order: a butterfly (`delay` > 0) or a twiddle multiplication."""
+
+    block: int  # points of the sub-transform that the stage belongs to
+    delay: int = 0  # butterfly: distance of its operands, and length of its delay line
+    rotate: bool = False  # butterfly: the last quarter of the block is turned by -j (inverse: +j) first
+    halve: bool = False  # butterfly: its results are halved
+
+
+def stages(size: int, inverse: bool) -> list[Stage]:
+    """The stages in stream order.
+
+    Forward runs from the whole block down and takes natural order, inverse is the same graph reversed and takes
+    bit-reversed order. The second butterfly of each pair halves, which keeps a pair orthonormal. When log2(size) is odd
+    one butterfly is left over; it halves in the inverse only, so forward then inverse is always the identity.
+    """
+    chain = []
+    block = size
+    while block >= 4:
+        pair = [Stage(block, delay=block // 2), Stage(block, delay=block // 4, rotate=True, halve=True)]
+        if inverse:
+            pair = [Stage(block, delay=block // 2, rotate=True, halve=True), Stage(block, delay=block // 4)]
+        chain += pair
+        if block > 4:
+            chain.append(Stage(block))
+        block //= 4
+    if block == 2:
+        chain.append(Stage(2, delay=1, halve=inverse))
+    return chain[::-1] if inverse else chain
+
+
+def twiddle_stages(size: int) -> int:
+    """Number of twiddle multiplications of an FFT of `size` points."""
+    return sum(stage.delay == 0 for stage in stages(size, inverse=False))
+
+
+def halvings(size: int, inverse: bool) -> int:
+    """Number of halvings of an FFT of `size` points."""
+    return sum(stage.halve for stage in stages(size, inverse))
+
+
+def sdf_fft(
+    re: np.ndarray,
+    im: np.ndarray,
+    inverse: bool,
+    width: int,
+    coefficient_width: int,
+    monitor: Monitor | None = None,
+    node: str = "fft",
+) -> tuple[np.ndarray, np.ndarray]:
+    """Transform bursts along the last axis.
+
+    Parameters
+    ----------
+    re, im : int64 arrays (..., N)
+        Forward: natural order. Inverse: bit-reversed order.
+    width, coefficient_width : int
+        Bits of a data word and of a twiddle factor.
+
+    Returns
+    -------
+    re, im : int64 arrays (..., N)
+        Forward: bit-reversed order. Inverse: natural order. The gain is 2**-halvings (1 - 2**(1 - coefficient_width)) **
+        twiddle_stages, relative to the sum without a factor.
+    """
+    for index, stage in enumerate(stages(re.shape[-1], inverse)):
+        name = f"{node}.stage{index}"
+        if stage.delay:
+            re, im = sdf_butterfly(re, im, stage, inverse, width, monitor, name)
+        else:
+            re, im = twiddle_multiply(re, im, stage.block, inverse, width, coefficient_width, monitor, name)
+    return re, im

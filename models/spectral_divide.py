@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/spectral_divide.sv, and the contents of its ROM."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from models.configuration import Configuration
+from models.orders import bit_reversed
+from models.round_saturate import Monitor, round_saturate
+
+
+@dataclass(frozen=True)
+class Reciprocals:
+    """1 / (lambda_k + lambda_l), scaled, as floating-point words: mantissa * 2**-(drop - shift).
+
+    Attributes
+    ----------
+    mantissa : int64 array (N, N), negative, normalised to the coefficient width
+    shift : int64 array (N, N), 0 for the smallest reciprocal
+    drop : int, fraction bits dropped after the shift
+    shift_width : int, bits of the shift
+    """
+
+    mantissa: np.ndarray
+    shift: np.ndarray
+    drop: int
+    shift_width: int
+
+
+@cache
+def reciprocals(config: Configuration) -> Reciprocals:
+    """By position of both modes. The scale takes back the coefficients' gain and turns pixels into depth codes."""
+    k = config.size - bit_reversed(config.size)
+    eigenvalue = 2 * (np.cos(np.pi * k / config.size) - 1)
+    factor = 1 / (eigenvalue[:, None] + eigenvalue[None, :]) / config.transform_gain / config.depth_limit_px
+    scaled = factor * 2.0 ** (config.column_inverse.fraction - config.column_forward.fraction)
+    fraction, exponent = np.frexp(scaled)
+    mantissa = np.rint(fraction * 2 ** (config.coefficient_width - 1)).astype(np.int64)
+    lowest = min(int(exponent.min()), config.coefficient_width - 2)  # at least one bit is dropped
+    shift = exponent.astype(np.int64) - lowest
+    return Reciprocals(
+        mantissa, shift, config.coefficient_width - 1 - lowest, max(1, int(shift.max()).bit_length())
+    )
+
+
+def spectral_divide(
+    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "spectral_divide"
+) -> np.ndarray:
+    """Divide modes (..., N, N), both axes in bit-reversed order, by the eigenvalues of the Laplacian."""
+    table = reciprocals(config)
+    product = modes * table.mantissa
+    # (product << shift) >> drop without leaving 64 bits: shift left only where fewer than one bit would be dropped.
+    drop = np.maximum(table.drop - table.shift, 1)
+    lift = drop - (table.drop - table.shift)
+    return round_saturate(product << lift, drop, config.arithmetic_width, monitor, node)
+
+
+def reciprocal_rom(config: Configuration) -> np.ndarray:
+    """Words {shift, mantissa} of the lower triangle, position (p, t <= p) at p (p + 1) / 2 + t; int64."""
+    table = reciprocals(config)
+    lower = np.tril_indices(config.size)
+    mask = (1 << config.coefficient_width) - 1
+    return table.shift[lower] << config.coefficient_width | table.mantissa[lower] & mask

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/spectral_solver.sv: divergence in, depth codes out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.configuration import Configuration
+from models.dst_forward import dst_forward
+from models.dst_inverse import dst_inverse
+from models.orders import makhoul
+from models.round_saturate import Monitor
+from models.spectral_divide import spectral_divide
+
+
+def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Solve the Poisson equation for frames of divergence codes.
+
+    Parameters
+    ----------
+    f : int64 array (..., N, N), codes of `config.divergence`
+
+    Returns
+    -------
+    int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
+    """
+    burst = makhoul(config.size)
+    natural = np.argsort(burst)
+    arithmetic = {"width": config.arithmetic_width, "coefficient_width": config.coefficient_width}
+
+    modes = dst_forward(
+        f[..., burst],
+        input_drop=config.divergence.fraction - config.row_forward.fraction,
+        output_drop=config.row_forward.fraction - config.row_modes.fraction,
+        output_width=config.row_modes.width,
+        monitor=monitor,
+        node="row_forward",
+        **arithmetic,
+    )
+    modes = modes.swapaxes(-1, -2)  # first frame store: from here a burst is a column
+    modes = dst_forward(
+        modes[..., burst],
+        input_drop=config.row_modes.fraction - config.column_forward.fraction,
+        output_drop=0,
+        output_width=config.arithmetic_width,
+        monitor=monitor,
+        node="column_forward",
+        **arithmetic,
+    )
+    modes = spectral_divide(modes, config, monitor)
+    modes = dst_inverse(
+        modes,
+        input_drop=0,
+        output_drop=config.column_inverse.fraction - config.depth_modes.fraction,
+        output_width=config.depth_modes.width,
+        monitor=monitor,
+        node="column_inverse",
+        **arithmetic,
+    )
+    modes = modes[..., natural].swapaxes(-1, -2)  # second frame store: a burst is a row again
+    depth = dst_inverse(
+        modes,
+        input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
+        output_drop=config.row_inverse.fraction - config.depth.fraction,
+        output_width=config.depth.width,
+        monitor=monitor,
+        node="row_inverse",
+        **arithmetic,
+    )
+    return depth[..., natural]
