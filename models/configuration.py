@@ -23,7 +23,9 @@ from models.sdf_fft import twiddle_stages
 from models.twiddle_multiply import coefficient_gain
 
 GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits as gladly as 24
-DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: room for a contact that reads a little deep
+DEPTH_HEADROOM = (
+    9 / 8
+)  # full scale of the depth code over the depth range: room for a contact that reads a little deep
 COARSEST_LSB_PX = 1.0  # of any node behind the divide: coarser than this a word carries no depth
 
 SIZES = (16, 512)
@@ -177,6 +179,25 @@ class Configuration:
         """Depth of code 1, in grid pixels."""
         return self.depth.lsb * self.depth_limit_px
 
+    # HDL parameters.
+
+    def transform_parameters(self) -> dict[str, int]:
+        """What every transform takes."""
+        return {"Size": self.size, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
+
+    def stream_parameters(self) -> dict[str, int]:
+        """Parameters of spectral_solver.sv, but for those of its divide (models/spectral_solver.py adds them)."""
+        return {
+            **self.transform_parameters(),
+            "InWidth": self.divergence.width,
+            "DataWidth": self.data_width,
+            "RowForwardOut": self.row_forward.fraction - self.row_modes.fraction,
+            "ColumnForwardIn": self.row_modes.fraction - self.column_forward.fraction,
+            "ColumnInverseOut": self.column_inverse.fraction - self.depth_modes.fraction,
+            "RowInverseIn": self.depth_modes.fraction - self.row_inverse.fraction,
+            "RowInverseOut": self.row_inverse.fraction - self.depth.fraction,
+        }
+
     # Gain.
 
     @property
@@ -237,7 +258,9 @@ def bounds(size: int) -> Bounds:
 
     def column(response: np.ndarray) -> np.ndarray:  # outer product with every row mode
         x, y = l1(modes), _variation(modes)
-        return np.maximum.reduce([v * l1(response) + u * _variation(response) for u, v in zip(x, y, strict=True)])
+        return np.maximum.reduce(
+            [v * l1(response) + u * _variation(response) for u, v in zip(x, y, strict=True)]
+        )
 
     largest_mode = float(l1(modes).max())
     return Bounds(

@@ -5,16 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.orders import bit_reversed
 from models.round_saturate import Monitor, round_saturate
 from models.sdf_fft import sdf_fft
-from models.twiddle_multiply import coefficient
-
-
-def phase_rom(size: int, coefficient_width: int) -> np.ndarray:
-    """cos and sin of pi k / 2N for the mode k at each position of a burst, int64 (size, 2)."""
-    angle = np.pi * bit_reversed(size) / (2 * size)
-    return coefficient(np.stack((np.cos(angle), np.sin(angle)), axis=-1), coefficient_width)
+from models.twiddle_multiply import phase_factors, twiddle_multiply
 
 
 def alternate_sign(x: np.ndarray) -> np.ndarray:
@@ -53,6 +46,7 @@ def dst_forward(
     """
     signed = round_saturate(alternate_sign(x), input_drop, width, monitor, node + ".input")
     re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficient_width, monitor, node + ".fft")
-    cos, sin = phase_rom(x.shape[-1], coefficient_width).T
+    factors = phase_factors(x.shape[-1], False, coefficient_width)
     drop = coefficient_width - 1 + output_drop
-    return round_saturate(re * cos + im * sin, drop, output_width, monitor, node + ".output")
+    output = node + ".phase"
+    return twiddle_multiply(re, im, factors, drop, output_width, monitor, output, real_only=True)[0]

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.dst_forward import alternate_sign, phase_rom
+from models.dst_forward import alternate_sign
 from models.mode_pairs import mode_pairs
 from models.round_saturate import Monitor, round_saturate
 from models.sdf_fft import sdf_fft
+from models.twiddle_multiply import phase_factors, twiddle_multiply
 
 
 def dst_inverse(
@@ -36,9 +37,8 @@ def dst_inverse(
     (1 - 2**(1 - coefficient_width)) ** (2 (twiddle_stages + 1)).
     """
     mode, mirrored = mode_pairs(modes)
-    cos, sin = phase_rom(modes.shape[-1], coefficient_width).T
+    factors = phase_factors(modes.shape[-1], True, coefficient_width)
     drop = coefficient_width - 1 + input_drop
-    re = round_saturate(cos * mode + sin * mirrored, drop, width, monitor, node + ".phase.re")
-    im = round_saturate(sin * mode - cos * mirrored, drop, width, monitor, node + ".phase.im")
+    re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
     re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
     return round_saturate(alternate_sign(re), output_drop, output_width, monitor, node + ".output")

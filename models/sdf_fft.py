@@ -9,7 +9,7 @@ import numpy as np
 
 from models.round_saturate import Monitor
 from models.sdf_butterfly import sdf_butterfly
-from models.twiddle_multiply import twiddle_multiply
+from models.twiddle_multiply import twiddle_factors, twiddle_multiply
 
 
 @dataclass(frozen=True)
@@ -83,5 +83,6 @@ def sdf_fft(
         if stage.delay:
             re, im = sdf_butterfly(re, im, stage, inverse, width, monitor, name)
         else:
-            re, im = twiddle_multiply(re, im, stage.block, inverse, width, coefficient_width, monitor, name)
+            factors = twiddle_factors(stage.block, inverse, coefficient_width)
+            re, im = twiddle_multiply(re, im, factors, coefficient_width - 1, width, monitor, name)
     return re, im

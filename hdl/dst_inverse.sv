@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// dst_inverse: inverse DST-II of a burst, the reverse of dst_forward.
+//
+//   out = g x when in = dst_forward(x),  g = (1 - 2^(1 - CoeffWidth))^(2 (twiddle stages + 1)), and the drops below
+//
+// Stream in: bursts of Size modes, bit-reversed order, as dst_forward puts them out.
+// Stream out: bursts of samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Latency: Size / 2 + 8 + sdf_fft.
+//
+//   mode_pairs  ->  turn C[N-k] + j C[k] by exp(j pi k / 2N) / j  ->  inverse sdf_fft  ->  sign (-1)^n
+//
+// Bit-accurate model: models/dst_inverse.py.
+
+module dst_inverse #(
+  parameter int Size       = 128,
+  parameter int InWidth    = 24,
+  parameter int InputDrop  = -3,   // fraction bits from the input to the arithmetic; negative: added
+  parameter int Width      = 27,   // of the arithmetic
+  parameter int CoeffWidth = 18,
+  parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
+  parameter int OutWidth   = 24
+) (
+  input  logic                       clk,
+  input  logic                       rst,
+  input  logic                       en,
+  input  logic                       in_start,
+  input  logic signed [InWidth-1:0]  in_data,
+  output logic                       out_start,
+  output logic signed [OutWidth-1:0] out_data,
+  output logic [7:0]                 saturations  // values clipped in a cycle, a little ago
+);
+
+  logic pair_start;
+  logic signed [InWidth-1:0] mode, mirrored;
+  mode_pairs #(.Width(InWidth), .Size(Size)) u_pairs (
+    .clk, .rst, .en, .in_start, .in_mode(in_data),
+    .out_start(pair_start), .out_mode(mode), .out_mirrored(mirrored)
+  );
+
+  logic turned_start;
+  logic signed [Width-1:0] turned_re, turned_im;
+  logic [1:0] clipped_phase;
+  twiddle_multiply #(
+    .InWidth(InWidth), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + InputDrop),
+    .Size(Size), .Block(Size), .File("phase_inverse.hex")
+  ) u_phase (
+    .clk, .rst, .en,
+    .in_start(pair_start), .in_re(mirrored), .in_im(mode),
+    .out_start(turned_start), .out_re(turned_re), .out_im(turned_im),
+    .saturations(clipped_phase)
+  );
+
+  logic fft_start;
+  logic signed [Width-1:0] x, unused_im;
+  logic [6:0] clipped_fft;
+  sdf_fft #(.Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(1)) u_fft (
+    .clk, .rst, .en,
+    .in_start(turned_start), .in_re(turned_re), .in_im(turned_im),
+    .out_start(fft_start), .out_re(x), .out_im(unused_im),
+    .saturations(clipped_fft)
+  );
+
+  // Samples of odd index are the second half of the burst.
+  logic [$clog2(Size)-1:0] position;
+  logic active;
+  burst_counter #(.Size(Size)) u_counter (
+    .clk, .rst, .en, .start(fft_start), .position, .active
+  );
+  logic signed [Width:0] signed_x;
+  assign signed_x = position[$clog2(Size)-1] ? -(Width + 1)'(x) : (Width + 1)'(x);
+
+  logic signed [OutWidth-1:0] rounded;
+  logic clipped, clipped_q;
+  round_saturate #(.InWidth(Width + 1), .Drop(OutputDrop), .OutWidth(OutWidth)) u_output (
+    .in(signed_x), .out(rounded), .clipped
+  );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      out_start <= fft_start;
+      out_data <= rounded;
+    end
+    clipped_q <= en & active & clipped;
+    saturations <= 8'(clipped_q) + 8'(clipped_fft) + 8'(clipped_phase);
+    if (rst) begin
+      out_start <= 1'b0;
+      clipped_q <= 1'b0;
+      saturations <= '0;
+    end
+  end
+
+endmodule

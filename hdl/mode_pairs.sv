@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// mode_pairs: mode k and mode N - k side by side.
+//
+// Stream in: bursts of Size modes in bit-reversed order. Stream out: the same bursts, with the mirrored mode beside each
+// (mode N is 0). Latency: Size / 2 + 1 cycles.
+//
+// In bit-reversed order the modes of positions 2^m .. 2^(m+1) - 1 are the odd multiples of N / 2^(m+1): N - k stands in
+// the same group, counted from its other end, so its position is that of k with every bit below the leading one
+// inverted. Half a burst is waited for; a memory of one burst serves, since a place is read before the next burst comes to it.
+// Bit-accurate model: models/mode_pairs.py.
+
+module mode_pairs #(
+  parameter int Width = 27,
+  parameter int Size  = 128
+) (
+  input  logic                    clk,
+  input  logic                    rst,
+  input  logic                    en,
+  input  logic                    in_start,
+  input  logic signed [Width-1:0] in_mode,
+  output logic                    out_start,
+  output logic signed [Width-1:0] out_mode,
+  output logic signed [Width-1:0] out_mirrored
+);
+
+  localparam int PositionWidth = $clog2(Size);
+
+  logic [PositionWidth-1:0] write_position, read_position, mirrored_position;
+  logic write_active, read_active, read_start;
+  burst_counter #(.Size(Size)) u_write (
+    .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
+  );
+  assign read_start = write_active & (write_position == PositionWidth'(Size / 2));
+  burst_counter #(.Size(Size)) u_read (
+    .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
+  );
+
+  assign mirrored_position[PositionWidth-1] = read_position[PositionWidth-1];
+  for (genvar b = 0; b < PositionWidth - 1; b++) begin : g_mirror
+    assign mirrored_position[b] = read_position[b] ^ (|read_position[PositionWidth-1:b+1]);
+  end
+
+  delay_line #(
+    .Width(Width),
+    .Delay(Size / 2 + 1)
+  ) u_delay (
+    .clk, .rst, .en, .in(in_mode), .out(out_mode)
+  );
+
+  logic [Width-1:0] mirrored;
+  ram #(
+    .Width(Width),
+    .Depth(Size),
+    .Style(0)
+  ) u_ram (
+    .clk,
+    .write_en     (en & write_active),
+    .write_address(write_position),
+    .write_data   (in_mode),
+    .read_en      (en & read_active),
+    .read_address (mirrored_position),
+    .read_data    (mirrored)
+  );
+
+  always_ff @(posedge clk) begin
+    if (en) out_start <= read_start;
+    if (rst) out_start <= 1'b0;
+  end
+  assign out_mirrored = out_start ? '0 : mirrored;
+
+endmodule

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// round_saturate: drop fraction bits, round half to even, saturate. Combinational.
+//
+//   out = sat_OutWidth( round( in / 2^Drop ) )          Drop <= 0: shift left, exact
+//
+// Rounding can carry out of the top bit (0111.1 -> 1000), so the sum keeps a guard bit and the saturation works on
+// that. Bit-accurate model: models/round_saturate.py.
+
+module round_saturate #(
+  parameter int InWidth  = 46,
+  parameter int Drop     = 17,
+  parameter int OutWidth = 27
+) (
+  input  logic signed [InWidth-1:0]  in,
+  output logic signed [OutWidth-1:0] out,
+  output logic                       clipped  // out is not the rounded value
+);
+
+  localparam int SumWidth = InWidth - Drop + 1;  // kept bits and a guard bit
+  logic signed [SumWidth-1:0] sum;
+
+  if (Drop > 0) begin : g_round
+    logic up;
+    if (Drop == 1) begin : g_one
+      assign up = in[0] & in[1];  // only ties exist: to even
+    end else begin : g_many
+      assign up = in[Drop-1] & ((|in[Drop-2:0]) | in[Drop]);
+    end
+    assign sum = SumWidth'($signed(in[InWidth-1:Drop])) + $signed({{(SumWidth - 1){1'b0}}, up});
+  end else begin : g_shift
+    assign sum = SumWidth'(in) <<< (-Drop);
+  end
+
+  if (SumWidth > OutWidth) begin : g_saturate
+    assign clipped = sum[SumWidth-1:OutWidth-1] != {(SumWidth - OutWidth + 1){sum[SumWidth-1]}};
+    assign out = clipped ? {sum[SumWidth-1], {(OutWidth - 1){~sum[SumWidth-1]}}} : sum[OutWidth-1:0];
+  end else begin : g_extend
+    assign clipped = 1'b0;
+    assign out = OutWidth'(sum);
+  end
+
+`ifndef SYNTHESIS
+  initial begin
+    if (Drop >= InWidth) $fatal(1, "%m: Drop must leave a bit of the input");
+    if (OutWidth < 2) $fatal(1, "%m: OutWidth must be at least 2");
+  end
+`endif
+
+endmodule

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// row_reorder: collect a row, then send it as one burst in another order.
+//
+// Stream in: words with gaps anywhere. Stream out: bursts of Size words, one a row, begun when the row is complete, so
+// what follows never sees a gap.
+//   ToBurst = 1: natural order in, Makhoul order out (0, 2, 4, .., 5, 3, 1).  ToBurst = 0: the reverse.
+// Latency: 2 cycles from the last word of a row to its first word out. Two rows of memory, written and read in turn.
+// Bit-accurate model: models/orders.py, makhoul().
+
+module row_reorder #(
+  parameter int Width   = 24,
+  parameter int Size    = 128,
+  parameter int ToBurst = 1
+) (
+  input  logic             clk,
+  input  logic             rst,
+  input  logic             en,
+  input  logic             in_valid,
+  input  logic [Width-1:0] in_data,
+  output logic             out_start,
+  output logic [Width-1:0] out_data
+);
+
+  localparam int PositionWidth = $clog2(Size);
+
+  // Sample at position p of a burst: 2 p in the first half, counted back from Size - 1 in the second.
+  function automatic logic [PositionWidth-1:0] makhoul(input logic [PositionWidth-1:0] p);
+    return {p[PositionWidth-2:0] ^ {(PositionWidth - 1){p[PositionWidth-1]}}, p[PositionWidth-1]};
+  endfunction
+
+  logic write_bank, read_bank, read_start, read_active;
+  logic [PositionWidth-1:0] write_position, read_position, write_place, read_place;
+  burst_counter #(.Size(Size)) u_read (
+    .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
+  );
+  assign write_place = ToBurst != 0 ? write_position : makhoul(write_position);
+  assign read_place = ToBurst != 0 ? makhoul(read_position) : read_position;
+
+  ram #(
+    .Width(Width),
+    .Depth(2 * Size),
+    .Style((2 * Size * Width > 4096) ? 1 : 0)
+  ) u_ram (
+    .clk,
+    .write_en     (en & in_valid),
+    .write_address({write_bank, write_place}),
+    .write_data   (in_data),
+    .read_en      (en & read_active),
+    .read_address ({read_bank, read_place}),
+    .read_data    (out_data)
+  );
+
+  logic row_end;
+  assign row_end = in_valid & (write_position == PositionWidth'(Size - 1));
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_valid) write_position <= write_position + PositionWidth'(1);
+      if (row_end) begin
+        write_bank <= ~write_bank;
+        read_bank <= write_bank;
+      end
+      read_start <= row_end;
+      out_start <= read_start;
+    end
+    if (rst) begin
+      write_position <= '0;
+      write_bank <= 1'b0;
+      read_bank <= 1'b0;
+      read_start <= 1'b0;
+      out_start <= 1'b0;
+    end
+  end
+
+endmodule

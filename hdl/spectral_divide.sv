@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// spectral_divide: divide each mode by its eigenvalue of the five-point Laplacian.
+//
+//   out = sat( round( in M 2^S / 2^Drop ) ),  M 2^S / 2^Drop = c / (lambda_k + lambda_l) from a ROM
+//   c takes back the gain of all transforms and turns pixels into full scales of the depth code
+//
+// Stream in: bursts of Size modes, Size of them a frame, both directions in bit-reversed order. Stream out: the same.
+// Latency: 6 cycles. The table is symmetric: the ROM holds the lower triangle, p (p + 1) / 2 + t for t <= p, and its
+// address is kept by adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
+// Bit-accurate model: models/spectral_divide.py, which also writes the ROM.
+
+module spectral_divide #(
+  parameter int Width      = 27,
+  parameter int CoeffWidth = 18,
+  parameter int Size       = 128,
+  parameter int ShiftWidth = 4,
+  parameter int Drop       = 22,
+  parameter     File       = "reciprocal.hex"  // Size (Size + 1) / 2 words {S, M}
+) (
+  input  logic                    clk,
+  input  logic                    rst,
+  input  logic                    en,
+  input  logic                    in_start,
+  input  logic signed [Width-1:0] in_data,
+  output logic                    out_start,
+  output logic signed [Width-1:0] out_data,
+  output logic                    saturations  // values clipped in this cycle
+);
+
+  localparam int PositionWidth = $clog2(Size);
+  localparam int Words = Size * (Size + 1) / 2;
+  localparam int AddressWidth = $clog2(Words);
+  localparam int ProductWidth = Width + CoeffWidth;
+  localparam int ShiftedWidth = ProductWidth + (1 << ShiftWidth) - 1;
+  localparam int ToShifted = 5;  // cycles to the shifted product: address, ROM, operands, product, shift
+
+  // p: burst in the frame, t: word in the burst; tri_p = p (p + 1) / 2, tri_t likewise.
+  logic [PositionWidth-1:0] p, t;
+  logic [AddressWidth-1:0] tri_p, tri_t_q, tri_t, address;
+  logic active;
+  burst_counter #(.Size(Size)) u_counter (
+    .clk, .rst, .en, .start(in_start), .position(t), .active
+  );
+  assign tri_t = in_start ? '0 : tri_t_q;
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      address <= t <= p ? tri_p + AddressWidth'(t) : tri_t + AddressWidth'(p);
+      if (active) begin
+        tri_t_q <= tri_t + AddressWidth'(t) + AddressWidth'(1);
+        if (t == PositionWidth'(Size - 1)) begin
+          p <= p + PositionWidth'(1);
+          tri_p <= p == PositionWidth'(Size - 1) ? '0 : tri_p + AddressWidth'(p) + AddressWidth'(1);
+        end
+      end
+    end
+    if (rst) begin
+      p <= '0;
+      tri_p <= '0;
+    end
+  end
+
+  logic [ShiftWidth-1:0] shift, shift_q, shift_q2;
+  logic signed [CoeffWidth-1:0] mantissa, mantissa_q;
+  rom #(.Width(ShiftWidth + CoeffWidth), .Depth(Words), .File(File)) u_rom (
+    .clk, .en, .address, .data({shift, mantissa})
+  );
+
+  logic signed [Width-1:0] data_q, data_q2, data_q3;
+  logic signed [ProductWidth-1:0] product;
+  logic signed [ShiftedWidth-1:0] shifted;
+  logic [ToShifted-1:0] start_q, active_q;
+  logic signed [Width-1:0] rounded;
+  logic clipped;
+  round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
+    .in(shifted), .out(rounded), .clipped
+  );
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      data_q <= in_data;
+      data_q2 <= data_q;
+      data_q3 <= data_q2;
+      mantissa_q <= mantissa;
+      shift_q <= shift;
+      product <= data_q3 * mantissa_q;
+      shift_q2 <= shift_q;
+      shifted <= ShiftedWidth'(product) <<< shift_q2;
+      out_data <= rounded;
+      start_q <= {start_q[ToShifted-2:0], in_start};
+      active_q <= {active_q[ToShifted-2:0], active};
+      out_start <= start_q[ToShifted-1];
+    end
+    saturations <= en & active_q[ToShifted-1] & clipped;
+    if (rst) begin
+      start_q <= '0;
+      active_q <= '0;
+      out_start <= 1'b0;
+      saturations <= 1'b0;
+    end
+  end
+
+endmodule

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// twiddle_multiply: turn the words of a stream by complex factors from a ROM.
+//
+//   out = sat( round( in w / 2^Drop ) ),  w = word (position mod Block) of the ROM
+//
+// Stream in: bursts of Size complex words. Stream out: the same. Latency: 6 cycles.
+// A factor of 1 is 2^(CoeffWidth-1) - 1, so with Drop = CoeffWidth - 1 the gain is 1 - 2^(1 - CoeffWidth).
+// Bit-accurate model: models/twiddle_multiply.py, which also says what the ROMs hold.
+
+module twiddle_multiply #(
+  parameter int InWidth    = 27,
+  parameter int OutWidth   = 27,
+  parameter int CoeffWidth = 18,
+  parameter int Drop       = 17,
+  parameter int Size       = 128,
+  parameter int Block      = 128,
+  parameter int RealOnly   = 0,                       // out_im is 0
+  parameter     File       = "twiddle_forward_0.hex"  // Block words {-Im, Im, Re} of the factor
+) (
+  input  logic                       clk,
+  input  logic                       rst,
+  input  logic                       en,
+  input  logic                       in_start,
+  input  logic signed [InWidth-1:0]  in_re,
+  input  logic signed [InWidth-1:0]  in_im,
+  output logic                       out_start,
+  output logic signed [OutWidth-1:0] out_re,
+  output logic signed [OutWidth-1:0] out_im,
+  output logic [1:0]                 saturations  // values clipped in this cycle
+);
+
+  localparam int SumWidth = InWidth + CoeffWidth + 1;
+  localparam int ToSum = 5;  // cycles to the exact product: ROM, dot product
+
+  localparam int PositionWidth = $clog2(Size);
+  localparam int BlockWidth = $clog2(Block);
+
+  logic [PositionWidth-1:0] position;
+  logic active;
+  burst_counter #(.Size(Size)) u_counter (
+    .clk, .rst, .en, .start(in_start), .position, .active
+  );
+
+  logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
+  rom #(.Width(3 * CoeffWidth), .Depth(Block), .File(File)) u_rom (
+    .clk, .en, .address(position[BlockWidth-1:0]), .data({w_minus_im, w_im, w_re})
+  );
+
+  if (PositionWidth > BlockWidth) begin : g_unused
+    logic unused_position;
+    assign unused_position = ^position[PositionWidth-1:BlockWidth];
+  end
+
+  logic signed [InWidth-1:0] re_q, im_q;
+  logic [ToSum-1:0] start_q, active_q;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      re_q <= in_re;
+      im_q <= in_im;
+      start_q <= {start_q[ToSum-2:0], in_start};
+      active_q <= {active_q[ToSum-2:0], active};
+    end
+    if (rst) begin
+      start_q <= '0;
+      active_q <= '0;
+    end
+  end
+
+  logic signed [OutWidth-1:0] rounded_re, rounded_im;
+  logic [1:0] clipped;
+
+  logic signed [SumWidth-1:0] sum_re;
+  dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
+    .clk, .en, .a0(re_q), .b0(w_re), .a1(im_q), .b1(w_minus_im), .sum(sum_re)
+  );
+  round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round_re (
+    .in(sum_re), .out(rounded_re), .clipped(clipped[0])
+  );
+
+  if (RealOnly == 0) begin : g_im
+    logic signed [SumWidth-1:0] sum_im;
+    dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_im (
+      .clk, .en, .a0(re_q), .b0(w_im), .a1(im_q), .b1(w_re), .sum(sum_im)
+    );
+    round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round_im (
+      .in(sum_im), .out(rounded_im), .clipped(clipped[1])
+    );
+  end else begin : g_real_only
+    assign rounded_im = '0;
+    assign clipped[1] = 1'b0;
+    logic unused_w_im;
+    assign unused_w_im = ^w_im;
+  end
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      out_start <= start_q[ToSum-1];
+      out_re <= rounded_re;
+      out_im <= rounded_im;
+    end
+    saturations <= (en && active_q[ToSum-1]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
+    if (rst) begin
+      out_start <= 1'b0;
+      saturations <= '0;
+    end
+  end
+
+endmodule

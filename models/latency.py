@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Latency of each core in clocks, from the first word of a burst in to the first word out, and of the whole."""
+
+from __future__ import annotations
+
+from models.sdf_fft import twiddle_stages
+
+BUTTERFLY = 1  # beside its delay
+TWIDDLE_MULTIPLY = 6
+SPECTRAL_DIVIDE = 6
+ROW_REORDER = 2  # from the last word of a row
+TRANSPOSE = 2  # from the first word of the last row
+DIVERGENCE = 2
+GRADIENT_LOOKUP = 2
+
+
+def sdf_fft_latency(size: int) -> int:
+    """The delays of all butterflies add up to size - 1."""
+    return size - 1 + (size.bit_length() - 1) * BUTTERFLY + twiddle_stages(size) * TWIDDLE_MULTIPLY
+
+
+def dst_forward_latency(size: int) -> int:
+    """Sign, FFT, phase."""
+    return 1 + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
+
+
+def mode_pairs_latency(size: int) -> int:
+    """Half a burst, and the read."""
+    return size // 2 + 1
+
+
+def dst_inverse_latency(size: int) -> int:
+    """Pairs, phase, FFT, sign."""
+    return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + 1
+
+
+def spectral_solver_latency(size: int) -> int:
+    """From the last pixel of a frame to its first depth; no gap in the frame changes it."""
+    first_transform = ROW_REORDER + dst_forward_latency(size)
+    # The last column, size - 1 bursts behind the first, is the last row of the second transpose.
+    columns = TRANSPOSE + dst_forward_latency(size) + SPECTRAL_DIVIDE + dst_inverse_latency(size)
+    columns += size * (size - 1)
+    rows = TRANSPOSE + dst_inverse_latency(size) + size - 1 + ROW_REORDER
+    return first_transform + columns + rows

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the $readmemh files of a configuration: one line per word, under fixed names in one folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from models.configuration import Configuration
+from models.sdf_fft import stages
+from models.spectral_divide import reciprocal_rom, reciprocals
+from models.twiddle_multiply import phase_factors, twiddle_factors
+
+
+def write_words(path: Path, words: Iterable[int], width: int) -> None:
+    """Write non-negative words of `width` bits."""
+    digits = (width + 3) // 4
+    path.write_text("".join(f"{int(word):0{digits}x}\n" for word in words))
+
+
+def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:
+    """Signed fields of `width` bits side by side, the first on top, as Python integers (a word may exceed 64 bits)."""
+    mask = (1 << width) - 1
+    words: list[int] = []
+    for row in zip(*(np.asarray(field).tolist() for field in fields), strict=True):
+        word = 0
+        for value in row:
+            word = word << width | value & mask
+        words.append(word)
+    return words
+
+
+def write_factors(path: Path, factors: np.ndarray, width: int) -> None:
+    """Complex factors (block, 2) as twiddle_multiply.sv reads them: {-Im, Im, Re}."""
+    re, im = factors.T
+    write_words(path, pack((-im, im, re), width), 3 * width)
+
+
+def write_transform(folder: Path, size: int, width: int) -> None:
+    """The ROMs of dst_forward and dst_inverse."""
+    for inverse, direction in ((False, "forward"), (True, "inverse")):
+        blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
+        for pair, block in enumerate(blocks):
+            factors = twiddle_factors(block, inverse, width)
+            write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width)
+        write_factors(folder / f"phase_{direction}.hex", phase_factors(size, inverse, width), width)
+
+
+def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
+    """Slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
+    write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
+
+
+def write_solver(folder: Path, config: Configuration) -> None:
+    """The ROMs of the spectral solver."""
+    write_transform(folder, config.size, config.coefficient_width)
+    width = config.coefficient_width + reciprocals(config).shift_width
+    write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)

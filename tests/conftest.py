@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Builds tb/tb_<core>.py on each simulator. SIM=icarus or SIM=verilator narrows the run to one."""
+
+import os
+import re
+
+import pytest
+
+from commands import simulator as simulation
+
+SEED = int(os.environ.get("SEED", "1"))
+
+
+@pytest.fixture(params=os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(","))
+def simulator(request):
+    return request.param
+
+
+@pytest.fixture
+def run_tb(simulator, request):
+    """Build `toplevel` from `sources` (names in hdl/) and run its testbench.
+
+    `roms`, called with the folder, writes the files that $readmemh reads there.
+    """
+
+    def run(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
+        name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
+        folder = simulation.ROOT / "build" / "tests" / f"{request.node.path.stem}-{name}"
+        folder.mkdir(parents=True, exist_ok=True)
+        if roms:
+            roms(folder)
+        log = folder / "run.log"
+        runner = simulation.build(
+            simulator,
+            toplevel,
+            [*simulation.sources(sources), *files],
+            parameters or {},
+            folder,
+            log=folder / "build.log",
+        )
+        count, failed = simulation.run(
+            runner,
+            toplevel,
+            test_module or f"tb_{toplevel}",
+            folder,
+            folder,
+            seed=SEED,
+            environment=environment,
+            log=log,
+        )
+        if failed or not count:
+            lines = [line for line in log.read_text().splitlines() if not line.startswith("make")]
+            pytest.fail(
+                f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False
+            )
+
+    return run
