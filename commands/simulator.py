@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.metadata
 import importlib.util
 import os
 import shutil
@@ -12,7 +13,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from cocotb_tools.runner import Runner, get_results, get_runner
+from cocotb_tools.runner import get_results, get_runner
 
 from models.errors import InputError
 
@@ -66,16 +67,15 @@ def build(
     *,
     waves: bool = False,
     log: Path | None = None,
-) -> Runner:
+) -> None:
     """Build a testbench; every warning of a simulator is an error in ours, so -Wall is on."""
     check(simulator)
-    runner = get_runner(simulator)
     arguments = ["-Wall"]
     if simulator == "verilator":
         # Waiver file first. A model of four threads gains nothing here: frames are small.
         files = [HDL / "verilator.vlt", *files]
         arguments += ["--trace-fst", "--trace-structs"] if waves else []
-    runner.build(
+    get_runner(simulator).build(
         sources=files,
         hdl_toplevel=toplevel,
         parameters=dict(parameters),
@@ -85,35 +85,44 @@ def build(
         waves=waves and simulator == "icarus",
         log_file=log,
     )
-    return runner
+
+
+def versions() -> list[str]:
+    """Of the packages that take part in a build."""
+    return [f"{name} {importlib.metadata.version(name)}" for name in ("cocotb", "verilator")]
 
 
 def run(
-    runner: Runner,
     toplevel: str,
     test_module: str,
     folder: Path,
     run_folder: Path,
     *,
+    simulator: str,
     seed: int,
     environment: Mapping[str, str] | None = None,
-    arguments: Sequence[str] = (),
     waves: bool = False,
     log: Path | None = None,
 ) -> tuple[int, int]:
-    """Run a built testbench in `run_folder`, where $readmemh finds its files. Returns tests run, tests failed."""
+    """Run what `build` left in `folder`, inside `run_folder`, where $readmemh finds its files.
+
+    Returns
+    -------
+    tests run, tests failed
+    """
+    check(simulator)
     results = run_folder / "results.xml"
     results.unlink(missing_ok=True)
     with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
-        runner.test(
+        get_runner(simulator).test(
             hdl_toplevel=toplevel,
+            hdl_toplevel_lang="verilog",
             test_module=test_module,
             build_dir=folder,
             test_dir=run_folder,
             results_xml=str(results),
             seed=seed,
             extra_env=dict(environment or {}),
-            plusargs=list(arguments),
             waves=waves,
             log_file=log,
         )

@@ -31,7 +31,7 @@ module spectral_solver #(
   input  logic signed [InWidth-1:0]   in_data,
   output logic                        out_start,
   output logic signed [DataWidth-1:0] out_data,
-  output logic [9:0]                  saturations  // values clipped in a cycle, a little ago
+  output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
 );
 
   logic row_start, row_modes_start, column_start, modes_start, divided_start;
@@ -107,7 +107,7 @@ module spectral_solver #(
   assign out_data = depth_reordered;
 
   always_ff @(posedge clk) begin
-    saturations <= 10'(clipped_a) + 10'(clipped_b) + 10'(clipped_divide) + 10'(clipped_c) + 10'(clipped_d);
+    saturations <= 8'(clipped_a) + 8'(clipped_b) + 8'(clipped_divide) + 8'(clipped_c) + 8'(clipped_d);
     if (rst) saturations <= '0;
   end
 

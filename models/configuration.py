@@ -17,6 +17,7 @@ import numpy as np
 
 from models.dst_forward import dst_forward
 from models.dst_inverse import dst_inverse
+from models.errors import InputError
 from models.orders import makhoul
 from models.round_saturate import Monitor
 from models.sdf_fft import twiddle_stages
@@ -31,10 +32,7 @@ COARSEST_LSB_PX = 1.0  # of any node behind the divide: coarser than this a word
 SIZES = (16, 512)
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
-
-
-class ConfigurationError(ValueError):
-    """A configuration that cannot be built: says what was given, what is accepted, how to mend it."""
+GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 
 
 @dataclass(frozen=True)
@@ -63,6 +61,8 @@ class Format:
 class Configuration:
     """A pipeline, chosen.
 
+    Raises InputError when it cannot be built.
+
     Attributes
     ----------
     size : int
@@ -87,14 +87,14 @@ class Configuration:
     def __post_init__(self) -> None:
         def within(name: str, value: int, accepted: tuple[int, int]) -> None:
             if not accepted[0] <= value <= accepted[1]:
-                raise ConfigurationError(
+                raise InputError(
                     f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}"
                 )
 
         within("N", self.size, SIZES)
         if self.size & (self.size - 1):
             lower = 1 << (self.size.bit_length() - 1)
-            raise ConfigurationError(
+            raise InputError(
                 f"N={self.size} is not a power of two: try N={lower} or N={min(2 * lower, SIZES[1])}"
             )
         within("DATA_WIDTH", self.data_width, DATA_WIDTHS)
@@ -102,13 +102,19 @@ class Configuration:
         if self.depth_range_px is None:
             object.__setattr__(self, "depth_range_px", self.size / 4)
         if not (self.depth_limit_px > 0 and math.isfinite(self.depth_limit_px)):
-            raise ConfigurationError(
+            raise InputError(
                 f"the depth range is {self.depth_range_px} pixels: it must be a positive, finite number"
+            )
+        lowest, highest = GRADIENT_LIMITS
+        if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
+            raise InputError(
+                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are {lowest:g} to "
+                f"{highest:g} pixels per pixel; is its unit right?"
             )
         coarsest = self.column_inverse.lsb * self.depth_limit_px
         if coarsest > COARSEST_LSB_PX:
             bits = math.ceil(math.log2(coarsest / COARSEST_LSB_PX))
-            raise ConfigurationError(
+            raise InputError(
                 f"DATA_WIDTH={self.data_width} cannot hold the formats of N={self.size} and a depth range of "
                 f"{self.depth_range_px:g} pixels (one step of a mode would be {coarsest:.3g} pixels): "
                 f"try DATA_WIDTH={self.data_width + bits} or a smaller DEPTH_RANGE"

@@ -12,6 +12,8 @@ ROW_REORDER = 2  # from the last word of a row
 TRANSPOSE = 2  # from the first word of the last row
 DIVERGENCE = 2
 GRADIENT_LOOKUP = 2
+FRAME_GUARD = 1
+AXIS_SKID = 1
 
 
 def sdf_fft_latency(size: int) -> int:
@@ -42,3 +44,14 @@ def spectral_solver_latency(size: int) -> int:
     columns += size * (size - 1)
     rows = TRANSPOSE + dst_inverse_latency(size) + size - 1 + ROW_REORDER
     return first_transform + columns + rows
+
+
+def last_pixel_to_first_depth(size: int) -> int:
+    """Of the whole pipeline, from the edge that takes the last pixel of a frame; the same whatever the gaps."""
+    ahead = AXIS_SKID + FRAME_GUARD + GRADIENT_LOOKUP + DIVERGENCE
+    return ahead + spectral_solver_latency(size) + AXIS_SKID
+
+
+def first_depth_latency(size: int) -> int:
+    """Of the whole pipeline, from the edge that takes the first pixel of a frame sent without gaps."""
+    return size * size - 1 + last_pixel_to_first_depth(size)

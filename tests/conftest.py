@@ -30,7 +30,7 @@ def run_tb(simulator, request):
         if roms:
             roms(folder)
         log = folder / "run.log"
-        runner = simulation.build(
+        simulation.build(
             simulator,
             toplevel,
             [*simulation.sources(sources), *files],
@@ -39,11 +39,11 @@ def run_tb(simulator, request):
             log=folder / "build.log",
         )
         count, failed = simulation.run(
-            runner,
             toplevel,
             test_module or f"tb_{toplevel}",
             folder,
             folder,
+            simulator=simulator,
             seed=SEED,
             environment=environment,
             log=log,

@@ -1,0 +1,381 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make sim`: streams frames through the RTL, checks every code, prints a table, draws.
+
+Takes the variables of the README's table as KEY=VALUE arguments. Exit status: 0 bit-exact, 1 not, 2 bad input.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import shutil
+import sys
+import tempfile
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from commands import simulator as simulation
+from commands.draw import draw_depth
+from models import latency, reference
+from models.calibration import Calibration, load
+from models.configuration import Configuration
+from models.errors import InputError
+from models.frames import Frames, load_frames
+from models.round_saturate import Monitor
+from models.tactile_depth import tactile_depth, top_parameters, write_roms
+
+BENCH = "frame_bench"
+DEFAULT_SCENE = "contacts"
+SOLVERS = ("spectral",)
+SMALLEST_PEAK_PX = 0.1  # below this an error in % of peak says nothing
+CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
+ROWS_SHOWN = 16
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for, checked as far as it can be without reading files."""
+
+    size: int
+    solver: str
+    simulator: str
+    data_width: int
+    coefficient_width: int
+    depth_range_mm: float | None
+    frames: str
+    reference: str | None
+    calibration: str
+    repeat: int
+    seed: int
+    gaps: float
+    stalls: float
+    waves: bool
+    out: Path | None
+
+
+def parse(arguments: list[str]) -> Request:
+    """KEY=VALUE arguments to a Request; an empty value means the default.
+
+    Raises
+    ------
+    InputError
+    """
+    accepted = "N SOLVER SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS STALLS WAVES OUT"
+    given: dict[str, str] = {}
+    for argument in arguments:
+        key, equals, value = argument.partition("=")
+        if not equals or key not in accepted.split():
+            raise InputError(f"{argument}: unknown variable: accepted are {accepted.replace(' ', ', ')}")
+        if value:
+            given[key] = value
+
+    def number(key: str, default: float, low: float, high: float, kind: type = int) -> float:
+        if key not in given:
+            return default
+        try:
+            value = kind(given[key])
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            what = "a whole number" if kind is int else "a number"
+            to = f"from {low:g} to {high:g}" if math.isfinite(high) else f"of at least {low:g}"
+            raise InputError(f"{key}={given[key]}: accepted is {what} {to}")
+        return value
+
+    def choice(key: str, accepted: tuple[str, ...]) -> str:
+        value = given.get(key, accepted[0])
+        if value not in accepted:
+            raise InputError(f"{key}={value} is unknown: accepted are {', '.join(accepted)}")
+        return value
+
+    return Request(
+        size=int(number("N", 128, -math.inf, math.inf)),  # the configuration says which
+        solver=choice("SOLVER", SOLVERS),
+        simulator=choice("SIM", simulation.SIMULATORS),
+        data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
+        coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
+        depth_range_mm=number("DEPTH_RANGE", 0, 1e-9, 1e9, float) or None,
+        frames=given.get("FRAMES", DEFAULT_SCENE),
+        reference=given.get("REFERENCE"),
+        calibration=given.get("CALIBRATION", "synthetic"),
+        repeat=int(number("REPEAT", 1, 1, 1_000_000)),
+        seed=int(number("SEED", 1, 0, 2**31 - 1)),
+        gaps=number("GAPS", 0, 0, 0.99, float),
+        stalls=number("STALLS", 0, 0, 0.99, float),
+        waves=bool(number("WAVES", 0, 0, 1)),
+        out=Path(given["OUT"]) if "OUT" in given else None,
+    )
+
+
+def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float) -> Configuration:
+    """The pipeline for a request; the depth range becomes grid pixels."""
+    depth_range = request.depth_range_mm
+    return Configuration(
+        size=request.size,
+        data_width=request.data_width,
+        coefficient_width=request.coefficient_width,
+        depth_range_px=None if depth_range is None else depth_range / pixel_pitch_mm,
+        gradient_limit=calibration.gradient_limit,
+        bits_per_channel=calibration.bits_per_channel,
+    )
+
+
+def build(request: Request, config: Configuration) -> Path:
+    """The simulator for a configuration, built once for each state of the sources."""
+    sources = [*simulation.sources(), simulation.ROOT / "tb" / f"{BENCH}.sv"]
+    parameters = top_parameters(config)
+    key = hashlib.sha256(
+        json.dumps([request.simulator, request.waves, parameters, simulation.versions()]).encode()
+    )
+    for source in sources:
+        key.update(source.read_bytes())
+    folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
+    complete = folder / "complete"
+    if not complete.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        print(f"building the {request.simulator} model (once for this configuration) ..", flush=True)
+        try:
+            simulation.build(
+                request.simulator, BENCH, sources, parameters, folder, waves=request.waves, log=folder / "build.log"
+            )
+        except (RuntimeError, SystemExit) as error:
+            raise RuntimeError(f"the build failed: see {folder / 'build.log'}") from error
+        complete.touch()
+    return folder
+
+
+def simulate(request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path) -> None:
+    """Run the bench in `folder`, which then holds depth.bin, events.txt and registers.json."""
+    write_roms(folder, calibration, config)
+    frames.pixels[..., [0, 2, 1]].tofile(folder / "frames.bin")
+    total = len(frames.pixels) * request.repeat
+    wanted = {
+        "sequence_frames": len(frames.pixels),
+        "total_frames": total,
+        "pixels": config.size**2,
+        "gap": request.gaps,
+        "stall": request.stalls,
+        "seed": request.seed * 2 + 1,
+        "threshold": round(CONTACT_THRESHOLD * config.size / config.depth_lsb_px),
+    }
+    built = build(request, config)
+    finished = threading.Event()
+
+    def watch() -> None:
+        depth = folder / "depth.bin"
+        with tqdm(total=total, unit="frame", desc="simulating", leave=False, disable=None) as bar:
+            while not finished.wait(0.2):
+                if depth.exists():
+                    bar.update(min(depth.stat().st_size // (4 * config.size**2), total) - bar.n)
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    try:
+        count, failed = simulation.run(
+            BENCH,
+            f"tb_{BENCH}",
+            built,
+            folder,
+            simulator=request.simulator,
+            seed=request.seed,
+            environment={"FRAME_BENCH": json.dumps(wanted)},
+            waves=request.waves,
+            log=folder / "simulation.log",
+        )
+    finally:
+        finished.set()
+        watcher.join()
+    if failed or not count:
+        log = shutil.copy(folder / "simulation.log", built / "simulation.log")
+        raise RuntimeError(f"the simulation failed: see {log}")
+
+
+def measure(events: Path) -> dict[str, list[int | None]]:
+    """Latencies of each frame, in clocks, from the events of the bench."""
+    clocks: dict[str, list[int]] = {letter: [] for letter in "plde"}
+    contact: dict[int, int] = {}
+    for line in events.read_text().splitlines():
+        letter, clock = line.split()
+        if letter == "c":
+            contact[len(clocks["d"]) - 1] = int(clock)
+        else:
+            clocks[letter].append(int(clock))
+    first, last, depth, end = (clocks[letter] for letter in "plde")
+    frames = range(len(end))
+    return {
+        "first_depth_latency_cycles": [depth[i] - first[i] for i in frames],
+        "last_depth_latency_cycles": [end[i] - first[i] for i in frames],
+        "last_pixel_to_first_depth_cycles": [depth[i] - last[i] for i in frames],
+        "frame_interval_cycles": [depth[i] - depth[i - 1] if i else None for i in frames],
+        "contact_latency_cycles": [contact[i] - first[i] if i in contact else None for i in frames],
+    }
+
+
+def errors(depth_px: np.ndarray, reference_px: np.ndarray) -> dict[str, list[float | None]]:
+    """RMS and largest error of each frame, in % of the reference's peak; no scale or offset is fitted."""
+    error = depth_px - reference_px
+    peak = np.abs(reference_px).max(axis=(1, 2))
+    rms = np.sqrt((error**2).mean(axis=(1, 2)))
+    largest = np.abs(error).max(axis=(1, 2))
+    percent = [
+        [float(100 * v / p) if p >= SMALLEST_PEAK_PX else None for v, p in zip(values, peak, strict=True)]
+        for values in (rms, largest)
+    ]
+    return {"rms_percent_of_peak": percent[0], "max_percent_of_peak": percent[1]}
+
+
+def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
+    """What the hardware counted against what was seen from outside; one line for each that differs."""
+    total = report["frames"]
+    clipped = sum(report["saturations"].values())
+    expected = {
+        "frames_in": total,
+        "frames_out": total,
+        "frames_dropped": 0,
+        "saturations": min(clipped, 2**32 - 1),
+    }
+    if not stalls:
+        expected["first_depth_latency"] = report["first_depth_latency_cycles"][-1]
+    return [
+        f"register {name.upper()} says {registers[name]}, expected {value}"
+        for name, value in expected.items()
+        if registers[name] != value
+    ]
+
+
+def table(report: dict, labels: tuple[str, ...]) -> str:
+    """One line a frame, the sequence once; then what holds for all."""
+
+    def cell(value: float | None, digits: int = 5) -> str:
+        return "-" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.{digits}f}"
+
+    head = ("frame", "first depth", "last px > depth", "interval", "contact", "RMS % peak", "max % peak")
+    columns = (
+        "first_depth_latency_cycles",
+        "last_pixel_to_first_depth_cycles",
+        "frame_interval_cycles",
+        "contact_latency_cycles",
+        "rms_percent_of_peak",
+        "max_percent_of_peak",
+    )
+    lines = ["".join(f"{name:>17}" if i else f"{name:<20}" for i, name in enumerate(head))]
+    shown = min(len(labels), ROWS_SHOWN)
+    for i in range(shown):
+        cells = "".join(f"{cell(report[column][i]):>17}" for column in columns)
+        lines.append(f"{labels[i][:19]:<20}{cells}")
+    if report["frames"] > shown:
+        lines.append(f"and {report['frames'] - shown:,} frames more: report.json")
+    rms = [value for value in report["rms_percent_of_peak"] if value is not None]
+    if rms:
+        lines.append(f"mean RMS {np.mean(rms):.5f} % of peak, worst {max(rms):.5f} %")
+    for column in columns[:3]:
+        values = {value for value in report[column] if value is not None}
+        if values:
+            spread = f"{min(values):,}" if len(values) == 1 else f"{min(values):,} to {max(values):,}"
+            lines.append(f"{column.removesuffix('_cycles').replace('_', ' ')}: {spread} cycles, all frames")
+    clipped = report["saturations"]
+    lines.append(
+        f"saturated: {', '.join(f'{node} {count:,}' for node, count in clipped.items())}" if clipped else "no saturation"
+    )
+    return "\n".join(lines)
+
+
+def run(request: Request) -> int:
+    """Everything after parsing; returns the exit status."""
+    simulation.check(request.simulator)
+    calibration = load(request.calibration)
+    Configuration(size=request.size)  # refuse the size before frames are read
+    frames = load_frames(request.frames, (request.size, request.size), request.reference, request.seed)
+    pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
+    config = configure(request, calibration, pixel_pitch_mm)
+    name = f"{request.solver}-{config.size}-d{config.data_width}-c{config.coefficient_width}-{request.simulator}"
+    out = request.out or simulation.ROOT / "build" / "sim" / name
+    if out.exists() and not out.is_dir():
+        raise InputError(f"OUT={out} is a file: give a folder")
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        work = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent)).resolve()
+    except OSError as error:
+        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+    try:
+        simulate(request, config, frames, calibration, work)
+        monitor = Monitor()
+        codes = tactile_depth(frames.pixels, calibration, config, monitor)
+        reference_px = reference.depth(frames.pixels, calibration)
+        shape = (request.repeat, *codes.shape)
+        seen = np.fromfile(work / "depth.bin", dtype="<i4").reshape(shape)
+        depth = seen.reshape(-1, *codes.shape[1:])
+        bit_exact = bool((seen == codes).all())
+        per_frame = errors(seen[0] * config.depth_lsb_px, reference_px)
+        report = {
+            "grid": [config.size, config.size],
+            "solver": request.solver,
+            "simulator": request.simulator,
+            "data_width": config.data_width,
+            "coeff_width": config.coefficient_width,
+            "frames": len(depth),
+            "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
+            "pixel_pitch_mm": pixel_pitch_mm,
+            "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
+            "contact_threshold_mm": CONTACT_THRESHOLD * config.size * pixel_pitch_mm,
+            "calibration": calibration.name,
+            "source": frames.name,
+            "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config.size),
+            **measure(work / "events.txt"),
+            **{key: values * request.repeat for key, values in per_frame.items()},
+            "bit_exact": bit_exact,
+            "saturations": {node: count * request.repeat for node, count in sorted(monitor.saturations.items())},
+        }
+        differences = check_registers(json.loads((work / "registers.json").read_text()), report, request.stalls)
+        report["registers_agree"] = not differences
+
+        result = work / "result"
+        result.mkdir()
+        np.save(result / "depth.npy", depth.astype(np.int32))
+        (result / "report.json").write_text(json.dumps(report, indent=1) + "\n")
+        draw_depth(
+            result / "depth.png",
+            frames,
+            seen[0] * config.depth_lsb_px * pixel_pitch_mm,
+            reference_px * pixel_pitch_mm,
+            pixel_pitch_mm,
+            f"{request.solver} {config.size} x {config.size}, {config.data_width}-bit words, {calibration.name}",
+        )
+        if request.waves:
+            for dump in (*work.glob("*.fst"), *work.glob("*.vcd")):
+                shutil.move(dump, result / dump.name)
+        out.mkdir(exist_ok=True)
+        for file in result.iterdir():
+            os.replace(file, out / file.name)
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+    print(table(report, frames.labels))
+    for line in differences:
+        print(line)
+    verdict = "RTL equals the model on every code" if bit_exact else "RTL DIFFERS from the model"
+    print(f"{verdict}: {depth.size:,} codes in {len(depth):,} frames")
+    print(f"results: {os.path.relpath(out)}")
+    return 0 if bit_exact and not differences else 1
+
+
+def main() -> None:
+    try:
+        sys.exit(run(parse(sys.argv[1:])))
+    except InputError as error:
+        print(f"make sim: {error}", file=sys.stderr)
+        sys.exit(2)
+    except RuntimeError as error:
+        print(f"make sim: {error}", file=sys.stderr)
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

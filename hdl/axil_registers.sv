@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// axil_registers: the registers of the pipeline, on AXI4-Lite.
+//
+// The map is docs/registers.md; the constants come from models/register_map.py. One write and one
+// read in flight; no ready output depends on an input in the same clock. A write takes effect, and
+// is answered, in the clock after both its address and its data were taken, whichever came first;
+// a read is answered in the clock after its address was taken, with the registers as they were
+// before. Responses wait for their ready, readies wait for the response before to be taken.
+//
+// Events are levels: each clock in which one is high counts once. What they set wins over what a
+// write clears in the same clock. table_write is never high in a clock in which busy is.
+// Behavioural model: models/axil_registers.py.
+
+module axil_registers
+  import register_map_pkg::*;
+#(
+  parameter int Rows             = 128,
+  parameter int Columns          = 128,
+  parameter int DataWidth        = 24,
+  parameter int GradientWidth    = 20,  // bits of a slope code, at most 32
+  parameter int GradientFraction = 18,
+  parameter int BitsPerChannel   = 4,
+  localparam int IndexWidth = 3 * BitsPerChannel
+) (
+  input  logic                            clk,
+  input  logic                            rst,
+
+  input  logic [AddressWidth-1:0]         s_axil_awaddr,
+  input  logic                            s_axil_awvalid,
+  output logic                            s_axil_awready,
+  input  logic [31:0]                     s_axil_wdata,
+  input  logic [3:0]                      s_axil_wstrb,
+  input  logic                            s_axil_wvalid,
+  output logic                            s_axil_wready,
+  output logic [1:0]                      s_axil_bresp,
+  output logic                            s_axil_bvalid,
+  input  logic                            s_axil_bready,
+  input  logic [AddressWidth-1:0]         s_axil_araddr,
+  input  logic                            s_axil_arvalid,
+  output logic                            s_axil_arready,
+  output logic [31:0]                     s_axil_rdata,
+  output logic [1:0]                      s_axil_rresp,
+  output logic                            s_axil_rvalid,
+  input  logic                            s_axil_rready,
+
+  input  logic                            event_row_short,
+  input  logic                            event_row_long,
+  input  logic                            event_start_missing,
+  input  logic                            event_start_early,
+  input  logic                            event_timeout,
+  input  logic                            event_frame_in,
+  input  logic                            event_frame_out,
+  input  logic                            event_frame_dropped,
+  input  logic [7:0]                      saturations,  // values clipped in this clock
+  input  logic [31:0]                     first_depth_latency,
+  input  logic                            first_depth_latency_valid,
+  input  logic                            busy,
+  input  logic                            contact,
+
+  output logic signed [31:0]              threshold,
+  output logic [31:0]                     timeout,
+  output logic                            hold_contact,
+  output logic                            table_write,
+  output logic [IndexWidth-1:0]           table_index,
+  output logic signed [GradientWidth-1:0] table_gx,
+  output logic signed [GradientWidth-1:0] table_gy
+);
+
+  localparam logic [1:0] Okay        = 2'b00;
+  localparam logic [1:0] SlaveError  = 2'b10;
+  localparam logic [31:0] AllOnes    = {32{1'b1}};
+  localparam logic [31:0] GridWord   = (Rows << GridRowsLsb) | (Columns << GridColumnsLsb);
+  localparam logic [31:0] FormatWord =
+      (DataWidth << FormatDataWidthLsb)
+    | (GradientWidth << FormatGradientWidthLsb)
+    | (GradientFraction << FormatGradientFractionLsb)
+    | (BitsPerChannel << FormatBitsPerChannelLsb);
+
+  logic aw_held;
+  logic w_held;
+  logic [AddressWidth-1:0] write_address;
+  logic [31:0] write_data;
+  logic [3:0] write_strobe;
+
+  logic [31:0] write_offset;
+  logic [31:0] read_offset;
+  logic [31:0] write_mask;
+  logic [31:0] write_ones;  // what a write sets where a 1 clears or triggers
+  logic write_refused;
+  logic write_now;
+  logic write_taken;
+  logic [31:0] status_set;
+  logic [31:0] status_cleared;
+  logic counters_cleared;
+
+  logic [31:0] status;  // the sticky bits
+  logic [31:0] frames_in;
+  logic [31:0] frames_out;
+  logic [31:0] frames_dropped;
+  logic [31:0] saturations_count;
+  logic [31:0] last_latency;
+
+  // A register after this write: its bytes without strobe stay.
+  function automatic logic [31:0] merged(input logic [31:0] word);
+    return write_ones | (word & ~write_mask);
+  endfunction
+
+  // A counter that counts on, from 0 if it is cleared now, and stays at all ones.
+  function automatic logic [31:0] counted(input logic [31:0] count, input logic [7:0] more);
+    logic [32:0] sum;
+    sum = {1'b0, counters_cleared ? 32'd0 : count} + 33'(more);
+    return sum[32] ? AllOnes : sum[31:0];
+  endfunction
+
+  assign s_axil_awready = !aw_held;
+  assign s_axil_wready = !w_held;
+  assign s_axil_arready = !s_axil_rvalid;
+
+  assign write_offset = 32'({write_address[AddressWidth-1:2], 2'b00});
+  assign read_offset = 32'({s_axil_araddr[AddressWidth-1:2], 2'b00});
+  assign write_mask = {
+    {8{write_strobe[3]}}, {8{write_strobe[2]}}, {8{write_strobe[1]}}, {8{write_strobe[0]}}
+  };
+  assign write_ones = write_data & write_mask;
+  assign write_now = aw_held && w_held && !s_axil_bvalid;
+  assign write_taken = write_now && !write_refused;
+
+  always_comb begin
+    case (write_offset)
+      ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableIndexOffset, TableGxOffset:
+        write_refused = 1'b0;
+      TableGyOffset: write_refused = busy || write_strobe != 4'b1111;
+      default: write_refused = 1'b1;
+    endcase
+  end
+
+  assign status_set =
+      (32'(event_row_short) << StatusRowShortBit)
+    | (32'(event_row_long) << StatusRowLongBit)
+    | (32'(event_start_missing) << StatusStartMissingBit)
+    | (32'(event_start_early) << StatusStartEarlyBit)
+    | (32'(event_timeout) << StatusTimeoutBit)
+    | (32'(saturations != 8'd0) << StatusSaturationBit);
+  assign status_cleared = (write_taken && write_offset == StatusOffset) ? write_ones : 32'd0;
+  assign counters_cleared =
+      write_taken && write_offset == ControlOffset && write_ones[ControlClearCountersBit];
+
+  // The bin written is the one that stands in TABLE_INDEX, which moves on at the end of the clock.
+  assign table_write = write_taken && write_offset == TableGyOffset;
+  assign table_gy = $signed(write_data[GradientWidth-1:0]);
+
+  always_ff @(posedge clk) begin
+    // Write channels.
+    if (s_axil_awvalid && s_axil_awready) begin
+      aw_held <= 1'b1;
+      write_address <= s_axil_awaddr;
+    end
+    if (s_axil_wvalid && s_axil_wready) begin
+      w_held <= 1'b1;
+      write_data <= s_axil_wdata;
+      write_strobe <= s_axil_wstrb;
+    end
+    if (write_now) begin
+      s_axil_bvalid <= 1'b1;
+      s_axil_bresp <= write_refused ? SlaveError : Okay;
+    end
+    if (s_axil_bvalid && s_axil_bready) begin
+      s_axil_bvalid <= 1'b0;
+      aw_held <= 1'b0;
+      w_held <= 1'b0;
+    end
+
+    // Registers that are written.
+    if (write_taken) begin
+      case (write_offset)
+        ControlOffset: if (write_mask[ControlHoldContactBit]) begin
+          hold_contact <= write_data[ControlHoldContactBit];
+        end
+        ThresholdOffset: threshold <= $signed(merged(threshold));
+        TimeoutOffset: timeout <= merged(timeout);
+        TableIndexOffset: table_index <= IndexWidth'(merged(32'(table_index)));
+        TableGxOffset: table_gx <= GradientWidth'(merged(32'(table_gx)));
+        TableGyOffset: table_index <= table_index + IndexWidth'(1);
+        default: ;
+      endcase
+    end
+
+    // Registers that the pipeline writes.
+    status <= (status & ~status_cleared) | status_set;
+    frames_in <= counted(frames_in, 8'(event_frame_in));
+    frames_out <= counted(frames_out, 8'(event_frame_out));
+    frames_dropped <= counted(frames_dropped, 8'(event_frame_dropped));
+    saturations_count <= counted(saturations_count, saturations);
+    if (first_depth_latency_valid) last_latency <= first_depth_latency;
+
+    // Read channels.
+    if (s_axil_rvalid && s_axil_rready) s_axil_rvalid <= 1'b0;
+    if (s_axil_arvalid && s_axil_arready) begin
+      s_axil_rvalid <= 1'b1;
+      s_axil_rresp <= Okay;
+      case (read_offset)
+        IdOffset: s_axil_rdata <= IdReset;
+        GridOffset: s_axil_rdata <= GridWord;
+        FormatOffset: s_axil_rdata <= FormatWord;
+        ControlOffset: s_axil_rdata <= 32'(hold_contact) << ControlHoldContactBit;
+        StatusOffset:
+          s_axil_rdata <=
+              status | (32'(busy) << StatusBusyBit) | (32'(contact) << StatusContactBit);
+        ThresholdOffset: s_axil_rdata <= threshold;
+        TimeoutOffset: s_axil_rdata <= timeout;
+        FramesInOffset: s_axil_rdata <= frames_in;
+        FramesOutOffset: s_axil_rdata <= frames_out;
+        FramesDroppedOffset: s_axil_rdata <= frames_dropped;
+        SaturationsOffset: s_axil_rdata <= saturations_count;
+        FirstDepthLatencyOffset: s_axil_rdata <= last_latency;
+        TableIndexOffset: s_axil_rdata <= 32'(table_index);
+        TableGxOffset: s_axil_rdata <= 32'(table_gx);
+        default: begin
+          s_axil_rdata <= 32'd0;
+          s_axil_rresp <= SlaveError;
+        end
+      endcase
+    end
+
+    if (rst) begin
+      aw_held <= 1'b0;
+      w_held <= 1'b0;
+      s_axil_bvalid <= 1'b0;
+      s_axil_rvalid <= 1'b0;
+      hold_contact <= 1'b0;
+      threshold <= ThresholdReset;
+      timeout <= 32'd0;
+      table_index <= '0;
+      table_gx <= '0;
+      status <= 32'd0;
+      frames_in <= 32'd0;
+      frames_out <= 32'd0;
+      frames_dropped <= 32'd0;
+      saturations_count <= 32'd0;
+      last_latency <= 32'd0;
+    end
+  end
+
+  logic unused_address;
+  assign unused_address = &{1'b0, write_address[1:0], s_axil_araddr[1:0]};
+
+`ifndef SYNTHESIS
+  initial begin
+    if (Rows < 1 || Rows > 65535) $fatal(1, "%m: Rows does not fit GRID");
+    if (Columns < 1 || Columns > 65535) $fatal(1, "%m: Columns does not fit GRID");
+    if (GradientWidth < 2 || GradientWidth > 32) $fatal(1, "%m: GradientWidth must be 2 to 32");
+    if (IndexWidth > 32) $fatal(1, "%m: TABLE_INDEX holds at most 32 bits");
+  end
+`endif
+
+endmodule

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactile_depth: RGB frames of a lit gel in, depth maps and contact out.
+//
+//   axis_skid -> frame_guard -> gradient_lookup -> divergence -> spectral_solver -> frame_output -> axis_skid
+//                     |                                                                  |             |
+//                     +------------------------- frame_tags -----------------------------+     threshold_comparator
+//
+// Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, one pixel per clock sustained.
+// Stream out: depth codes in raster order, tuser with the first of a frame, tlast with the last of a row, sign-extended
+// to whole bytes; depth_mm = code * depth_lsb_mm, pressed in is positive. Latency: fixed, models/latency.py; gaps in the
+// input change no result and not the clocks from the last pixel to the first depth; a stalled sink stops the pipeline.
+// Registers: docs/registers.md. Bit-accurate model: models/tactile_depth.py. Parameters: models/configuration.py.
+
+module tactile_depth
+  import register_map_pkg::*;
+#(
+  parameter int Size             = 128,
+  parameter int BitsPerChannel   = 4,
+  parameter int GradientWidth    = 21,
+  parameter int GradientFraction = 20,
+  parameter int DataWidth        = 24,
+  parameter int Width            = 27,
+  parameter int CoeffWidth       = 18,
+  parameter int RowForwardOut    = 3,
+  parameter int ColumnForwardIn  = 1,
+  parameter int ColumnInverseOut = -1,
+  parameter int RowInverseIn     = -3,
+  parameter int RowInverseOut    = -1,
+  parameter int DivideShiftWidth = 4,
+  parameter int DivideDrop       = 22,
+  localparam int DepthBytes = (DataWidth + 7) / 8
+) (
+  input  logic                    clk,
+  input  logic                    rst,  // synchronous; resets valid, ready and state, never the data path
+
+  input  logic [23:0]             s_axis_tdata,
+  input  logic                    s_axis_tvalid,
+  output logic                    s_axis_tready,
+  input  logic                    s_axis_tlast,
+  input  logic                    s_axis_tuser,
+
+  output logic [8*DepthBytes-1:0] m_axis_tdata,
+  output logic                    m_axis_tvalid,
+  input  logic                    m_axis_tready,
+  output logic                    m_axis_tlast,
+  output logic                    m_axis_tuser,
+
+  output logic                    contact,
+
+  input  logic [AddressWidth-1:0] s_axil_awaddr,
+  input  logic                    s_axil_awvalid,
+  output logic                    s_axil_awready,
+  input  logic [31:0]             s_axil_wdata,
+  input  logic [3:0]              s_axil_wstrb,
+  input  logic                    s_axil_wvalid,
+  output logic                    s_axil_wready,
+  output logic [1:0]              s_axil_bresp,
+  output logic                    s_axil_bvalid,
+  input  logic                    s_axil_bready,
+  input  logic [AddressWidth-1:0] s_axil_araddr,
+  input  logic                    s_axil_arvalid,
+  output logic                    s_axil_arready,
+  output logic [31:0]             s_axil_rdata,
+  output logic [1:0]              s_axil_rresp,
+  output logic                    s_axil_rvalid,
+  input  logic                    s_axil_rready
+);
+
+  logic en;  // the whole pipeline moves, or none of it: low while the output is full
+
+  // Pixels.
+
+  logic pixel_valid, pixel_ready, pixel_last, pixel_user;
+  logic [23:0] pixel_data;
+  axis_skid #(.Width(26)) u_skid_in (
+    .clk, .rst,
+    .s_valid(s_axis_tvalid), .s_ready(s_axis_tready), .s_data({s_axis_tuser, s_axis_tlast, s_axis_tdata}),
+    .m_valid(pixel_valid), .m_ready(pixel_ready), .m_data({pixel_user, pixel_last, pixel_data})
+  );
+
+  logic [31:0] timeout;
+  logic guarded_valid, guarded_first_row, guarded_first_column, guarded_start, guarded_end, guarded_bad;
+  logic [23:0] guarded_data;
+  logic row_short, row_long, start_missing, start_early, timed_out;
+  frame_guard #(.Rows(Size), .Columns(Size)) u_guard (
+    .clk, .rst, .en, .timeout,
+    .s_valid(pixel_valid), .s_ready(pixel_ready),
+    .s_data(pixel_data), .s_last(pixel_last), .s_user(pixel_user),
+    .out_valid(guarded_valid), .out_data(guarded_data),
+    .out_first_row(guarded_first_row), .out_first_column(guarded_first_column),
+    .out_frame_start(guarded_start), .out_frame_end(guarded_end), .out_bad(guarded_bad),
+    .row_short, .row_long, .start_missing, .start_early, .timed_out
+  );
+
+  // Depth.
+
+  logic table_write;
+  logic [3*BitsPerChannel-1:0] table_index;
+  logic signed [GradientWidth-1:0] table_gx, table_gy, gx, gy;
+  logic slope_valid, slope_first_row, slope_first_column;
+  gradient_lookup #(.Width(GradientWidth), .BitsPerChannel(BitsPerChannel)) u_lookup (
+    .clk, .rst, .en,
+    .write_en(table_write), .write_index(table_index), .write_gx(table_gx), .write_gy(table_gy),
+    .in_valid(guarded_valid), .in_pixel(guarded_data),
+    .in_first_row(guarded_first_row), .in_first_column(guarded_first_column),
+    .out_valid(slope_valid), .out_first_row(slope_first_row), .out_first_column(slope_first_column),
+    .out_gx(gx), .out_gy(gy)
+  );
+
+  logic divergence_valid;
+  logic signed [GradientWidth+1:0] divergence_data;
+  divergence #(.Width(GradientWidth), .Columns(Size)) u_divergence (
+    .clk, .rst, .en,
+    .in_valid(slope_valid), .in_first_row(slope_first_row), .in_first_column(slope_first_column),
+    .in_gx(gx), .in_gy(gy), .out_valid(divergence_valid), .out_data(divergence_data)
+  );
+
+  logic solved_start;
+  logic signed [DataWidth-1:0] solved_data;
+  logic [7:0] saturations;
+  spectral_solver #(
+    .Size(Size), .InWidth(GradientWidth + 2), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
+    .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
+    .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
+    .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop)
+  ) u_solver (
+    .clk, .rst, .en, .in_valid(divergence_valid), .in_data(divergence_data),
+    .out_start(solved_start), .out_data(solved_data), .saturations
+  );
+
+  // Frames. A tag is the mark of a broken frame and the clock that took the first pixel.
+
+  logic [31:0] now, arrived, begun;
+  logic tag_bad, solved_first, solved_last;
+  logic [31:0] tag_begun;
+  frame_tags #(.Width(33)) u_tags (
+    .clk, .rst,
+    .push(en & guarded_end), .tag({guarded_bad, begun}),
+    .pop(en & solved_first), .head({tag_bad, tag_begun})
+  );
+
+  logic depth_valid, depth_last, depth_user;
+  logic [DataWidth-1:0] depth_data;
+  frame_output #(.Width(DataWidth), .Rows(Size), .Columns(Size)) u_output (
+    .clk, .rst, .en, .in_start(solved_start), .in_data(solved_data), .in_bad(tag_bad),
+    .frame_start(solved_first), .frame_end(solved_last),
+    .out_valid(depth_valid), .out_data(depth_data), .out_last(depth_last), .out_user(depth_user)
+  );
+
+  logic leaving_last_of_frame;
+  logic signed [DataWidth-1:0] leaving_data;
+  axis_skid #(.Width(DataWidth + 3)) u_skid_out (
+    .clk, .rst,
+    .s_valid(depth_valid), .s_ready(en), .s_data({solved_last, depth_user, depth_last, depth_data}),
+    .m_valid(m_axis_tvalid), .m_ready(m_axis_tready),
+    .m_data({leaving_last_of_frame, m_axis_tuser, m_axis_tlast, leaving_data})
+  );
+  assign m_axis_tdata = (8 * DepthBytes)'(leaving_data);
+
+  logic leaves, hold_contact;
+  logic signed [31:0] threshold;
+  assign leaves = m_axis_tvalid & m_axis_tready;
+  threshold_comparator #(.Width(DataWidth)) u_comparator (
+    .clk, .rst, .in_valid(leaves), .in_user(m_axis_tuser), .in_data(leaving_data),
+    .threshold, .hold(hold_contact), .contact
+  );
+
+  // Counters: clocks from the first pixel taken to the first depth on the output; frames in flight.
+
+  logic [31:0] depth_begun;
+  logic depth_awaited, latency_valid;
+  logic [3:0] in_flight;
+  assign latency_valid = depth_awaited & m_axis_tvalid & m_axis_tuser;
+  always_ff @(posedge clk) begin
+    now <= now + 32'd1;
+    if (s_axis_tvalid && s_axis_tready && s_axis_tuser) arrived <= now;
+    if (en && guarded_start) begun <= arrived;
+    if (en && depth_valid && depth_user) begin
+      depth_begun <= tag_begun;
+      depth_awaited <= 1'b1;
+    end else if (latency_valid) begin
+      depth_awaited <= 1'b0;
+    end
+    if (en) in_flight <= in_flight + 4'(guarded_start) - 4'(solved_last);
+    if (rst) begin
+      now <= '0;
+      depth_awaited <= 1'b0;
+      in_flight <= '0;
+    end
+  end
+
+  axil_registers #(
+    .Rows(Size), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
+    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel)
+  ) u_registers (
+    .clk, .rst,
+    .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
+    .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid,
+    .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
+    .event_row_short(row_short), .event_row_long(row_long), .event_start_missing(start_missing),
+    .event_start_early(start_early), .event_timeout(timed_out),
+    .event_frame_in(en & guarded_end & ~guarded_bad),
+    .event_frame_out(leaves & leaving_last_of_frame),
+    .event_frame_dropped(row_short | row_long | start_missing | start_early | timed_out),
+    .saturations,
+    .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
+    .busy(in_flight != '0 | guarded_start | pixel_valid), .contact,
+    .threshold, .timeout, .hold_contact, .table_write, .table_index, .table_gx, .table_gy
+  );
+
+endmodule

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames from scenes and files, brought to the grid: flat-fielded, cropped, area-averaged, rounded once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from skimage import io
+
+from models.calibration import SYNTHETIC_PIXEL_PITCH_MM
+from models.errors import InputError
+from models.scenes import SCENES, render, scene_pixel_pitch_mm
+
+ACCEPTED = f"a scene ({', '.join(SCENES)}), a .npy of uint8 (frames, rows, cols, 3), a PNG, a folder of PNGs"
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Frames on the grid.
+
+    Attributes
+    ----------
+    pixels : uint8 array (frames, rows, cols, 3), RGB
+    pixel_scale : float
+        Camera pixels per grid pixel: times the calibration's `pixel_pitch_mm` it is the pitch of the grid.
+    name : str
+        What was loaded.
+    labels : tuple of str
+        One per frame.
+    """
+
+    pixels: np.ndarray
+    pixel_scale: float
+    name: str
+    labels: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Resampling:
+    """Centred crop to the aspect of a grid, and exact area averages over it.
+
+    One grid pixel is `numerator / denominator` camera pixels wide and high. Weights count whole units of 1 /
+    `denominator` camera pixels, so averages of integers are exact and the same on every machine.
+    """
+
+    rows: np.ndarray  # (grid rows, camera rows), whole numbers as float64
+    columns: np.ndarray  # (grid cols, camera cols)
+    origin: tuple[int, int]  # first camera row and column of the crop
+    numerator: int
+    denominator: int
+
+    @property
+    def scale(self) -> float:
+        """Camera pixels per grid pixel."""
+        return self.numerator / self.denominator
+
+    def average(self, image: np.ndarray) -> np.ndarray:
+        """Averages of an image (camera rows, camera cols, channels): float64 (rows, cols, channels)."""
+        height, width, channels = image.shape
+        by_row = self.rows @ image.astype(np.float64).reshape(height, width * channels)
+        return self.columns @ by_row.reshape(-1, width, channels) / self.numerator**2
+
+
+def resampling(camera: tuple[int, int], grid: tuple[int, int]) -> Resampling:
+    """The resampling of camera frames (rows, cols) to a grid (rows, cols) that is no larger.
+
+    The crop starts on a whole pixel, so that a frame as wide as the grid passes unblurred.
+    """
+    (height, width), (rows, cols) = camera, grid
+    numerator, denominator = (height, rows) if height * cols <= width * rows else (width, cols)
+
+    def weights(count: int, length: int) -> tuple[np.ndarray, int]:
+        origin = (length * denominator - count * numerator) // (2 * denominator)
+        start = origin * denominator + np.arange(count)[:, None] * numerator
+        pixel = np.arange(length) * denominator
+        overlap = np.minimum(start + numerator, pixel + denominator) - np.maximum(start, pixel)
+        return np.maximum(overlap, 0).astype(np.float64), origin
+
+    row_weights, top = weights(rows, height)
+    column_weights, left = weights(cols, width)
+    return Resampling(row_weights, column_weights, (top, left), numerator, denominator)
+
+
+def flat_field(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """128 + 128 (I - ref) / ref, unrounded; a reference of 0 counts as 1."""
+    return 128 * image.astype(np.float64) / np.maximum(reference, 1)
+
+
+def read_picture(path: Path) -> np.ndarray:
+    """Read an 8-bit RGB picture; transparency is dropped.
+
+    Returns
+    -------
+    uint8 array (rows, cols, 3)
+
+    Raises
+    ------
+    InputError
+        Missing, truncated, or not an 8-bit colour picture.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: no such file: give an 8-bit RGB PNG")
+    try:
+        image = io.imread(path)
+    except Exception as error:  # the readers behind it raise a dozen kinds over a damaged file
+        raise InputError(f"{path}: not a readable picture ({_line(error)}): give an intact PNG") from error
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] not in (3, 4):
+        raise InputError(
+            f"{path}: a picture of {image.dtype} {image.shape}: save it as 8-bit RGB, (rows, cols, 3)"
+        )
+    return image[:, :, :3]
+
+
+def load_frames(source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1) -> Frames:
+    """Load what `FRAMES` and `REFERENCE` name.
+
+    Parameters
+    ----------
+    source : str
+        A scene's name, a `.npy` of uint8 (frames, rows, cols, 3), a PNG, or a folder of PNGs.
+    size : (rows, cols) of the grid
+    reference : str, optional
+        Picture of the sensor without contact, as large as the frames: they are flat-fielded by it.
+    seed : int
+        Seed of a scene's noise.
+
+    Raises
+    ------
+    InputError
+    """
+    if source in SCENES:
+        return _scene(source, size, reference, seed)
+    path = Path(source)
+    if path.is_dir():
+        files = sorted((p for p in path.iterdir() if p.suffix.lower() == ".png"), key=_natural)
+        if not files:
+            raise InputError(f"{source}: a folder without any PNG: accepted is {ACCEPTED}")
+        labels = tuple(p.name for p in files)
+        images: Iterable[np.ndarray] = map(read_picture, files)
+    elif path.is_file() and path.suffix.lower() == ".npy":
+        array = _read_array(path)
+        labels = tuple(str(i) for i in range(len(array)))
+        images = array
+    elif path.is_file():
+        labels, images = (path.name,), [read_picture(path)]
+    else:
+        raise InputError(f"{source}: neither a scene nor a file or folder: accepted is {ACCEPTED}")
+    return _to_grid(source, labels, images, size, reference)
+
+
+def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int) -> Frames:
+    if reference is not None:
+        raise InputError(f"reference {reference} with the scene {name}: scenes need none, leave it out")
+    if size[0] != size[1]:
+        raise InputError(f"a grid of {size[0]} x {size[1]} with the scene {name}: scenes are square")
+    pixels = render(name, size[1], seed).frames
+    labels = tuple(f"{name} {i}" for i in range(len(pixels)))
+    return Frames(pixels, scene_pixel_pitch_mm(size[1]) / SYNTHETIC_PIXEL_PITCH_MM, name, labels)
+
+
+def _to_grid(
+    name: str,
+    labels: tuple[str, ...],
+    images: Iterable[np.ndarray],
+    size: tuple[int, int],
+    reference: str | None,
+) -> Frames:
+    no_contact = None if reference is None else read_picture(Path(reference))
+    pixels = np.empty((len(labels), *size, 3), np.uint8)
+    plan, camera = None, (0, 0)
+    for index, (label, image) in enumerate(zip(labels, images, strict=True)):
+        height, width = image.shape[:2]
+        if plan is None:
+            camera = (height, width)
+            if height < size[0] or width < size[1]:
+                raise InputError(
+                    f"{name}: frames of {height} x {width} are smaller than the grid of "
+                    f"{size[0]} x {size[1]}: give larger frames or a smaller N"
+                )
+            if no_contact is not None and no_contact.shape[:2] != camera:
+                raise InputError(
+                    f"{reference}: {no_contact.shape[0]} x {no_contact.shape[1]}, but the frames are "
+                    f"{height} x {width}: give the no-contact frame of the same camera"
+                )
+            plan = resampling(camera, size)
+        if (height, width) != camera:
+            raise InputError(
+                f"{name}: {label} is {height} x {width}, {labels[0]} is {camera[0]} x {camera[1]}: "
+                "all frames must be of one size"
+            )
+        value = plan.average(image if no_contact is None else flat_field(image, no_contact))
+        pixels[index] = np.clip(np.rint(value), 0, 255)
+    assert plan is not None
+    return Frames(pixels, plan.scale, name, labels)
+
+
+def _read_array(path: Path) -> np.ndarray:
+    try:
+        with path.open("rb") as file:
+            array = np.lib.format.read_array(file, allow_pickle=False)
+    except Exception as error:  # a damaged header can make numpy raise anything
+        raise InputError(f"{path}: not a readable .npy ({_line(error)}): write it with numpy.save") from error
+    if array.dtype != np.uint8 or array.ndim != 4 or array.shape[3] != 3 or 0 in array.shape:
+        raise InputError(f"{path}: {array.dtype} {array.shape}: accepted is uint8 (frames, rows, cols, 3)")
+    return array
+
+
+def _natural(path: Path) -> list[tuple[int, str]]:
+    """Sorting key in which numbers count as numbers: 2.png before 12.png."""
+    parts = re.split(r"(\d+)", path.name)
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in parts]
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/gradient_lookup.sv, and the contents of its table."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.calibration import Calibration
+from models.configuration import Configuration
+
+
+def gradient_codes(calibration: Calibration, config: Configuration) -> np.ndarray:
+    """Slope codes of `config.gradient` by bin {red, green, blue}, int64 (bins, 2): gx, gy."""
+    slopes = calibration.gradient.reshape(-1, 2)
+    return np.rint(slopes * 2.0**config.gradient.fraction).astype(np.int64)
+
+
+def gradient_lookup(frames: np.ndarray, codes: np.ndarray, bits_per_channel: int) -> np.ndarray:
+    """Slope codes of frames: uint8 (..., rows, cols, 3) RGB to int64 (..., rows, cols, 2)."""
+    top = frames.astype(np.int64) >> (8 - bits_per_channel)
+    index = (top[..., 0] << bits_per_channel | top[..., 1]) << bits_per_channel | top[..., 2]
+    return codes[index]

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/tactile_depth.sv: RGB frames in, depth codes out; and its HDL parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from models.calibration import Calibration
+from models.configuration import Configuration
+from models.divergence import divergence
+from models.gradient_lookup import gradient_codes, gradient_lookup
+from models.rom_files import write_gradient, write_solver
+from models.round_saturate import Monitor
+from models.spectral_solver import solver_parameters, spectral_solver
+
+
+def tactile_depth(
+    frames: np.ndarray, calibration: Calibration, config: Configuration, monitor: Monitor | None = None
+) -> np.ndarray:
+    """Depth codes of frames.
+
+    Parameters
+    ----------
+    frames : uint8 array (..., N, N, 3), RGB
+
+    Returns
+    -------
+    int64 array (..., N, N); depth_px = code * config.depth_lsb_px
+    """
+    codes = gradient_codes(calibration, config)
+    return spectral_solver(divergence(gradient_lookup(frames, codes, config.bits_per_channel)), config, monitor)
+
+
+def top_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/tactile_depth.sv."""
+    parameters = solver_parameters(config)
+    del parameters["InWidth"]
+    return {
+        **parameters,
+        "BitsPerChannel": config.bits_per_channel,
+        "GradientWidth": config.gradient.width,
+        "GradientFraction": config.gradient.fraction,
+    }
+
+
+def write_roms(folder: Path, calibration: Calibration, config: Configuration) -> None:
+    """Every file that the RTL reads."""
+    write_solver(folder, config)
+    write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)

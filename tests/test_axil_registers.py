@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""hdl/axil_registers.sv against models/axil_registers.py."""
+
+import pytest
+
+from models.configuration import Configuration
+
+SOURCES = ["register_map_pkg.sv", "axil_registers.sv"]
+
+
+def built(configuration: Configuration) -> dict[str, int]:
+    return {
+        "Rows": configuration.size,
+        "Columns": configuration.size,
+        "DataWidth": configuration.data_width,
+        "GradientWidth": configuration.gradient.width,
+        "GradientFraction": configuration.gradient.fraction,
+        "BitsPerChannel": configuration.bits_per_channel,
+    }
+
+
+EXTREMES = {
+    "Rows": 65535,
+    "Columns": 1,
+    "DataWidth": 32,
+    "GradientWidth": 32,
+    "GradientFraction": 31,
+    "BitsPerChannel": 1,
+}
+
+
+@pytest.mark.parametrize("parameters", [built(Configuration(size=128)), EXTREMES], ids=["128", "extremes"])
+def test_axil_registers(run_tb, parameters):
+    run_tb("axil_registers", SOURCES, parameters=parameters)

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calibrations: the built-in ones, files, and what is said of bad files."""
+
+import numpy as np
+import pytest
+
+from commands.fit_gelsight_mini import (
+    data_folder,
+    depth_of_codes,
+    fill,
+    fit,
+    held_out,
+    load_press,
+    read_presses,
+)
+from models.calibration import BUILT_IN, FOLDER, Calibration, load, synthetic
+from models.configuration import Configuration
+from models.errors import InputError
+from models.frames import load_frames
+from models.reference import depth
+from models.scenes import GAIN, LIGHTS, REST
+
+GOOD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
+CAP_BOUND = 0.20  # of the true cap height; the worst of the held-out presses is 0.15 off
+
+
+@pytest.fixture(scope="module")
+def presses_folder():
+    try:
+        return data_folder()
+    except InputError as error:
+        pytest.skip(f"the real ball presses are absent: {error}")
+
+
+def saved(folder, **changed):
+    path = folder / "mine.npz"
+    np.savez(path, **{key: value for key, value in {**GOOD, **changed}.items() if value is not None})
+    return path
+
+
+def refused(path) -> str:
+    with pytest.raises(InputError) as caught:
+        load(str(path))
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+# Built in.
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_built_in_calibrations_fit_the_default_configuration(name):
+    calibration = load(name)
+    config = Configuration()
+    assert calibration.name == name
+    assert calibration.bits_per_channel == config.bits_per_channel
+    assert calibration.gradient_limit == config.gradient_limit
+    assert calibration.pixel_pitch_mm > 0
+
+
+def test_synthetic_inverts_the_colour_model_at_bin_centres():
+    calibration = synthetic(6)
+    slope = calibration.gradient
+    colour = REST + GAIN * slope @ LIGHTS.T
+    centre = np.stack(np.meshgrid(*[np.arange(64) * 4 + 1.5] * 3, indexing="ij"), axis=-1)
+    inside = (np.abs(slope) < 0.98).all(axis=-1)
+    residual = (colour - centre)[inside]
+    # What a slope cannot explain is the brightness common to the three lights.
+    np.testing.assert_allclose(residual, residual.mean(axis=-1, keepdims=True).repeat(3, axis=-1), atol=1e-9)
+
+
+def test_the_rest_colour_of_the_synthetic_sensor_reads_exactly_flat():
+    rest = int(REST) >> 4
+    assert not synthetic().gradient[rest, rest, rest].any()
+
+
+def test_a_rounded_slope_never_saturates():
+    for largest in (0.2, 0.5, 0.96, 0.999, 1.0, 1.7):
+        limit = Calibration("x", np.full((2, 2, 2, 2), largest), 1.0).gradient_limit
+        step = limit / 256
+        assert round(largest / step) <= 255
+        assert limit / 2 <= largest * (1 + 2**-8)
+
+
+def test_an_all_zero_table_has_a_gradient_limit():
+    assert Calibration("x", GOOD["gradient"], 1.0).gradient_limit == 1.0
+
+
+def test_the_fitted_calibration_is_small():
+    assert (FOLDER / "gelsight-mini.npz").stat().st_size < 100 * 1024
+
+
+# Files.
+
+
+@pytest.mark.parametrize("bits", range(1, 7))
+@pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64])
+def test_a_file_is_read_as_written(tmp_path, bits, dtype):
+    gradient = np.random.default_rng(bits).normal(size=(1 << bits,) * 3 + (2,)).astype(dtype)
+    calibration = load(str(saved(tmp_path, gradient=gradient, maker=np.array("ours"))))
+    assert calibration.bits_per_channel == bits
+    assert calibration.gradient.dtype == np.float64
+    assert calibration.pixel_pitch_mm == 0.05
+    np.testing.assert_array_equal(calibration.gradient, gradient)
+
+
+def test_an_unknown_name_is_answered_with_the_known_ones():
+    message = refused("gelsihgt")
+    assert "gelsihgt" in message
+    assert all(name in message for name in BUILT_IN)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    assert f"{tmp_path}/absent.npz: no such file" in refused(tmp_path / "absent.npz")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.99])
+def test_a_truncated_file_is_named(tmp_path, share):
+    path = saved(tmp_path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(share * len(whole))])
+    assert f"{path}: not a readable .npz" in refused(path)
+
+
+def test_a_file_damaged_inside_is_named(tmp_path):
+    path = tmp_path / "mine.npz"
+    np.savez_compressed(path, gradient=np.random.default_rng(1).normal(size=(4, 4, 4, 2)), pixel_pitch_mm=1.0)
+    data = bytearray(path.read_bytes())
+    data[200:400] = bytes(200)
+    path.write_bytes(data)
+    assert f"{path}: not a readable .npz" in refused(path)
+
+
+@pytest.mark.parametrize("content", [b"not a calibration", b"PK\x03\x04 not one either"])
+def test_a_file_of_another_kind_is_named(tmp_path, content):
+    path = tmp_path / "mine.npz"
+    path.write_bytes(content)
+    assert f"{path}: not a readable .npz" in refused(path)
+
+
+def test_an_array_in_place_of_an_npz_is_named(tmp_path):
+    np.save(tmp_path / "table.npy", GOOD["gradient"])
+    assert "table.npy: not a readable .npz" in refused(tmp_path / "table.npy")
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"gradient": None}, "no `gradient`"),
+        ({"pixel_pitch_mm": None}, "no `pixel_pitch_mm`"),
+        ({"gradient": np.zeros((4, 4, 4, 3))}, "(4, 4, 4, 3)"),
+        ({"gradient": np.zeros((4, 4, 8, 2))}, "(4, 4, 8, 2)"),
+        ({"gradient": np.zeros((6, 6, 6, 2))}, "(6, 6, 6, 2)"),
+        ({"gradient": np.zeros((1, 1, 1, 2))}, "(1, 1, 1, 2)"),
+        ({"gradient": np.zeros((4, 4, 4, 2), int)}, "int64"),
+        ({"gradient": np.array([{}])}, "not a readable .npz"),
+        ({"gradient": np.full((4, 4, 4, 2), np.nan)}, "128 values that are NaN or infinite"),
+        ({"gradient": np.where(np.arange(2), np.zeros((4, 4, 4, 2)), np.inf)}, "64 values"),
+        ({"pixel_pitch_mm": 0.0}, "is 0:"),
+        ({"pixel_pitch_mm": -0.1}, "is -0.1:"),
+        ({"pixel_pitch_mm": np.nan}, "is nan:"),
+        ({"pixel_pitch_mm": np.inf}, "is inf:"),
+        ({"pixel_pitch_mm": [0.1, 0.1]}, "(2,)"),
+        ({"pixel_pitch_mm": "0.1"}, "<U3"),
+    ],
+)
+def test_wrong_contents_are_named(tmp_path, changed, said):
+    path = saved(tmp_path, **changed)
+    message = refused(path)
+    assert str(path) in message
+    assert said in message
+
+
+# The fit.
+
+
+def test_empty_bins_take_the_mean_of_their_neighbours():
+    table, known = np.zeros((4, 4, 4, 2)), np.zeros((4, 4, 4), bool)
+    table[0, 0, 0], known[0, 0, 0] = (0.5, -0.25), True
+    table[2, 0, 0], known[2, 0, 0] = (0.1, 0.25), True
+    filled = fill(table, known)
+    np.testing.assert_allclose(filled[1, 0, 0], (0.3, 0.0))  # beside both
+    np.testing.assert_allclose(filled[0, 1, 0], (0.5, -0.25))  # beside one
+    np.testing.assert_array_equal(filled[known], table[known])
+    np.testing.assert_allclose(fill(np.full((4, 4, 4, 2), 0.3) * known[..., None], known), 0.3)
+
+
+def test_the_presses_held_out_are_whole_and_recorded(presses_folder):
+    test = held_out(read_presses(presses_folder))
+    assert len(test) >= 6
+    assert all(press.on_grid(240).margin(240) >= 0 for press in test)
+    with np.load(FOLDER / "gelsight-mini.npz") as data:
+        assert data["held_out"].tolist() == [press.name for press in test]
+
+
+def test_the_shipped_table_is_what_the_script_fits(presses_folder):
+    presses = read_presses(presses_folder)
+    test = held_out(presses)
+    gradient = fit(presses_folder, [press for press in presses if press not in test])
+    # One unit of the stored fraction: sums may be rounded differently on another machine.
+    np.testing.assert_allclose(load("gelsight-mini").gradient, gradient, atol=2**-12)
+
+
+def test_held_out_presses_keep_their_cap_height_through_the_bit_accurate_model(presses_folder):
+    calibration = load("gelsight-mini")
+    config = Configuration(size=128, gradient_limit=calibration.gradient_limit)
+    ratios = {}
+    for press in held_out(read_presses(presses_folder)):
+        found = depth_of_codes(load_press(presses_folder, press, (128, 128)), calibration, config)
+        ratios[press.name] = press.on_grid(128).recovered(found)
+    off = {name: round(ratio, 3) for name, ratio in ratios.items() if abs(ratio - 1) > CAP_BOUND}
+    assert not off, f"cap height over the true one: {off}"
+    assert abs(np.mean(list(ratios.values())) - 1) < 0.05  # measured: 0.99
+
+
+def test_the_no_contact_frame_reads_flat(presses_folder):
+    path = str(presses_folder / "background.png")
+    found = depth(load_frames(path, (128, 128), path).pixels, load("gelsight-mini"))
+    assert np.abs(found).max() < 0.001  # pixels; measured: 0.0007

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames: the way from files to the grid, and what is said of bad ones."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from skimage import io
+
+from models.calibration import synthetic
+from models.errors import InputError
+from models.frames import flat_field, load_frames, resampling
+from models.scenes import SCENES, render, scene_pixel_pitch_mm
+
+
+def noise(*shape, seed=1):
+    return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
+
+
+def picture(path, image):
+    io.imsave(path, image, check_contrast=False)
+    return path
+
+
+def refused(source, size=(16, 16), reference=None) -> str:
+    with pytest.raises(InputError) as caught:
+        load_frames(str(source), size, None if reference is None else str(reference))
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+# Area averages.
+
+cameras = st.tuples(st.integers(16, 60), st.integers(16, 60))
+grids = st.tuples(st.integers(1, 16), st.integers(1, 16))
+
+
+@given(cameras, grids)
+def test_weights_cover_the_centred_crop_evenly(camera, grid):
+    plan = resampling(camera, grid)
+    for weights, length in ((plan.rows, camera[0]), (plan.columns, camera[1])):
+        np.testing.assert_array_equal(weights, np.rint(weights))
+        np.testing.assert_array_equal(weights.sum(axis=1), plan.numerator)
+        of_camera = weights.sum(axis=0)
+        covered = np.flatnonzero(of_camera)
+        assert (of_camera[covered[:-1]] == plan.denominator).all()  # the last may be cut
+        before, after = covered[0], length - len(weights) * plan.scale - covered[0]
+        assert 0 <= after - before < 2 or after == pytest.approx(before)  # centred, to a whole pixel
+
+
+@given(cameras, grids, st.integers(0, 255))
+def test_a_constant_stays_that_constant(camera, grid, value):
+    average = resampling(camera, grid).average(np.full((*camera, 3), value, np.uint8))
+    np.testing.assert_array_equal(average, value)
+
+
+@settings(max_examples=50)
+@given(st.integers(1, 16), st.integers(0, 40), st.integers(0, 2**32 - 1))
+def test_averages_preserve_the_mean_of_what_they_cover(count, more, seed):
+    camera = (count + more, count + more)
+    image = noise(*camera, 3, seed=seed)
+    average = resampling(camera, (count, count)).average(image)
+    np.testing.assert_allclose(average.mean(axis=(0, 1)), image.mean(axis=(0, 1)), rtol=1e-12)
+
+
+def test_averages_of_a_ratio_that_is_not_whole():
+    image = np.zeros((1, 3, 3), np.uint8)
+    image[0, :, 0] = 10, 20, 60
+    plan = resampling((3, 3), (2, 2))
+    found = plan.average(np.repeat(image, 3, axis=0))[:, :, 0]
+    np.testing.assert_allclose(found, [[(10 + 20 / 2) / 1.5, (20 / 2 + 60) / 1.5]] * 2)
+
+
+def test_the_gelsight_camera_keeps_its_middle_square():
+    plan = resampling((240, 320), (128, 128))
+    assert plan.origin == (0, 40)
+    assert plan.scale == 1.875
+    assert not plan.columns[:, :40].any()
+    assert not plan.columns[:, 280:].any()
+
+
+def test_a_frame_as_wide_as_the_grid_is_not_blurred(tmp_path):
+    frames = noise(2, 19, 16, 3)
+    np.save(tmp_path / "f.npy", frames)
+    loaded = load_frames(str(tmp_path / "f.npy"), (16, 16))
+    np.testing.assert_array_equal(loaded.pixels, frames[:, 1:17])
+    assert loaded.pixel_scale == 1
+
+
+def test_averages_are_rounded_to_even_once(tmp_path):
+    frames = np.zeros((1, 32, 32, 3), np.uint8)
+    frames[0, ::2, ::2] = 2  # mean 0.5
+    frames[0, 1::2, :, 1] = 2  # mean 1.5 in green
+    np.save(tmp_path / "f.npy", frames)
+    pixels = load_frames(str(tmp_path / "f.npy"), (16, 16)).pixels
+    assert (pixels[..., 0] == 0).all()
+    assert (pixels[..., 1] == 2).all()
+
+
+# Flat field.
+
+
+def test_flat_field_is_relative_to_the_reference_and_survives_black():
+    image = np.array([[[50, 100, 200]], [[0, 5, 255]]], np.uint8)
+    reference = np.array([[[100, 100, 100]], [[0, 0, 255]]], np.uint8)
+    np.testing.assert_allclose(flat_field(image, reference), [[[64, 128, 256]], [[0, 640, 128]]])
+
+
+def test_flat_field_comes_before_the_average_and_is_clipped_after(tmp_path):
+    image, reference = np.full((32, 32, 3), 60, np.uint8), np.full((32, 32, 3), 120, np.uint8)
+    reference[:, ::2] = 40  # 128 * 60 / 40 = 192 beside 64: 128; averaged first it would be 96
+    image[:16, :, 2] = 255
+    loaded = load_frames(
+        str(picture(tmp_path / "i.png", image)), (16, 16), str(picture(tmp_path / "r.png", reference))
+    )
+    assert (loaded.pixels[..., :2] == 128).all()
+    assert (loaded.pixels[0, :8, :, 2] == 255).all()
+
+
+def test_the_reference_itself_reads_128(tmp_path):
+    path = picture(tmp_path / "r.png", np.maximum(noise(24, 30, 3), 1))
+    assert (load_frames(str(path), (16, 16), str(path)).pixels == 128).all()
+
+
+# Sources.
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scene_is_rendered_at_the_size_of_the_grid(name):
+    frames = load_frames(name, (32, 32), seed=7)
+    np.testing.assert_array_equal(frames.pixels, render(name, 32, 7).frames)
+    assert len(frames.labels) == len(frames.pixels)
+    assert frames.name == name
+    assert frames.pixel_scale * synthetic().pixel_pitch_mm == pytest.approx(scene_pixel_pitch_mm(32))
+
+
+def test_a_folder_is_read_in_natural_order(tmp_path):
+    order = ["2.png", "12.png", "frame2.png", "frame10.png"]
+    for value, name in reversed(list(enumerate(order))):
+        picture(tmp_path / name, np.full((20, 20, 3), value, np.uint8))
+    (tmp_path / "presses.csv").write_text("not a picture")
+    frames = load_frames(str(tmp_path), (16, 16))
+    assert frames.labels == tuple(order)
+    assert frames.pixels[:, 0, 0, 0].tolist() == [0, 1, 2, 3]
+    assert frames.pixel_scale == 1.25
+
+
+def test_transparency_is_dropped(tmp_path):
+    image = noise(16, 16, 4)
+    frames = load_frames(str(picture(tmp_path / "a.png", image)), (16, 16))
+    np.testing.assert_array_equal(frames.pixels[0], image[:, :, :3])
+
+
+def test_a_grid_need_not_be_square(tmp_path):
+    frames = noise(1, 40, 20, 3)
+    np.save(tmp_path / "f.npy", frames)
+    np.testing.assert_array_equal(load_frames(str(tmp_path / "f.npy"), (30, 20)).pixels, frames[:, 5:35])
+
+
+# Bad input.
+
+
+@pytest.mark.parametrize("source", ["bal", "absent.png", "absent.npy", "no/such/folder"])
+def test_an_unknown_source_is_answered_with_what_is_accepted(source):
+    message = refused(source)
+    assert source in message
+    assert all(name in message for name in SCENES)
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        noise(2, 16, 16),
+        noise(16, 16, 3),
+        noise(2, 16, 16, 4),
+        noise(0, 16, 16, 3),
+        noise(2, 16, 16, 3).astype(np.float32),
+        noise(2, 16, 16, 3).astype(np.int8),
+    ],
+    ids=lambda array: f"{array.dtype}{array.shape}",
+)
+def test_an_npy_of_wrong_shape_or_type_is_named(tmp_path, array):
+    np.save(tmp_path / "f.npy", array)
+    message = refused(tmp_path / "f.npy")
+    assert "f.npy" in message
+    assert f"{array.dtype} {array.shape}" in message
+
+
+@pytest.mark.parametrize("share", [0, 0.01, 0.5, 0.99])
+def test_a_truncated_npy_is_named(tmp_path, share):
+    path = tmp_path / "f.npy"
+    np.save(path, noise(2, 16, 16, 3))
+    path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+    assert f"{path}: not a readable .npy" in refused(path)
+
+
+def test_an_npz_in_place_of_an_npy_is_named(tmp_path):
+    np.savez(tmp_path / "f.npz", frames=noise(2, 16, 16, 3))
+    (tmp_path / "f.npz").rename(tmp_path / "f.npy")
+    assert "f.npy: not a readable .npy" in refused(tmp_path / "f.npy")
+
+
+@pytest.mark.filterwarnings("ignore:The legacy")  # plugins that imageio tries on an empty file
+@pytest.mark.parametrize("share", [0, 0.01, 0.5, 0.9])
+def test_a_truncated_png_is_named(tmp_path, share):
+    path = picture(tmp_path / "p.png", noise(40, 40, 3))
+    path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+    assert f"{path}: not a readable picture" in refused(path)
+
+
+@pytest.mark.parametrize(
+    "image",
+    [noise(20, 20), noise(20, 20, 3).astype(np.uint16) * 256],
+    ids=["grey", "16 bit"],
+)
+def test_a_picture_that_is_not_8_bit_colour_is_named(tmp_path, image):
+    if image.ndim == 3:
+        pytest.importorskip("tifffile", reason="tifffile, which writes 16-bit colour, is missing")
+        path = picture(tmp_path / "p.tif", image)
+    else:
+        path = picture(tmp_path / "p.png", image)
+    message = refused(path)
+    assert str(path) in message
+    assert str(image.dtype) in message
+
+
+@pytest.mark.parametrize("shape", [(15, 40), (40, 15), (8, 8)])
+def test_frames_smaller_than_the_grid_are_named(tmp_path, shape):
+    message = refused(picture(tmp_path / "p.png", noise(*shape, 3)))
+    assert f"{shape[0]} x {shape[1]}" in message
+    assert "16 x 16" in message
+
+
+def test_mixed_sizes_are_named(tmp_path):
+    picture(tmp_path / "1.png", noise(20, 20, 3))
+    picture(tmp_path / "2.png", noise(20, 22, 3))
+    message = refused(tmp_path)
+    assert "2.png is 20 x 22" in message
+    assert "1.png is 20 x 20" in message
+
+
+def test_a_reference_of_another_size_is_named(tmp_path):
+    frame = picture(tmp_path / "1.png", noise(20, 20, 3))
+    reference = picture(tmp_path / "r.png", noise(20, 22, 3))
+    message = refused(frame, reference=reference)
+    assert f"{reference}: 20 x 22" in message
+    assert "20 x 20" in message
+
+
+def test_a_missing_reference_is_named(tmp_path):
+    frame = picture(tmp_path / "1.png", noise(20, 20, 3))
+    assert "absent.png: no such file" in refused(frame, reference=tmp_path / "absent.png")
+
+
+def test_an_empty_folder_is_named(tmp_path):
+    assert f"{tmp_path}: a folder without any PNG" in refused(tmp_path)
+
+
+def test_a_reference_with_a_scene_is_refused(tmp_path):
+    message = refused("ball", reference="r.png")
+    assert "r.png" in message
+    assert "ball" in message
+
+
+def test_a_scene_on_a_grid_that_is_not_square_is_refused():
+    assert "16 x 32" in refused("ball", (16, 32))

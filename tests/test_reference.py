@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The double-precision reference against the equation it claims to solve."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models.calibration import Calibration
+from models.divergence import divergence
+from models.reference import depth, eigenvalues, slopes, solve
+
+
+def second_difference(z: np.ndarray, axis: int) -> np.ndarray:
+    """Zero half a pixel outside: the neighbour out there is the mirrored negative."""
+    first, last = np.take(z, [0], axis), np.take(z, [-1], axis)
+    return np.diff(np.concatenate((-first, z, -last), axis), n=2, axis=axis)
+
+
+@pytest.mark.parametrize("shape", [(16, 16), (64, 64), (128, 128), (2, 48, 16)])
+def test_solve_inverts_the_five_point_laplacian(shape):
+    f = np.random.default_rng(1).normal(size=shape)
+    z = solve(f)
+    np.testing.assert_allclose(second_difference(z, -1) + second_difference(z, -2), f, atol=1e-11)
+
+
+@given(st.integers(2, 6), st.integers(1, 64), st.integers(1, 64))
+def test_every_mode_is_divided_by_its_eigenvalue(log2_size, k, m):
+    size = 1 << log2_size
+    k, m = min(k, size), min(m, size)
+    n = 2 * np.arange(size) + 1
+    mode = np.outer(np.sin(np.pi * k * n / (2 * size)), np.sin(np.pi * m * n / (2 * size)))
+    eigenvalue = eigenvalues(size)[k - 1] + eigenvalues(size)[m - 1]
+    np.testing.assert_allclose(solve(mode), mode / eigenvalue, atol=1e-10)
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 2**32 - 1), st.floats(-3, 3))
+def test_solve_is_linear(seed, factor):
+    f, g = np.random.default_rng(seed).normal(size=(2, 32, 32))
+    np.testing.assert_allclose(solve(factor * f + g), factor * solve(f) + solve(g), atol=1e-10)
+
+
+@pytest.mark.parametrize("bits", [1, 4, 6])
+def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits):
+    bins = 1 << bits
+    gradient = np.random.default_rng(2).normal(size=(bins, bins, bins, 2))
+    frames = np.random.default_rng(3).integers(0, 256, (3, 5, 7, 3), dtype=np.uint8)
+    found = slopes(frames, Calibration("random", gradient, 0.1))
+    assert found.shape == (3, 5, 7, 2)
+    assert found.dtype == np.float64
+    for place in np.ndindex(3, 5, 7):
+        red, green, blue = (int(c) * bins // 256 for c in frames[place])
+        np.testing.assert_array_equal(found[place], gradient[red, green, blue])
+
+
+def test_depth_is_the_chain_and_frames_do_not_mix():
+    gradient = np.random.default_rng(4).normal(size=(4, 4, 4, 2))
+    calibration = Calibration("random", gradient, 0.1)
+    frames = np.random.default_rng(5).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8)
+    whole = depth(frames, calibration)
+    for frame, z in zip(frames, whole, strict=True):
+        np.testing.assert_allclose(z, solve(divergence(slopes(frame, calibration))), atol=1e-13)
