@@ -31,7 +31,7 @@ from models.round_saturate import Monitor
 from models.tactile_depth import tactile_depth, top_parameters, write_roms
 
 BENCH = "frame_bench"
-DEFAULT_SCENE = "contacts"
+DEFAULT_SCENE = "ball"
 SOLVERS = ("spectral",)
 SMALLEST_PEAK_PX = 0.1  # below this an error in % of peak says nothing
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
@@ -128,7 +128,8 @@ def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float)
 
 def build(request: Request, config: Configuration) -> Path:
     """The simulator for a configuration, built once for each state of the sources."""
-    sources = [*simulation.sources(), simulation.ROOT / "tb" / f"{BENCH}.sv"]
+    bench = simulation.ROOT / "tb" / BENCH
+    sources = [*simulation.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
     parameters = top_parameters(config)
     key = hashlib.sha256(
         json.dumps([request.simulator, request.waves, parameters, simulation.versions()]).encode()
@@ -143,7 +144,14 @@ def build(request: Request, config: Configuration) -> Path:
         print(f"building the {request.simulator} model (once for this configuration) ..", flush=True)
         try:
             simulation.build(
-                request.simulator, BENCH, sources, parameters, folder, waves=request.waves, log=folder / "build.log"
+                request.simulator,
+                BENCH,
+                sources,
+                parameters,
+                folder,
+                fast=not request.waves,
+                waves=request.waves,
+                log=folder / "build.log",
             )
         except (RuntimeError, SystemExit) as error:
             raise RuntimeError(f"the build failed: see {folder / 'build.log'}") from error
