@@ -49,7 +49,9 @@ def draw_depth(
             figure.colorbar(shown, ax=axis, label=unit, shrink=0.85)
         row[0].set_ylabel(f"{frames.labels[index]}\nmm")
     for axis, name in zip(
-        axes[0], ("input", "depth, from the RTL", "reference, double precision", "depth - reference"), strict=True
+        axes[0],
+        ("input", "depth, from the RTL", "reference, double precision", "depth - reference"),
+        strict=True,
     ):
         axis.set_title(name)
     if len(depth) > count:

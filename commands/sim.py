@@ -84,8 +84,8 @@ def parse(arguments: list[str]) -> Request:
             value = math.nan
         if not low <= value <= high:
             what = "a whole number" if kind is int else "a number"
-            to = f"from {low:g} to {high:g}" if math.isfinite(high) else f"of at least {low:g}"
-            raise InputError(f"{key}={given[key]}: accepted is {what} {to}")
+            to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
+            raise InputError(f"{key}={given[key]}: accepted is {what}{to}")
         return value
 
     def choice(key: str, accepted: tuple[str, ...]) -> str:
@@ -100,12 +100,12 @@ def parse(arguments: list[str]) -> Request:
         simulator=choice("SIM", simulation.SIMULATORS),
         data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
-        depth_range_mm=number("DEPTH_RANGE", 0, 1e-9, 1e9, float) or None,
+        depth_range_mm=number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
         frames=given.get("FRAMES", DEFAULT_SCENE),
         reference=given.get("REFERENCE"),
         calibration=given.get("CALIBRATION", "synthetic"),
-        repeat=int(number("REPEAT", 1, 1, 1_000_000)),
-        seed=int(number("SEED", 1, 0, 2**31 - 1)),
+        repeat=int(number("REPEAT", 1, 1, 100_000)),
+        seed=int(number("SEED", 1, 0, 10**9)),
         gaps=number("GAPS", 0, 0, 0.99, float),
         stalls=number("STALLS", 0, 0, 0.99, float),
         waves=bool(number("WAVES", 0, 0, 1)),
@@ -159,7 +159,9 @@ def build(request: Request, config: Configuration) -> Path:
     return folder
 
 
-def simulate(request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path) -> None:
+def simulate(
+    request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path
+) -> None:
     """Run the bench in `folder`, which then holds depth.bin, events.txt and registers.json."""
     write_roms(folder, calibration, config)
     frames.pixels[..., [0, 2, 1]].tofile(folder / "frames.bin")
@@ -290,7 +292,9 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
             lines.append(f"{column.removesuffix('_cycles').replace('_', ' ')}: {spread} cycles, all frames")
     clipped = report["saturations"]
     lines.append(
-        f"saturated: {', '.join(f'{node} {count:,}' for node, count in clipped.items())}" if clipped else "no saturation"
+        f"saturated: {', '.join(f'{node} {count:,}' for node, count in clipped.items())}"
+        if clipped
+        else "no saturation"
     )
     return "\n".join(lines)
 
@@ -303,7 +307,9 @@ def run(request: Request) -> int:
     frames = load_frames(request.frames, (request.size, request.size), request.reference, request.seed)
     pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
     config = configure(request, calibration, pixel_pitch_mm)
-    name = f"{request.solver}-{config.size}-d{config.data_width}-c{config.coefficient_width}-{request.simulator}"
+    name = (
+        f"{request.solver}-{config.size}-d{config.data_width}-c{config.coefficient_width}-{request.simulator}"
+    )
     out = request.out or simulation.ROOT / "build" / "sim" / name
     if out.exists() and not out.is_dir():
         raise InputError(f"OUT={out} is a file: give a folder")
@@ -339,9 +345,13 @@ def run(request: Request) -> int:
             **measure(work / "events.txt"),
             **{key: values * request.repeat for key, values in per_frame.items()},
             "bit_exact": bit_exact,
-            "saturations": {node: count * request.repeat for node, count in sorted(monitor.saturations.items())},
+            "saturations": {
+                node: count * request.repeat for node, count in sorted(monitor.saturations.items())
+            },
         }
-        differences = check_registers(json.loads((work / "registers.json").read_text()), report, request.stalls)
+        differences = check_registers(
+            json.loads((work / "registers.json").read_text()), report, request.stalls
+        )
         report["registers_agree"] = not differences
 
         result = work / "result"
@@ -357,7 +367,7 @@ def run(request: Request) -> int:
             f"{request.solver} {config.size} x {config.size}, {config.data_width}-bit words, {calibration.name}",
         )
         if request.waves:
-            for dump in (*work.glob("*.fst"), *work.glob("*.vcd")):
+            for dump in (*work.glob("*.vcd"), *build(request, config).glob("*.fst")):  # Verilator's, Icarus'
                 shutil.move(dump, result / dump.name)
         out.mkdir(exist_ok=True)
         for file in result.iterdir():

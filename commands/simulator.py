@@ -35,7 +35,9 @@ class ClosedVerilator(Verilator):
     """
 
     def _build_command(self) -> list[list[str]]:
-        return [[word for word in command if word != "--public-flat-rw"] for command in super()._build_command()]
+        return [
+            [word for word in command if word != "--public-flat-rw"] for command in super()._build_command()
+        ]
 
 
 def check(simulator: str) -> None:
@@ -85,7 +87,10 @@ def build(
     runner: Runner = ClosedVerilator() if simulator == "verilator" and fast else get_runner(simulator)
     arguments = ["-Wall"]
     if simulator == "verilator":
-        files = [HDL / "verilator.vlt", *sorted(files, key=lambda file: file.suffix != ".vlt")]  # waivers first
+        files = [
+            HDL / "verilator.vlt",
+            *sorted(files, key=lambda file: file.suffix != ".vlt"),
+        ]  # waivers first
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={'-O2' if fast else '-O0'}"
         if fast:
             arguments += ["-O3", "--x-assign", "fast", "--x-initial", "fast"]

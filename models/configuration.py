@@ -27,7 +27,11 @@ GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multipli
 DEPTH_HEADROOM = (
     9 / 8
 )  # full scale of the depth code over the depth range: room for a contact that reads a little deep
-COARSEST_LSB_PX = 1.0  # of any node behind the divide: coarser than this a word carries no depth
+DEEPEST = (
+    0.67  # depth that slopes up to 1 can reach over N pixels (L1 norm of the linear map), as a share of N
+)
+COARSEST_LSB = 1 / 32  # of a mode's word, as a share of the deepest depth: with less a word carries no shape
+SMALLEST_DEPTH_RANGE_PX = 1 / 16
 
 SIZES = (16, 512)
 DATA_WIDTHS = (12, 32)
@@ -101,9 +105,9 @@ class Configuration:
         within("COEFF_WIDTH", self.coefficient_width, COEFFICIENT_WIDTHS)
         if self.depth_range_px is None:
             object.__setattr__(self, "depth_range_px", self.size / 4)
-        if not (self.depth_limit_px > 0 and math.isfinite(self.depth_limit_px)):
+        if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
             raise InputError(
-                f"the depth range is {self.depth_range_px} pixels: it must be a positive, finite number"
+                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} pixels and more"
             )
         lowest, highest = GRADIENT_LIMITS
         if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
@@ -111,13 +115,15 @@ class Configuration:
                 f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are {lowest:g} to "
                 f"{highest:g} pixels per pixel; is its unit right?"
             )
-        coarsest = self.column_inverse.lsb * self.depth_limit_px
-        if coarsest > COARSEST_LSB_PX:
-            bits = math.ceil(math.log2(coarsest / COARSEST_LSB_PX))
+        deepest = min(self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * self.size * self.gradient_limit)
+        step = self.column_inverse.lsb * self.depth_limit_px
+        if step > COARSEST_LSB * deepest:
+            enough = self.data_width + math.ceil(math.log2(step / (COARSEST_LSB * deepest)))
+            mend = f"DATA_WIDTH={enough} or " if enough <= DATA_WIDTHS[1] else ""
             raise InputError(
                 f"DATA_WIDTH={self.data_width} cannot hold the formats of N={self.size} and a depth range of "
-                f"{self.depth_range_px:g} pixels (one step of a mode would be {coarsest:.3g} pixels): "
-                f"try DATA_WIDTH={self.data_width + bits} or a smaller DEPTH_RANGE"
+                f"{self.depth_range_px:g} pixels (a mode would come in steps of {step:.3g} pixels, where depth reaches "
+                f"{deepest:.3g}): try {mend}a smaller DEPTH_RANGE"
             )
 
     # Widths.

@@ -30,7 +30,9 @@ def tactile_depth(
     int64 array (..., N, N); depth_px = code * config.depth_lsb_px
     """
     codes = gradient_codes(calibration, config)
-    return spectral_solver(divergence(gradient_lookup(frames, codes, config.bits_per_channel)), config, monitor)
+    return spectral_solver(
+        divergence(gradient_lookup(frames, codes, config.bits_per_channel)), config, monitor
+    )
 
 
 def top_parameters(config: Configuration) -> dict[str, int]:

