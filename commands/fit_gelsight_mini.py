@@ -25,10 +25,9 @@ from scipy.ndimage import map_coordinates, uniform_filter
 from models import reference
 from models.calibration import FOLDER, Calibration
 from models.configuration import Configuration
-from models.divergence import divergence
 from models.errors import InputError
 from models.frames import load_frames, resampling
-from models.spectral_solver import spectral_solver
+from models.tactile_depth import tactile_depth
 
 CAMERA = (240, 320)
 PIXEL_PITCH_MM = 0.0634
@@ -168,10 +167,8 @@ def fill(table: np.ndarray, known: np.ndarray) -> np.ndarray:
 
 
 def depth_of_codes(frame: np.ndarray, calibration: Calibration, config: Configuration) -> np.ndarray:
-    """Depth in grid pixels as the hardware finds it: rounded table, bit-accurate solver."""
-    slopes = reference.slopes(frame, calibration)
-    codes = np.rint(slopes * 2.0**config.gradient.fraction).astype(np.int64)
-    return spectral_solver(divergence(codes), config) * config.depth_lsb_px
+    """Depth in grid pixels as the hardware finds it."""
+    return tactile_depth(frame, calibration, config) * config.depth_lsb_px
 
 
 def report(folder: Path, presses: list[Press], calibration: Calibration, size: int) -> None:

@@ -6,6 +6,7 @@ Takes the variables of the README's table as KEY=VALUE arguments. Exit status: 0
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import math
@@ -138,9 +139,13 @@ def build(request: Request, config: Configuration) -> Path:
         key.update(source.read_bytes())
     folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
     complete = folder / "complete"
-    if not complete.exists():
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another run may be building the same
+        if complete.exists():
+            return folder
         shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
+        folder.mkdir()
         print(f"building the {request.simulator} model (once for this configuration) ..", flush=True)
         try:
             simulation.build(
@@ -199,6 +204,8 @@ def simulate(
             waves=request.waves,
             log=folder / "simulation.log",
         )
+    except RuntimeError:  # it ended without results
+        count, failed = 0, 0
     finally:
         finished.set()
         watcher.join()

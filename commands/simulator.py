@@ -132,6 +132,9 @@ def run(
     tests run, tests failed
     """
     check(simulator)
+    for path in (str(ROOT), str(ROOT / "tb")):  # the runner hands sys.path to the simulator
+        if path not in sys.path:
+            sys.path.insert(0, path)
     results = run_folder / "results.xml"
     results.unlink(missing_ok=True)
     with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from models.configuration import GRADIENT_LIMITS
 from models.errors import InputError
 from models.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
@@ -103,6 +104,12 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
         )
     if bad := np.count_nonzero(~np.isfinite(gradient)):
         raise InputError(f"{path}: `gradient` holds {bad} values that are NaN or infinite: fill empty bins")
+    largest = float(np.abs(gradient).max())
+    if largest and not GRADIENT_LIMITS[0] <= largest <= GRADIENT_LIMITS[1] * (1 - ROUNDING):
+        raise InputError(
+            f"{path}: the largest slope in `gradient` is {largest:.3g}: accepted are {GRADIENT_LIMITS[0]:g} to "
+            f"{GRADIENT_LIMITS[1]:g}, in pixels per pixel"
+        )
     return gradient.astype(np.float64)
 
 

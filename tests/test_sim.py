@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make sim` as a user runs it: results, bars, files it leaves, and what it says to bad input."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+from skimage import io
+
+from commands import sim
+from models.calibration import load
+from models.latency import first_depth_latency, last_pixel_to_first_depth
+
+PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
+
+
+def run(tmp_path, *arguments):
+    """Run `make sim` into tmp_path/out; returns the report. It must be bit-exact."""
+    out = tmp_path / "out"
+    assert sim.run(sim.parse([*arguments, f"OUT={out}"])) == 0
+    assert sorted(p.name for p in out.iterdir()) == ["depth.npy", "depth.png", "report.json"]
+    assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
+    return json.loads((out / "report.json").read_text())
+
+
+def only(values):
+    """The one value that a list repeats."""
+    assert len(set(values)) == 1, f"not constant: {sorted(set(values))}"
+    return values[0]
+
+
+@pytest.mark.parametrize("size", [64, 128, 256])
+def test_every_grid_on_every_simulator(tmp_path, simulator, size):
+    report = run(tmp_path, f"N={size}", f"SIM={simulator}")
+    assert report["bit_exact"]
+    assert report["registers_agree"]
+    assert only(report["first_depth_latency_cycles"]) == first_depth_latency(size)
+    assert first_depth_latency(size) <= 2 * size**2 + 16 * size < PUBLISHED_FIRST_DEPTH[size]
+
+
+@pytest.mark.parametrize(("size", "percent"), [(64, 0.005), (128, 0.005), (256, 0.02)])
+def test_accuracy_and_rate(tmp_path, size, percent):
+    report = run(tmp_path, f"N={size}", "FRAMES=contacts")
+    assert len(report["rms_percent_of_peak"]) >= 6
+    assert np.mean(report["rms_percent_of_peak"]) <= percent
+    assert max(report["rms_percent_of_peak"]) <= 3 * percent
+    assert only(report["first_depth_latency_cycles"]) == first_depth_latency(size)
+    assert only(report["frame_interval_cycles"][1:]) == size**2
+    assert report["frame_interval_cycles"][0] is None
+    assert report["saturations"] == {}
+    assert all(latency > first_depth_latency(size) for latency in report["contact_latency_cycles"])
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    assert codes.dtype == np.int32
+    assert codes.shape == (8, size, size)
+
+
+@pytest.mark.parametrize("disturbance", [["GAPS=0.3"], ["STALLS=0.3"], ["GAPS=0.3", "STALLS=0.3"]])
+def test_gaps_and_stalls(tmp_path, disturbance):
+    quiet = run(tmp_path, "N=64", "FRAMES=contacts")
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    report = run(tmp_path, "N=64", "FRAMES=contacts", *disturbance)
+    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), codes)
+    if disturbance == ["GAPS=0.3"]:
+        assert only(report["last_pixel_to_first_depth_cycles"]) == last_pixel_to_first_depth(64)
+        assert only(quiet["last_pixel_to_first_depth_cycles"]) == last_pixel_to_first_depth(64)
+
+
+def test_repeat_keeps_every_latency(tmp_path):
+    report = run(tmp_path, "N=64", "REPEAT=20", "FRAMES=seal")
+    assert report["frames"] == 20
+    for latency in ("first_depth", "last_depth", "last_pixel_to_first_depth", "contact"):
+        key = f"{latency}_cycles" if latency.startswith("last_pixel") else f"{latency}_latency_cycles"
+        only(report[key])
+    assert np.load(tmp_path / "out" / "depth.npy").shape == (20, 64, 64)
+
+
+def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path):
+    assert run(tmp_path, "N=64", "FRAMES=deep")["saturations"] == {}
+
+
+def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path):
+    deepest = 16 * 15.232 / 64  # mm: the peak of `deep` at N = 64, a quarter of the grid
+    report = run(tmp_path, "N=64", "FRAMES=deep", f"DEPTH_RANGE={deepest / 2.05}")
+    assert sum(report["saturations"].values()) > 0
+    assert report["registers_agree"]  # the hardware counted the same number
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    assert codes.max() == 2**23 - 1, "the peak must stay at full scale"
+    assert codes[0, 28:36, 28:36].min() > 2**22, "a wrapped code shows as a hole in the peak"
+
+
+def test_flat_gel_reads_nothing(tmp_path):
+    report = run(tmp_path, "N=16", "FRAMES=flat")
+    assert report["rms_percent_of_peak"] == [None]
+    assert report["contact_latency_cycles"] == [None]
+
+
+def test_waves(tmp_path, simulator):
+    out = tmp_path / "out"
+    assert sim.run(sim.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
+    assert [p for p in out.iterdir() if p.suffix in (".vcd", ".fst") and p.stat().st_size]
+
+
+def test_pictures_with_a_reference(tmp_path):
+    rng = np.random.default_rng(1)
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    background = rng.integers(90, 110, (48, 64, 3)).astype(np.uint8)
+    io.imsave(tmp_path / "background.png", background, check_contrast=False)
+    for name in ("2.png", "12.png"):
+        frame = background.copy()
+        frame[16:32, 24:40, 0] += 30
+        io.imsave(folder / name, frame, check_contrast=False)
+    report = run(
+        tmp_path,
+        "N=32",
+        f"FRAMES={folder}",
+        f"REFERENCE={tmp_path / 'background.png'}",
+        "CALIBRATION=gelsight-mini",
+    )
+    assert report["frames"] == 2
+    assert report["pixel_pitch_mm"] == pytest.approx(48 / 32 * load("gelsight-mini").pixel_pitch_mm)
+
+
+# Bad input: one line that names what was given, exit status 2, nothing left behind.
+
+
+def _npy(path, array):
+    np.save(path, array)
+    return path
+
+
+def _calibration(path, **change):
+    np.savez(path, **{"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.1, **change})
+    return path
+
+
+def _cut(path):
+    path.write_bytes(path.read_bytes()[:300])
+    return path
+
+
+def _mixed(folder):
+    folder.mkdir()
+    for name, rows in (("1.png", 16), ("2.png", 20)):
+        io.imsave(folder / name, np.zeros((rows, 16, 3), np.uint8), check_contrast=False)
+    return folder
+
+
+BAD_INPUT = {
+    "shape": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16), np.uint8))}",
+    "type": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.float32))}",
+    "truncated frames": lambda t: f"FRAMES={_cut(_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.uint8)))}",
+    "small frames": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 8, 16, 3), np.uint8))}",
+    "mixed frames": lambda t: f"FRAMES={_mixed(t / 'mixed')}",
+    "unknown scene": lambda t: "FRAMES=cube",
+    "not a power of two": lambda t: "N=100",
+    "N too small": lambda t: "N=8",
+    "N too large": lambda t: "N=1024",
+    "N no number": lambda t: "N=big",
+    "solver": lambda t: "SOLVER=multigrid",
+    "simulator": lambda t: "SIM=other",
+    "calibration": lambda t: "CALIBRATION=other",
+    "truncated calibration": lambda t: f"CALIBRATION={_cut(_calibration(t / 'c.npz'))}",
+    "NaN": lambda t: f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), np.nan))}",
+    "unit of slopes": lambda t: (
+        f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), 1e6))}"
+    ),
+    "data width": lambda t: "DATA_WIDTH=33",
+    "coefficient width": lambda t: "COEFF_WIDTH=9",
+    "width and format": lambda t: "DATA_WIDTH=12 N=512",
+    "depth range": lambda t: "DEPTH_RANGE=0",
+    "gaps": lambda t: "GAPS=1",
+    "stalls": lambda t: "STALLS=often",
+    "repeat": lambda t: "REPEAT=0",
+    "unknown variable": lambda t: "SIZE=16",
+    "reference with a scene": lambda t: "REFERENCE=background.png",
+}
+
+
+@pytest.mark.parametrize("case", BAD_INPUT)
+def test_bad_input(tmp_path, monkeypatch, capsys, case):
+    given = BAD_INPUT[case](tmp_path).split()
+    out = tmp_path / "results" / "out"
+    out.mkdir(parents=True)
+    arguments = [*([] if any(a.startswith("N=") for a in given) else ["N=16"]), *given, f"OUT={out}"]
+    monkeypatch.setattr("sys.argv", ["sim", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        sim.main()
+    assert stop.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1, said
+    value = given[0].partition("=")[2]
+    assert os.path.basename(value) in said[0], "the line must name what was given"
+    assert list(out.parent.rglob("*")) == [out], "something was left behind"
+
+
+def test_missing_simulator(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}"])
+    with pytest.raises(SystemExit) as stop:
+        sim.main()
+    assert stop.value.code == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "make sim: SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`"
+    ]
