@@ -25,7 +25,7 @@ from commands import simulator as simulation
 from commands.draw import draw_depth
 from models import latency, reference
 from models.calibration import Calibration, load
-from models.configuration import Configuration
+from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
 from models.round_saturate import Monitor
@@ -33,7 +33,8 @@ from models.tactile_depth import tactile_depth, top_parameters, write_roms
 
 BENCH = "frame_bench"
 DEFAULT_SCENE = "ball"
-SOLVERS = ("spectral",)
+SOLVERS = tuple(COLUMNS)
+BOUNDARIES = ("dirichlet", "neumann")
 SMALLEST_PEAK_PX = 0.1  # below this an error in % of peak says nothing
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ROWS_SHOWN = 16
@@ -43,8 +44,10 @@ ROWS_SHOWN = 16
 class Request:
     """What the user asked for, checked as far as it can be without reading files."""
 
-    size: int
+    rows: int
+    columns: int
     solver: str
+    boundary: str
     simulator: str
     data_width: int
     coefficient_width: int
@@ -67,7 +70,7 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    accepted = "N SOLVER SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS STALLS WAVES OUT"
+    accepted = "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS STALLS WAVES OUT"
     given: dict[str, str] = {}
     for argument in arguments:
         key, equals, value = argument.partition("=")
@@ -95,9 +98,12 @@ def parse(arguments: list[str]) -> Request:
             raise InputError(f"{key}={value} is unknown: accepted are {', '.join(accepted)}")
         return value
 
+    both = number("N", 128, -math.inf, math.inf)
     return Request(
-        size=int(number("N", 128, -math.inf, math.inf)),  # the configuration says which
+        rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration says which
+        columns=int(number("COLS", both, -math.inf, math.inf)),
         solver=choice("SOLVER", SOLVERS),
+        boundary=choice("BOUNDARY", BOUNDARIES),
         simulator=choice("SIM", simulation.SIMULATORS),
         data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
@@ -118,7 +124,10 @@ def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float)
     """The pipeline for a request; the depth range becomes grid pixels."""
     depth_range = request.depth_range_mm
     return Configuration(
-        size=request.size,
+        columns=request.columns,
+        rows=request.rows,
+        solver=request.solver,
+        neumann=request.boundary == "neumann",
         data_width=request.data_width,
         coefficient_width=request.coefficient_width,
         depth_range_px=None if depth_range is None else depth_range / pixel_pitch_mm,
@@ -174,11 +183,11 @@ def simulate(
     wanted = {
         "sequence_frames": len(frames.pixels),
         "total_frames": total,
-        "pixels": config.size**2,
+        "pixels": config.rows * config.columns,
         "gap": request.gaps,
         "stall": request.stalls,
         "seed": request.seed * 2 + 1,
-        "threshold": round(CONTACT_THRESHOLD * config.size / config.depth_lsb_px),
+        "threshold": round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px),
     }
     built = build(request, config)
     finished = threading.Event()
@@ -188,7 +197,7 @@ def simulate(
         with tqdm(total=total, unit="frame", desc="simulating", leave=False, disable=None) as bar:
             while not finished.wait(0.2):
                 if depth.exists():
-                    bar.update(min(depth.stat().st_size // (4 * config.size**2), total) - bar.n)
+                    bar.update(min(depth.stat().st_size // (4 * config.rows * config.columns), total) - bar.n)
 
     watcher = threading.Thread(target=watch)
     watcher.start()
@@ -310,13 +319,15 @@ def run(request: Request) -> int:
     """Everything after parsing; returns the exit status."""
     simulation.check(request.simulator)
     calibration = load(request.calibration)
-    Configuration(size=request.size)  # refuse the size before frames are read
-    frames = load_frames(request.frames, (request.size, request.size), request.reference, request.seed)
+    # Refuse a grid before frames are read.
+    Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
+    grid = (request.rows, request.columns)
+    frames = load_frames(request.frames, grid, request.reference, request.seed)
     pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
     config = configure(request, calibration, pixel_pitch_mm)
-    name = (
-        f"{request.solver}-{config.size}-d{config.data_width}-c{config.coefficient_width}-{request.simulator}"
-    )
+    shape = f"{config.rows}x{config.columns}"
+    widths = f"d{config.data_width}-c{config.coefficient_width}"
+    name = f"{request.solver}-{request.boundary}-{shape}-{widths}-{request.simulator}"
     out = request.out or simulation.ROOT / "build" / "sim" / name
     if out.exists() and not out.is_dir():
         raise InputError(f"OUT={out} is a file: give a folder")
@@ -329,15 +340,17 @@ def run(request: Request) -> int:
         simulate(request, config, frames, calibration, work)
         monitor = Monitor()
         codes = tactile_depth(frames.pixels, calibration, config, monitor)
-        reference_px = reference.depth(frames.pixels, calibration)
-        shape = (request.repeat, *codes.shape)
-        seen = np.fromfile(work / "depth.bin", dtype="<i4").reshape(shape)
+        reference_px = reference.depth(frames.pixels, calibration, config.neumann)
+        seen = np.fromfile(work / "depth.bin", dtype="<i4").reshape(request.repeat, *codes.shape)
         depth = seen.reshape(-1, *codes.shape[1:])
         bit_exact = bool((seen == codes).all())
+        if config.solver == "tridiagonal":  # it puts the bottom row out first; results are in input order
+            seen, depth = seen[..., ::-1, :], depth[..., ::-1, :]
         per_frame = errors(seen[0] * config.depth_lsb_px, reference_px)
         report = {
-            "grid": [config.size, config.size],
+            "grid": [config.rows, config.columns],
             "solver": request.solver,
+            "boundary": request.boundary,
             "simulator": request.simulator,
             "data_width": config.data_width,
             "coeff_width": config.coefficient_width,
@@ -345,10 +358,10 @@ def run(request: Request) -> int:
             "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
             "pixel_pitch_mm": pixel_pitch_mm,
             "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
-            "contact_threshold_mm": CONTACT_THRESHOLD * config.size * pixel_pitch_mm,
+            "contact_threshold_mm": CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
             "calibration": calibration.name,
             "source": frames.name,
-            "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config.size),
+            "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
             **measure(work / "events.txt"),
             **{key: values * request.repeat for key, values in per_frame.items()},
             "bit_exact": bit_exact,
@@ -371,7 +384,7 @@ def run(request: Request) -> int:
             seen[0] * config.depth_lsb_px * pixel_pitch_mm,
             reference_px * pixel_pitch_mm,
             pixel_pitch_mm,
-            f"{request.solver} {config.size} x {config.size}, {config.data_width}-bit words, {calibration.name}",
+            f"{request.solver}, {request.boundary}, {shape}, {config.data_width}-bit words, {calibration.name}",
         )
         if request.waves:
             for dump in (*work.glob("*.vcd"), *build(request, config).glob("*.fst")):  # Verilator's, Icarus'

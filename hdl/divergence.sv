@@ -4,12 +4,13 @@
 //   f[i,j] = gx[i,j] - gx[i,j-1] + gy[i,j] - gy[i-1,j],  gx[i,-1] = gy[-1,j] = 0
 //
 // A gradient belongs to its pixel's centre, so this places the depth half a pixel up and left.
-// Stream in: pixels in raster order, gaps anywhere, in_first_row and in_first_column with them. Stream out: the same
+// Stream in: pixels in raster order, gaps anywhere, their place in the frame with them. Stream out: the same
 // pixels. Latency: 2 cycles; one line of gy is stored. Bit-accurate model: models/divergence.py.
 
 module divergence #(
   parameter int Width   = 21,   // of a slope
   parameter int Columns = 128,
+  parameter int Neumann = 0,  // 1: gx of the last column and gy of the last row count as 0
   localparam int OutWidth = Width + 2
 ) (
   input  logic                       clk,
@@ -18,6 +19,8 @@ module divergence #(
   input  logic                       in_valid,
   input  logic                       in_first_row,
   input  logic                       in_first_column,
+  input  logic                       in_last_row,
+  input  logic                       in_last_column,
   input  logic signed [Width-1:0]    in_gx,
   input  logic signed [Width-1:0]    in_gy,
   output logic                       out_valid,
@@ -52,8 +55,8 @@ module divergence #(
   always_ff @(posedge clk) begin
     if (en) begin
       if (in_valid) begin
-        gx_q <= in_gx;
-        gy_q <= in_gy;
+        gx_q <= Neumann != 0 && in_last_column ? '0 : in_gx;
+        gy_q <= Neumann != 0 && in_last_row ? '0 : in_gy;
         column_q <= column;
         column_next <= column + ColumnWidth'(1);
         first_row_q <= in_first_row;

@@ -18,7 +18,8 @@ module dst_forward #(
   parameter int Width      = 27,   // of the arithmetic
   parameter int CoeffWidth = 18,
   parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
-  parameter int OutWidth   = 24
+  parameter int OutWidth   = 24,
+  parameter int Alternate  = 1    // 0: without the sign (-1)^n, which makes it a DCT-II
 ) (
   input  logic                       clk,
   input  logic                       rst,
@@ -37,7 +38,7 @@ module dst_forward #(
     .clk, .rst, .en, .start(in_start), .position, .active
   );
   logic signed [InWidth:0] signed_in;
-  assign signed_in = position[$clog2(Size)-1] ? -(InWidth + 1)'(in_data) : (InWidth + 1)'(in_data);
+  assign signed_in = Alternate != 0 && position[$clog2(Size)-1] ? -(InWidth + 1)'(in_data) : (InWidth + 1)'(in_data);
 
   logic signed [Width-1:0] x, x_q;
   logic clipped, clipped_q, start_q;

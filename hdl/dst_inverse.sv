@@ -17,7 +17,8 @@ module dst_inverse #(
   parameter int Width      = 27,   // of the arithmetic
   parameter int CoeffWidth = 18,
   parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
-  parameter int OutWidth   = 24
+  parameter int OutWidth   = 24,
+  parameter int Alternate  = 1    // 0: without the sign (-1)^n, which makes it a DCT-II
 ) (
   input  logic                       clk,
   input  logic                       rst,
@@ -66,7 +67,7 @@ module dst_inverse #(
     .clk, .rst, .en, .start(fft_start), .position, .active
   );
   logic signed [Width:0] signed_x;
-  assign signed_x = position[$clog2(Size)-1] ? -(Width + 1)'(x) : (Width + 1)'(x);
+  assign signed_x = Alternate != 0 && position[$clog2(Size)-1] ? -(Width + 1)'(x) : (Width + 1)'(x);
 
   logic signed [OutWidth-1:0] rounded;
   logic clipped, clipped_q;

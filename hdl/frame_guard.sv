@@ -30,6 +30,8 @@ module frame_guard #(
   output logic [23:0] out_data,
   output logic        out_first_row,
   output logic        out_first_column,
+  output logic        out_last_row,
+  output logic        out_last_column,
   output logic        out_frame_start,
   output logic        out_frame_end,
   output logic        out_bad,
@@ -74,6 +76,8 @@ module frame_guard #(
       if (take) out_data <= s_data;
       out_first_row <= row == '0;
       out_first_column <= column == '0;
+      out_last_row <= row == RowWidth'(Rows - 1);
+      out_last_column <= last_column;
       out_frame_start <= take & origin;
       out_frame_end <= emit & frame_end;
       out_bad <= filling | row_long;  // at the end of a frame nothing else can be wrong

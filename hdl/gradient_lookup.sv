@@ -22,11 +22,9 @@ module gradient_lookup #(
   input  logic signed [Width-1:0] write_gy,
   input  logic                    in_valid,
   input  logic [23:0]             in_pixel,
-  input  logic                    in_first_row,
-  input  logic                    in_first_column,
+  input  logic [3:0]              in_place,   // first and last row and column, passed along
   output logic                    out_valid,
-  output logic                    out_first_row,
-  output logic                    out_first_column,
+  output logic [3:0]              out_place,
   output logic signed [Width-1:0] out_gx,
   output logic signed [Width-1:0] out_gy
 );
@@ -58,15 +56,14 @@ module gradient_lookup #(
     .read_data    (slopes)
   );
 
-  logic valid_q, first_row_q, first_column_q;
+  logic valid_q;
+  logic [3:0] place_q;
   always_ff @(posedge clk) begin
     if (en) begin
       valid_q <= in_valid;
-      first_row_q <= in_first_row;
-      first_column_q <= in_first_column;
+      place_q <= in_place;
       out_valid <= valid_q;
-      out_first_row <= first_row_q;
-      out_first_column <= first_column_q;
+      out_place <= place_q;
       {out_gy, out_gx} <= slopes;
     end
     if (rst) begin

@@ -22,7 +22,8 @@ module spectral_solver #(
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22
+  parameter int DivideDrop       = 22,
+  parameter int Neumann          = 0    // 1: zero slope at the edge and zero mean, by cosine transforms
 ) (
   input  logic                        clk,
   input  logic                        rst,
@@ -33,6 +34,8 @@ module spectral_solver #(
   output logic signed [DataWidth-1:0] out_data,
   output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
 );
+
+  localparam int Alternate = Neumann != 0 ? 0 : 1;
 
   logic row_start, row_modes_start, column_start, modes_start, divided_start;
   logic column_out_start, depth_row_start, depth_start, depth_valid;
@@ -48,7 +51,7 @@ module spectral_solver #(
   );
 
   dst_forward #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth),
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_data(row_data),
@@ -61,7 +64,7 @@ module spectral_solver #(
   );
 
   dst_forward #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth),
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
   ) u_column_forward (
     .clk, .rst, .en, .in_start(column_start), .in_data(column_data),
@@ -77,7 +80,7 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth),
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
   ) u_column_inverse (
     .clk, .rst, .en, .in_start(divided_start), .in_data(divided),
@@ -90,7 +93,7 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth),
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
     .clk, .rst, .en, .in_start(depth_row_start), .in_data(depth_row_data),

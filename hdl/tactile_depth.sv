@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactile_depth: RGB frames of a lit gel in, depth maps and contact out.
 //
-//   axis_skid -> frame_guard -> gradient_lookup -> divergence -> spectral_solver -> frame_output -> axis_skid
+//   axis_skid -> frame_guard -> gradient_lookup -> divergence -> solver -> frame_output -> axis_skid
 //                     |                                                                  |             |
 //                     +------------------------- frame_tags -----------------------------+     threshold_comparator
 //
@@ -14,7 +14,10 @@
 module tactile_depth
   import register_map_pkg::*;
 #(
-  parameter int Size             = 128,
+  parameter int Tridiagonal      = 0,    // solver: 0 spectral, 1 tridiagonal
+  parameter int Neumann          = 0,    // 1: zero slope at the frame's edge
+  parameter int Rows             = 128,
+  parameter int Size             = 128,  // columns
   parameter int BitsPerChannel   = 4,
   parameter int GradientWidth    = 21,
   parameter int GradientFraction = 20,
@@ -28,6 +31,13 @@ module tactile_depth
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
   parameter int DivideDrop       = 22,
+  parameter int StoreDrop        = 3,    // from here: tridiagonal
+  parameter int TableWords       = 1379,
+  parameter int SettledWidth     = 7,
+  parameter int LastShiftWidth   = 1,
+  parameter int MomentDrop       = 7,
+  parameter int MeanReciprocal   = 65536,
+  parameter int MeanDrop         = 16,
   localparam int DepthBytes = (DataWidth + 7) / 8
 ) (
   input  logic                    clk,
@@ -79,15 +89,17 @@ module tactile_depth
   );
 
   logic [31:0] timeout;
-  logic guarded_valid, guarded_first_row, guarded_first_column, guarded_start, guarded_end, guarded_bad;
+  logic [3:0] guarded_place;
+  logic guarded_valid, guarded_start, guarded_end, guarded_bad;
   logic [23:0] guarded_data;
   logic row_short, row_long, start_missing, start_early, timed_out;
-  frame_guard #(.Rows(Size), .Columns(Size)) u_guard (
+  frame_guard #(.Rows(Rows), .Columns(Size)) u_guard (
     .clk, .rst, .en, .timeout,
     .s_valid(pixel_valid), .s_ready(pixel_ready),
     .s_data(pixel_data), .s_last(pixel_last), .s_user(pixel_user),
     .out_valid(guarded_valid), .out_data(guarded_data),
-    .out_first_row(guarded_first_row), .out_first_column(guarded_first_column),
+    .out_first_row(guarded_place[0]), .out_first_column(guarded_place[1]),
+    .out_last_row(guarded_place[2]), .out_last_column(guarded_place[3]),
     .out_frame_start(guarded_start), .out_frame_end(guarded_end), .out_bad(guarded_bad),
     .row_short, .row_long, .start_missing, .start_early, .timed_out
   );
@@ -97,36 +109,50 @@ module tactile_depth
   logic table_write;
   logic [3*BitsPerChannel-1:0] table_index;
   logic signed [GradientWidth-1:0] table_gx, table_gy, gx, gy;
-  logic slope_valid, slope_first_row, slope_first_column;
+  logic slope_valid;
+  logic [3:0] slope_place;
   gradient_lookup #(.Width(GradientWidth), .BitsPerChannel(BitsPerChannel)) u_lookup (
     .clk, .rst, .en,
     .write_en(table_write), .write_index(table_index), .write_gx(table_gx), .write_gy(table_gy),
-    .in_valid(guarded_valid), .in_pixel(guarded_data),
-    .in_first_row(guarded_first_row), .in_first_column(guarded_first_column),
-    .out_valid(slope_valid), .out_first_row(slope_first_row), .out_first_column(slope_first_column),
+    .in_valid(guarded_valid), .in_pixel(guarded_data), .in_place(guarded_place),
+    .out_valid(slope_valid), .out_place(slope_place),
     .out_gx(gx), .out_gy(gy)
   );
 
   logic divergence_valid;
   logic signed [GradientWidth+1:0] divergence_data;
-  divergence #(.Width(GradientWidth), .Columns(Size)) u_divergence (
+  divergence #(.Width(GradientWidth), .Columns(Size), .Neumann(Neumann)) u_divergence (
     .clk, .rst, .en,
-    .in_valid(slope_valid), .in_first_row(slope_first_row), .in_first_column(slope_first_column),
+    .in_valid(slope_valid), .in_first_row(slope_place[0]), .in_first_column(slope_place[1]),
+    .in_last_row(slope_place[2]), .in_last_column(slope_place[3]),
     .in_gx(gx), .in_gy(gy), .out_valid(divergence_valid), .out_data(divergence_data)
   );
 
   logic solved_start;
   logic signed [DataWidth-1:0] solved_data;
   logic [7:0] saturations;
-  spectral_solver #(
-    .Size(Size), .InWidth(GradientWidth + 2), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
-    .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
-    .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
-    .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop)
-  ) u_solver (
-    .clk, .rst, .en, .in_valid(divergence_valid), .in_data(divergence_data),
-    .out_start(solved_start), .out_data(solved_data), .saturations
-  );
+  if (Tridiagonal != 0) begin : g_tridiagonal
+    tridiagonal_solver #(
+      .Rows(Rows), .Size(Size), .InWidth(GradientWidth + 2), .DataWidth(DataWidth), .Width(Width),
+      .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut), .StoreDrop(StoreDrop),
+      .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
+      .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
+      .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
+    ) u_solver (
+      .clk, .rst, .en, .in_valid(divergence_valid), .in_data(divergence_data),
+      .out_start(solved_start), .out_data(solved_data), .saturations
+    );
+  end else begin : g_spectral
+    spectral_solver #(
+      .Size(Size), .InWidth(GradientWidth + 2), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
+      .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
+      .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
+      .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann)
+    ) u_solver (
+      .clk, .rst, .en, .in_valid(divergence_valid), .in_data(divergence_data),
+      .out_start(solved_start), .out_data(solved_data), .saturations
+    );
+  end
 
   // Frames. A tag is the mark of a broken frame and the clock that took the first pixel.
 
@@ -141,7 +167,7 @@ module tactile_depth
 
   logic depth_valid, depth_last, depth_user;
   logic [DataWidth-1:0] depth_data;
-  frame_output #(.Width(DataWidth), .Rows(Size), .Columns(Size)) u_output (
+  frame_output #(.Width(DataWidth), .Rows(Rows), .Columns(Size)) u_output (
     .clk, .rst, .en, .in_start(solved_start), .in_data(solved_data), .in_bad(tag_bad),
     .frame_start(solved_first), .frame_end(solved_last),
     .out_valid(depth_valid), .out_data(depth_data), .out_last(depth_last), .out_user(depth_user)
@@ -190,7 +216,7 @@ module tactile_depth
   end
 
   axil_registers #(
-    .Rows(Size), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
+    .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
     .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel)
   ) u_registers (
     .clk, .rst,

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,8 @@ DEEPEST = (
 COARSEST_LSB = 1 / 32  # of a mode's word, as a share of the deepest depth: with less a word carries no shape
 SMALLEST_DEPTH_RANGE_PX = 1 / 16
 
-SIZES = (16, 512)
+COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
+ROWS = (8, 1024)
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
@@ -69,8 +71,14 @@ class Configuration:
 
     Attributes
     ----------
-    size : int
-        Rows and columns of the grid, a power of two.
+    columns : int
+        Columns of the grid, a power of two.
+    rows : int
+        Rows of the grid; 0: as many as columns. Only the tridiagonal solver takes others.
+    solver : str
+        `spectral` or `tridiagonal`.
+    neumann : bool
+        Zero slope at the frame's edge in place of zero depth.
     data_width, coefficient_width : int
         Bits of a stored word and of a coefficient.
     depth_range_px : float
@@ -81,7 +89,10 @@ class Configuration:
         Bits of each colour that index the gradient table.
     """
 
-    size: int = 128
+    columns: int = 128
+    rows: int = 0
+    solver: str = "spectral"
+    neumann: bool = False
     data_width: int = 24
     coefficient_width: int = 18
     depth_range_px: float | None = None
@@ -95,16 +106,26 @@ class Configuration:
                     f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}"
                 )
 
-        within("N", self.size, SIZES)
-        if self.size & (self.size - 1):
-            lower = 1 << (self.size.bit_length() - 1)
+        if self.solver not in COLUMNS:
+            raise InputError(f"SOLVER={self.solver} is unknown: accepted are {', '.join(COLUMNS)}")
+        within("N", self.columns, COLUMNS[self.solver])
+        if self.columns & (self.columns - 1):
+            lower = 1 << (self.columns.bit_length() - 1)
             raise InputError(
-                f"N={self.size} is not a power of two: try N={lower} or N={min(2 * lower, SIZES[1])}"
+                f"N={self.columns} is not a power of two: try N={lower} or N={min(2 * lower, COLUMNS[self.solver][1])}"
             )
+        if not self.rows:
+            object.__setattr__(self, "rows", self.columns)
+        if self.solver == "spectral" and self.rows != self.columns:
+            raise InputError(
+                f"SOLVER=spectral with ROWS={self.rows} and COLS={self.columns}: it takes square grids; "
+                "set both the same, or SOLVER=tridiagonal"
+            )
+        within("ROWS", self.rows, ROWS)
         within("DATA_WIDTH", self.data_width, DATA_WIDTHS)
         within("COEFF_WIDTH", self.coefficient_width, COEFFICIENT_WIDTHS)
         if self.depth_range_px is None:
-            object.__setattr__(self, "depth_range_px", self.size / 4)
+            object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
         if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
             raise InputError(
                 f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} pixels and more"
@@ -115,22 +136,19 @@ class Configuration:
                 f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are {lowest:g} to "
                 f"{highest:g} pixels per pixel; is its unit right?"
             )
-        deepest = min(self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * self.size * self.gradient_limit)
-        step = self.column_inverse.lsb * self.depth_limit_px
+        deepest = min(self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit)
+        modes = self.column_inverse if self.solver == "spectral" else self.elimination_store
+        step = modes.lsb * self.depth_limit_px
         if step > COARSEST_LSB * deepest:
             enough = self.data_width + math.ceil(math.log2(step / (COARSEST_LSB * deepest)))
             mend = f"DATA_WIDTH={enough} or " if enough <= DATA_WIDTHS[1] else ""
             raise InputError(
-                f"DATA_WIDTH={self.data_width} cannot hold the formats of N={self.size} and a depth range of "
+                f"DATA_WIDTH={self.data_width} cannot hold the formats of N={self.columns} and a depth range of "
                 f"{self.depth_range_px:g} pixels (a mode would come in steps of {step:.3g} pixels, where depth reaches "
                 f"{deepest:.3g}): try {mend}a smaller DEPTH_RANGE"
             )
 
     # Widths.
-
-    @property
-    def log2_size(self) -> int:
-        return self.size.bit_length() - 1
 
     @property
     def arithmetic_width(self) -> int:
@@ -143,18 +161,38 @@ class Configuration:
         assert self.depth_range_px is not None
         return DEPTH_HEADROOM * self.depth_range_px
 
-    # Formats, in the order of the stream. Slopes, divergence and forward modes count in slopes (pixels per pixel);
-    # everything behind the divide counts in units of `depth_limit_px`.
+    @property
+    def depth_limit_log2(self) -> int:
+        """Full scale of the depth code, in units of `unit_px`, as a power of two."""
+        return math.ceil(math.log2(self.depth_limit_px)) if self.solver == "tridiagonal" else 0
+
+    @property
+    def unit_px(self) -> float:
+        """Length in which slopes, divergence and forward modes count, in grid pixels.
+
+        The spectral divide changes units; the tridiagonal solver has no place for that, so slopes come in its unit.
+        """
+        return self.depth_limit_px / 2.0**self.depth_limit_log2 if self.solver == "tridiagonal" else 1.0
+
+    # Formats, in the order of the stream. Slopes, divergence and forward modes count in `unit_px`; everything behind
+    # the solve along the columns counts in units of `depth_limit_px`.
 
     @cached_property
     def row_forward(self) -> Format:
-        return Format.holding(self._bounds.row_forward * self.gradient_limit, self.arithmetic_width)
+        return Format.holding(self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width)
 
     @property
     def gradient(self) -> Format:
         """Slopes have the fraction bits of the row transform: nothing is dropped on the way there."""
         fraction = self.row_forward.fraction
-        return Format(fraction + 1 + int(math.log2(self.gradient_limit)), fraction)
+        largest = self.gradient_limit / self.gradient_lsb
+        return Format(math.ceil(math.log2(largest)) + 1, fraction)
+
+    @property
+    def gradient_lsb(self) -> float:
+        """Slope of code 1. The tridiagonal solver takes back the gain of its coefficients here."""
+        gain = self.transform_gain if self.solver == "tridiagonal" else 1.0
+        return self.row_forward.lsb * self.unit_px * gain
 
     @property
     def divergence(self) -> Format:
@@ -179,6 +217,21 @@ class Configuration:
         return Format.holding(self._bounds.depth_modes / DEPTH_HEADROOM, self.data_width)
 
     @cached_property
+    def elimination(self) -> Format:
+        """The running rows of the tridiagonal solver: |d| = |z[i] + c z[i+1]| is at most twice the largest mode."""
+        return Format.holding(2 * self._bounds.depth_modes / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @property
+    def elimination_store(self) -> Format:
+        """The frame store of the tridiagonal solver."""
+        return Format(self.data_width, self.elimination.fraction - GUARD_BITS)
+
+    @property
+    def moment_drop(self) -> int:
+        """Fraction bits dropped of rows * mean before it is divided by rows (Neumann)."""
+        return (self.rows - 1).bit_length()
+
+    @cached_property
     def row_inverse(self) -> Format:
         return Format.holding(self._bounds.row_inverse / DEPTH_HEADROOM, self.arithmetic_width)
 
@@ -195,7 +248,7 @@ class Configuration:
 
     def transform_parameters(self) -> dict[str, int]:
         """What every transform takes."""
-        return {"Size": self.size, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
+        return {"Size": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
 
     def stream_parameters(self) -> dict[str, int]:
         """Parameters of spectral_solver.sv, but for those of its divide (models/spectral_solver.py adds them)."""
@@ -214,12 +267,13 @@ class Configuration:
 
     @property
     def transform_gain(self) -> float:
-        """What the coefficients' gain leaves of a value after two forward and two inverse transforms."""
-        return coefficient_gain(self.coefficient_width) ** (4 * (twiddle_stages(self.size) + 1))
+        """What the coefficients' gain leaves of a value after all forward and inverse transforms."""
+        transforms = 4 if self.solver == "spectral" else 2
+        return coefficient_gain(self.coefficient_width) ** (transforms * (twiddle_stages(self.columns) + 1))
 
     @property
     def _bounds(self) -> Bounds:
-        return bounds(self.size)
+        return bounds(self.columns, self.neumann)
 
 
 @dataclass(frozen=True)
@@ -251,9 +305,9 @@ class _Responses(Monitor):
 
 
 @cache
-def bounds(size: int) -> Bounds:
+def bounds(size: int, neumann: bool = False) -> Bounds:
     """L1 norms of every node of the spectral solver, from the models run on unit vectors."""
-    wide = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    wide: dict[str, Any] = {"alternate": not neumann, "input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
     unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
     forward, inverse = _Responses(), _Responses()
     modes = dst_forward(unit, monitor=forward, node="forward", **wide)

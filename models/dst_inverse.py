@@ -19,6 +19,7 @@ def dst_inverse(
     coefficient_width: int,
     output_drop: int,
     output_width: int,
+    alternate: bool = True,
     monitor: Monitor | None = None,
     node: str = "dst_inverse",
 ) -> np.ndarray:
@@ -30,6 +31,8 @@ def dst_inverse(
     input_drop, output_drop : int
         Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and from
         there to the `output_width` bits of the output.
+    alternate : bool
+        Without it the sign (-1)^n is left out, and the transform is a DCT-II.
 
     Returns
     -------
@@ -41,4 +44,4 @@ def dst_inverse(
     drop = coefficient_width - 1 + input_drop
     re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
     re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
-    return round_saturate(alternate_sign(re), output_drop, output_width, monitor, node + ".output")
+    return round_saturate(alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output")

@@ -10,9 +10,9 @@ from models.configuration import Configuration
 
 
 def gradient_codes(calibration: Calibration, config: Configuration) -> np.ndarray:
-    """Slope codes of `config.gradient` by bin {red, green, blue}, int64 (bins, 2): gx, gy."""
+    """Slope codes, slope = code * config.gradient_lsb, by bin {red, green, blue}, int64 (bins, 2): gx, gy."""
     slopes = calibration.gradient.reshape(-1, 2)
-    return np.rint(slopes * 2.0**config.gradient.fraction).astype(np.int64)
+    return np.rint(slopes / config.gradient_lsb).astype(np.int64)
 
 
 def gradient_lookup(frames: np.ndarray, codes: np.ndarray, bits_per_channel: int) -> np.ndarray:

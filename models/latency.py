@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from models.configuration import Configuration
 from models.sdf_fft import twiddle_stages
 
 BUTTERFLY = 1  # beside its delay
@@ -14,6 +15,9 @@ DIVERGENCE = 2
 GRADIENT_LOOKUP = 2
 FRAME_GUARD = 1
 AXIS_SKID = 1
+FORWARD_ELIMINATION = 7
+FRAME_STACK = 2  # from the first word of the last row
+BACK_SUBSTITUTION = 6
 
 
 def sdf_fft_latency(size: int) -> int:
@@ -46,12 +50,21 @@ def spectral_solver_latency(size: int) -> int:
     return first_transform + columns + rows
 
 
-def last_pixel_to_first_depth(size: int) -> int:
+def tridiagonal_solver_latency(size: int) -> int:
+    """From the last pixel of a frame to its first depth, for rows of `size`; no gap in the frame changes it."""
+    down = ROW_REORDER + dst_forward_latency(size) + FORWARD_ELIMINATION
+    up = FRAME_STACK + BACK_SUBSTITUTION + dst_inverse_latency(size) + size - 1 + ROW_REORDER
+    return down + up
+
+
+def last_pixel_to_first_depth(config: Configuration) -> int:
     """Of the whole pipeline, from the edge that takes the last pixel of a frame; the same whatever the gaps."""
     ahead = AXIS_SKID + FRAME_GUARD + GRADIENT_LOOKUP + DIVERGENCE
-    return ahead + spectral_solver_latency(size) + AXIS_SKID
+    tridiagonal = config.solver == "tridiagonal"
+    solver = (tridiagonal_solver_latency if tridiagonal else spectral_solver_latency)(config.columns)
+    return ahead + solver + AXIS_SKID
 
 
-def first_depth_latency(size: int) -> int:
+def first_depth_latency(config: Configuration) -> int:
     """Of the whole pipeline, from the edge that takes the first pixel of a frame sent without gaps."""
-    return size * size - 1 + last_pixel_to_first_depth(size)
+    return config.rows * config.columns - 1 + last_pixel_to_first_depth(config)

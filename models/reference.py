@@ -4,20 +4,23 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.fft import dstn, idstn
+from scipy.fft import dctn, dstn, idctn, idstn
 
 from models.calibration import Calibration
 from models.divergence import divergence
 
 
-def eigenvalues(size: int) -> np.ndarray:
-    """Eigenvalues 2 (cos(k pi / N) - 1), k = 1..N, of the second difference with zero half a pixel outside.
+def eigenvalues(size: int, neumann: bool = False) -> np.ndarray:
+    """Eigenvalues 2 (cos(k pi / N) - 1) of the second difference with zero half a pixel outside, k = 1..N.
+
+    Neumann: with zero slope at the edge, k = 0..N-1.
 
     Returns
     -------
-    float64 array (N,), by mode of scipy's DST-II
+    float64 array (N,), by mode of scipy's DST-II (Neumann: DCT-II)
     """
-    return 2 * (np.cos(np.arange(1, size + 1) * np.pi / size) - 1)
+    first = 0 if neumann else 1
+    return 2 * (np.cos(np.arange(first, size + first) * np.pi / size) - 1)
 
 
 def slopes(frames: np.ndarray, calibration: Calibration) -> np.ndarray:
@@ -35,8 +38,10 @@ def slopes(frames: np.ndarray, calibration: Calibration) -> np.ndarray:
     return calibration.gradient[red, green, blue]
 
 
-def solve(f: np.ndarray) -> np.ndarray:
+def solve(f: np.ndarray, neumann: bool = False) -> np.ndarray:
     """Depth whose five-point Laplacian is `f`, zero half a pixel outside the frame.
+
+    Neumann: with zero slope at the frame's edge, and zero mean.
 
     Parameters
     ----------
@@ -47,11 +52,14 @@ def solve(f: np.ndarray) -> np.ndarray:
     float64 array (..., rows, cols), in grid pixels
     """
     rows, cols = f.shape[-2:]
-    modes = dstn(f, type=2, axes=(-2, -1))
-    return idstn(modes / (eigenvalues(rows)[:, None] + eigenvalues(cols)), type=2, axes=(-2, -1))
+    forward, inverse = (dctn, idctn) if neumann else (dstn, idstn)
+    total = eigenvalues(rows, neumann)[:, None] + eigenvalues(cols, neumann)
+    singular = total == 0
+    modes = forward(f, type=2, axes=(-2, -1)) * ~singular / np.where(singular, 1, total)
+    return inverse(modes, type=2, axes=(-2, -1))
 
 
-def depth(frames: np.ndarray, calibration: Calibration) -> np.ndarray:
+def depth(frames: np.ndarray, calibration: Calibration, neumann: bool = False) -> np.ndarray:
     """Depth of frames: slopes, divergence, solve.
 
     Parameters
@@ -62,4 +70,4 @@ def depth(frames: np.ndarray, calibration: Calibration) -> np.ndarray:
     -------
     float64 array (..., rows, cols), in grid pixels, positive pressed in
     """
-    return solve(divergence(slopes(frames, calibration)))
+    return solve(divergence(slopes(frames, calibration), neumann), neumann)

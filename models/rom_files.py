@@ -10,6 +10,7 @@ import numpy as np
 
 from models.configuration import Configuration
 from models.sdf_fft import stages
+from models.thomas_table import thomas_table
 from models.spectral_divide import reciprocal_rom, reciprocals
 from models.twiddle_multiply import phase_factors, twiddle_factors
 
@@ -53,8 +54,25 @@ def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
 
 
+def write_thomas(folder: Path, config: Configuration) -> None:
+    """The ROMs of thomas_table.sv."""
+    table = thomas_table(config)
+    width = config.coefficient_width
+    mask = (1 << width) - 1
+    write_words(folder / "thomas.hex", table.words & mask, width)
+    settled_width, shift_width = table.settled_width, table.last_shift_width
+    address_width = (len(table.words) - 1).bit_length()
+    write_words(
+        folder / "thomas_index.hex", table.base << settled_width | table.settled, address_width + settled_width
+    )
+    write_words(folder / "thomas_last.hex", table.last_shift << width | table.last & mask, shift_width + width)
+
+
 def write_solver(folder: Path, config: Configuration) -> None:
-    """The ROMs of the spectral solver."""
-    write_transform(folder, config.size, config.coefficient_width)
-    width = config.coefficient_width + reciprocals(config).shift_width
-    write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)
+    """The ROMs of the solver."""
+    write_transform(folder, config.columns, config.coefficient_width)
+    if config.solver == "tridiagonal":
+        write_thomas(folder, config)
+    else:
+        width = config.coefficient_width + reciprocals(config).shift_width
+        write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from models.configuration import Configuration
-from models.orders import bit_reversed
+from models.orders import eigenvalues
 from models.round_saturate import Monitor, round_saturate
 
 
@@ -34,14 +34,15 @@ class Reciprocals:
 @cache
 def reciprocals(config: Configuration) -> Reciprocals:
     """By position of both modes. The scale takes back the coefficients' gain and turns pixels into depth codes."""
-    k = config.size - bit_reversed(config.size)
-    eigenvalue = 2 * (np.cos(np.pi * k / config.size) - 1)
-    factor = 1 / (eigenvalue[:, None] + eigenvalue[None, :]) / config.transform_gain / config.depth_limit_px
+    eigenvalue = eigenvalues(config.columns, config.neumann)
+    total = eigenvalue[:, None] + eigenvalue[None, :]
+    singular = total == 0  # Neumann: the constant, chosen so that the mean is 0
+    factor = ~singular / np.where(singular, 1, total) / config.transform_gain / config.depth_limit_px
     scaled = factor * 2.0 ** (config.column_inverse.fraction - config.column_forward.fraction)
     fraction, exponent = np.frexp(scaled)
     mantissa = np.rint(fraction * 2 ** (config.coefficient_width - 1)).astype(np.int64)
-    lowest = min(int(exponent.min()), config.coefficient_width - 2)  # at least one bit is dropped
-    shift = exponent.astype(np.int64) - lowest
+    lowest = min(int(exponent[~singular].min()), config.coefficient_width - 2)  # at least one bit is dropped
+    shift = np.where(singular, 0, exponent.astype(np.int64) - lowest)
     return Reciprocals(
         mantissa, shift, config.coefficient_width - 1 - lowest, max(1, int(shift.max()).bit_length())
     )
@@ -62,6 +63,6 @@ def spectral_divide(
 def reciprocal_rom(config: Configuration) -> np.ndarray:
     """Words {shift, mantissa} of the lower triangle, position (p, t <= p) at p (p + 1) / 2 + t; int64."""
     table = reciprocals(config)
-    lower = np.tril_indices(config.size)
+    lower = np.tril_indices(config.columns)
     mask = (1 << config.coefficient_width) - 1
     return table.shift[lower] << config.coefficient_width | table.mantissa[lower] & mask

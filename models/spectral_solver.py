@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from models.configuration import Configuration
@@ -20,6 +22,7 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         **config.stream_parameters(),
         "DivideShiftWidth": table.shift_width,
         "DivideDrop": table.drop,
+        "Neumann": int(config.neumann),
     }
 
 
@@ -34,9 +37,12 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     -------
     int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
     """
-    burst = makhoul(config.size)
+    burst = makhoul(config.columns)
     natural = np.argsort(burst)
-    arithmetic = {"width": config.arithmetic_width, "coefficient_width": config.coefficient_width}
+    arithmetic: dict[str, Any] = {
+        "width": config.arithmetic_width, "coefficient_width": config.coefficient_width,
+        "alternate": not config.neumann,
+    }
 
     modes = dst_forward(
         f[..., burst],

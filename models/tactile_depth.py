@@ -13,34 +13,39 @@ from models.divergence import divergence
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.rom_files import write_gradient, write_solver
 from models.round_saturate import Monitor
-from models.spectral_solver import solver_parameters, spectral_solver
+from models import spectral_solver, tridiagonal_solver
 
 
 def tactile_depth(
     frames: np.ndarray, calibration: Calibration, config: Configuration, monitor: Monitor | None = None
 ) -> np.ndarray:
-    """Depth codes of frames.
+    """Depth codes of frames, rows in the order of the stream: the tridiagonal solver puts the bottom row out first.
 
     Parameters
     ----------
-    frames : uint8 array (..., N, N, 3), RGB
+    frames : uint8 array (..., rows, columns, 3), RGB
 
     Returns
     -------
-    int64 array (..., N, N); depth_px = code * config.depth_lsb_px
+    int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
-    codes = gradient_codes(calibration, config)
-    return spectral_solver(
-        divergence(gradient_lookup(frames, codes, config.bits_per_channel)), config, monitor
-    )
+    slopes = gradient_lookup(frames, gradient_codes(calibration, config), config.bits_per_channel)
+    f = divergence(slopes, config.neumann)
+    if config.solver == "tridiagonal":
+        return tridiagonal_solver.tridiagonal_solver(f, config, monitor)
+    return spectral_solver.spectral_solver(f, config, monitor)
 
 
 def top_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/tactile_depth.sv."""
-    parameters = solver_parameters(config)
+    tridiagonal = config.solver == "tridiagonal"
+    solver = tridiagonal_solver if tridiagonal else spectral_solver
+    parameters = solver.solver_parameters(config)
     del parameters["InWidth"]
     return {
         **parameters,
+        "Rows": config.rows,
+        "Tridiagonal": int(tridiagonal),
         "BitsPerChannel": config.bits_per_channel,
         "GradientWidth": config.gradient.width,
         "GradientFraction": config.gradient.fraction,

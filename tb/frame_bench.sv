@@ -10,6 +10,9 @@
 module frame_bench
   import register_map_pkg::*;
 #(
+  parameter int Tridiagonal      = 0,
+  parameter int Neumann          = 0,
+  parameter int Rows             = 128,
   parameter int Size             = 128,
   parameter int BitsPerChannel   = 4,
   parameter int GradientWidth    = 21,
@@ -23,7 +26,14 @@ module frame_bench
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22
+  parameter int DivideDrop       = 22,
+  parameter int StoreDrop        = 3,
+  parameter int TableWords       = 1379,
+  parameter int SettledWidth     = 7,
+  parameter int LastShiftWidth   = 1,
+  parameter int MomentDrop       = 7,
+  parameter int MeanReciprocal   = 65536,
+  parameter int MeanDrop         = 16
 ) (
   input  logic                    clk,
   input  logic                    rst,
@@ -55,7 +65,7 @@ module frame_bench
   input  logic                    s_axil_rready
 );
 
-  localparam int Pixels = Size * Size;
+  localparam int Pixels = Rows * Size;
   localparam int DepthWidth = 8 * ((DataWidth + 7) / 8);
 
   logic [23:0] s_axis_tdata;
@@ -65,11 +75,14 @@ module frame_bench
   logic contact;
 
   tactile_depth #(
-    .Size(Size), .BitsPerChannel(BitsPerChannel), .GradientWidth(GradientWidth),
-    .GradientFraction(GradientFraction), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
-    .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
-    .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
-    .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop)
+    .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Size(Size),
+    .BitsPerChannel(BitsPerChannel), .GradientWidth(GradientWidth), .GradientFraction(GradientFraction),
+    .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth), .RowForwardOut(RowForwardOut),
+    .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut), .RowInverseIn(RowInverseIn),
+    .RowInverseOut(RowInverseOut), .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop),
+    .StoreDrop(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth),
+    .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
+    .MeanDrop(MeanDrop)
   ) dut (
     .clk, .rst,
     .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,

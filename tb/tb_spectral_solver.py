@@ -15,7 +15,7 @@ from models.spectral_solver import spectral_solver
 @cocotb.parametrize(gap=[0.0, 0.3], pause=[0.0, 0.3], amplitude=[0.05, 1.0])
 async def frames(dut, gap, pause, amplitude):
     size, data_width, coeff = parameters(dut, "Size", "DataWidth", "CoeffWidth")
-    config = Configuration(size=size, data_width=data_width, coefficient_width=coeff)
+    config = Configuration(columns=size, data_width=data_width, coefficient_width=coeff)
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])

@@ -29,6 +29,6 @@ EXTREMES = {
 }
 
 
-@pytest.mark.parametrize("parameters", [built(Configuration(size=128)), EXTREMES], ids=["128", "extremes"])
+@pytest.mark.parametrize("parameters", [built(Configuration(columns=128)), EXTREMES], ids=["128", "extremes"])
 def test_axil_registers(run_tb, parameters):
     run_tb("axil_registers", SOURCES, parameters=parameters)

@@ -204,7 +204,7 @@ def test_the_shipped_table_is_what_the_script_fits(presses_folder):
 
 def test_held_out_presses_keep_their_cap_height_through_the_bit_accurate_model(presses_folder):
     calibration = load("gelsight-mini")
-    config = Configuration(size=128, gradient_limit=calibration.gradient_limit)
+    config = Configuration(columns=128, gradient_limit=calibration.gradient_limit)
     ratios = {}
     for press in held_out(read_presses(presses_folder)):
         found = depth_of_codes(load_press(presses_folder, press, (128, 128)), calibration, config)

@@ -23,7 +23,7 @@ SOLVER_SOURCES = [
 
 @pytest.mark.parametrize(("size", "data_width", "coeff"), [(16, 24, 18), (32, 12, 10), (16, 32, 24)])
 def test_rtl(run_tb, size, data_width, coeff):
-    config = Configuration(size=size, data_width=data_width, coefficient_width=coeff)
+    config = Configuration(columns=size, data_width=data_width, coefficient_width=coeff)
     run_tb(
         "spectral_solver",
         SOLVER_SOURCES,

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// forward_elimination: the way down of Thomas's algorithm, all modes of a row in turn.
+//
+//   d[i] = c[i] (f[i] - d[i-1]),  d[-1] = 0
+//   Neumann: the column of position 0 is singular; its last row is minus the mean sum over i of (i + 1) d[i] / Rows, which
+//   gives it zero mean after the substitution.
+//
+// Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of d,
+// rounded to the stored word. Latency: 7 cycles. The running row keeps Width bits. One multiplier; between dependent
+// values lie at least Size clocks, so it pipelines freely. Bit-accurate model: models/forward_elimination.py.
+
+module forward_elimination #(
+  parameter int Width          = 27,
+  parameter int CoeffWidth     = 18,
+  parameter int Rows           = 128,
+  parameter int Size           = 128,
+  parameter int StoreDrop      = 3,   // fraction bits dropped on the way out
+  parameter int OutWidth       = 24,
+  parameter int Neumann        = 0,
+  parameter int TableWords     = 1379,
+  parameter int SettledWidth   = 7,
+  parameter int LastShiftWidth = 1,
+  parameter int MomentDrop     = 13,  // Neumann: of the mean
+  parameter int MeanReciprocal = 65536,
+  parameter int MeanDrop       = 10
+) (
+  input  logic                       clk,
+  input  logic                       rst,
+  input  logic                       en,
+  input  logic                       in_start,
+  input  logic signed [Width-1:0]    in_data,
+  output logic                       out_start,
+  output logic signed [OutWidth-1:0] out_data,
+  output logic [2:0]                 saturations  // values clipped in a cycle, a little ago
+);
+
+  localparam int PositionWidth = $clog2(Size);
+  localparam int RowWidth = $clog2(Rows);
+  localparam int ProductWidth = Width + CoeffWidth;
+  localparam int ShiftedWidth = ProductWidth + (1 << LastShiftWidth) - 1;
+  localparam int ToState = 6;
+
+  logic [PositionWidth-1:0] position;
+  logic [RowWidth-1:0] row;
+  logic active;
+  burst_counter #(.Size(Size)) u_counter (
+    .clk, .rst, .en, .start(in_start), .position, .active
+  );
+
+  logic signed [CoeffWidth-1:0] coefficient;
+  logic [LastShiftWidth-1:0] shift, shift_q;
+  thomas_table #(
+    .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(TableWords),
+    .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
+  ) u_table (
+    .clk, .en, .position, .row, .coefficient, .shift
+  );
+
+  // What follows a word down the pipeline.
+  logic [ToState-1:0] start_q, active_q, singular_q;  // singular: position 0 of the last row
+  logic [ToState*PositionWidth-1:0] position_q;
+  logic first_row_q;
+  logic signed [Width-1:0] data_q, state, state_or_zero;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      start_q <= {start_q[ToState-2:0], in_start};
+      active_q <= {active_q[ToState-2:0], active};
+      singular_q <= {singular_q[ToState-2:0], in_start & (row == RowWidth'(Rows - 1))};
+      position_q <= {position_q[(ToState-1)*PositionWidth-1:0], position};
+      first_row_q <= row == '0;
+      data_q <= in_data;
+      if (active && position == PositionWidth'(Size - 1))
+        row <= row == RowWidth'(Rows - 1) ? '0 : row + RowWidth'(1);
+    end
+    if (rst) begin
+      start_q <= '0;
+      active_q <= '0;
+      row <= '0;
+    end
+  end
+
+  // Difference, product, shift, rounding.
+  assign state_or_zero = first_row_q ? '0 : state;
+  logic signed [Width-1:0] difference, difference_q, difference_q2, rounded, d, chosen;
+  logic signed [ProductWidth-1:0] product;
+  logic signed [ShiftedWidth-1:0] shifted;
+  logic [2:0] clipped, clipped_q;
+  round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
+    .in((Width + 1)'(data_q) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
+  );
+  round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
+    .in(shifted), .out(rounded), .clipped(clipped[1])
+  );
+  logic signed [OutWidth-1:0] stored;
+  round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
+    .in(d), .out(stored), .clipped(clipped[2])
+  );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      difference_q <= difference;
+      difference_q2 <= difference_q;
+      product <= difference_q2 * coefficient;
+      shift_q <= shift;
+      shifted <= ShiftedWidth'(product) <<< shift_q;
+      d <= chosen;
+      out_data <= stored;
+      out_start <= start_q[ToState-1];
+    end
+    clipped_q <= {
+      en & active_q[ToState-1] & clipped[2], en & active_q[ToState-2] & clipped[1], en & active_q[0] & clipped[0]
+    };
+    if (rst) begin
+      out_start <= 1'b0;
+      clipped_q <= '0;
+    end
+  end
+
+  ram #(
+    .Width(Width),
+    .Depth(Size),
+    .Style((Width * Size > 4096) ? 1 : 0)
+  ) u_state_row (
+    .clk,
+    .write_en     (en & active_q[ToState-1]),
+    .write_address(position_q[(ToState-1)*PositionWidth+:PositionWidth]),
+    .write_data   (d),
+    .read_en      (en & active),
+    .read_address (position),
+    .read_data    (state)
+  );
+
+  logic [1:0] clipped_mean;
+  if (Neumann != 0) begin : g_mean
+    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its use.
+    localparam int MomentWidth = Width + 2 * RowWidth + 2;
+    logic [RowWidth:0] weight;
+    logic signed [Width+RowWidth+1:0] addend;
+    logic signed [MomentWidth-1:0] moment;
+    logic signed [Width-1:0] sum, sum_q, mean;
+    logic signed [ProductWidth-1:0] scaled;
+    logic [3:0] after;  // clocks since d at position 0 was there
+    logic [1:0] clipped_now;
+    round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
+      .in(moment), .out(sum), .clipped(clipped_now[0])
+    );
+    round_saturate #(.InWidth(ProductWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
+      .in(scaled), .out(mean), .clipped(clipped_now[1])
+    );
+    logic ends;  // the mean is used when the last row begins, so the last addend is that of the row before
+    assign ends = weight == (RowWidth + 1)'(Rows);
+    logic signed [Width-1:0] mean_q;
+    always_ff @(posedge clk) begin
+      if (en) begin
+        after <= {after[2:0], start_q[ToState-1]};
+        if (start_q[ToState-1]) begin
+          addend <= d * $signed({1'b0, weight});
+          weight <= ends ? (RowWidth + 1)'(1) : weight + (RowWidth + 1)'(1);
+        end
+        if (after[0]) moment <= weight == (RowWidth + 1)'(1) ? '0
+            : (weight == (RowWidth + 1)'(2) ? '0 : moment) + MomentWidth'(addend);
+        if (after[1]) sum_q <= sum;
+        if (after[2]) scaled <= sum_q * CoeffWidth'(-MeanReciprocal);
+        if (after[3]) mean_q <= mean;
+      end
+      clipped_mean[0] <= en & after[1] & clipped_now[0] & ends;
+      clipped_mean[1] <= en & after[3] & clipped_now[1] & ends;
+      if (rst) begin
+        after <= '0;
+        weight <= (RowWidth + 1)'(1);
+        clipped_mean <= '0;
+      end
+    end
+    assign chosen = singular_q[ToState-2] ? mean_q : rounded;
+  end else begin : g_no_mean
+    assign chosen = rounded;
+    assign clipped_mean = '0;
+    logic unused_singular;
+    assign unused_singular = ^singular_q;
+  end
+
+  always_ff @(posedge clk) begin
+    saturations <= 3'(clipped_q[0]) + 3'(clipped_q[1]) + 3'(clipped_q[2]) + 3'(clipped_mean[0]) + 3'(clipped_mean[1]);
+    if (rst) saturations <= '0;
+  end
+
+endmodule

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// thomas_table: coefficient c of Thomas's algorithm for a mode and a row.
+//
+//   c[0] = 1 / b[0], c[i] = 1 / (b[i] - c[i-1]) = coefficient 2^(shift + 1 - CoeffWidth)
+//
+// A position and a row in, its coefficient out 3 enabled clocks later. Down the rows a coefficient soon settles; what
+// follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a shift,
+// since its coefficients exceed 1 under Neumann. Bit-accurate model: models/thomas_table.py, which also writes the ROMs.
+
+module thomas_table #(
+  parameter int CoeffWidth     = 18,
+  parameter int Rows           = 128,
+  parameter int Size           = 128,  // modes in a row
+  parameter int Words          = 1379,
+  parameter int SettledWidth   = 7,
+  parameter int LastShiftWidth = 1,
+  localparam int PositionWidth = $clog2(Size),
+  localparam int RowWidth = $clog2(Rows),
+  localparam int AddressWidth = $clog2(Words)
+) (
+  input  logic                         clk,
+  input  logic                         en,
+  input  logic [PositionWidth-1:0]     position,
+  input  logic [RowWidth-1:0]          row,
+  output logic signed [CoeffWidth-1:0] coefficient,
+  output logic [LastShiftWidth-1:0]    shift
+);
+
+  localparam int CompareWidth = RowWidth > SettledWidth ? RowWidth : SettledWidth;
+
+  logic [AddressWidth-1:0] base, address;
+  logic [SettledWidth-1:0] settled;
+  rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File("thomas_index.hex")) u_index (
+    .clk, .en, .address(position), .data({base, settled})
+  );
+
+  logic [RowWidth-1:0] row_q;
+  logic [PositionWidth-1:0] position_q, position_q2;
+  logic last_q2, last_q3;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      row_q <= row;
+      position_q <= position;
+      position_q2 <= position_q;
+      last_q2 <= row_q == RowWidth'(Rows - 1);
+      last_q3 <= last_q2;
+      address <= base + (CompareWidth'(row_q) < CompareWidth'(settled) ? AddressWidth'(row_q) : AddressWidth'(settled));
+    end
+  end
+
+  logic signed [CoeffWidth-1:0] inner, last;
+  logic [LastShiftWidth-1:0] last_shift;
+  rom #(.Width(CoeffWidth), .Depth(Words), .File("thomas.hex")) u_inner (
+    .clk, .en, .address, .data(inner)
+  );
+  rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File("thomas_last.hex")) u_last (
+    .clk, .en, .address(position_q2), .data({last_shift, last})
+  );
+  assign coefficient = last_q3 ? last : inner;
+  assign shift = last_q3 ? last_shift : '0;
+
+endmodule

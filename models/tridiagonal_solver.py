@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/tridiagonal_solver.sv: divergence in, depth codes out, bottom row first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from models.back_substitution import back_substitution
+from models.configuration import Configuration
+from models.dst_forward import dst_forward
+from models.dst_inverse import dst_inverse
+from models.forward_elimination import forward_elimination, mean_reciprocal
+from models.frame_stack import frame_stack
+from models.orders import makhoul
+from models.round_saturate import Monitor, round_saturate
+from models.thomas_table import thomas_table
+
+
+def solver_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/tridiagonal_solver.sv."""
+    table = thomas_table(config)
+    elimination = config.elimination.fraction - config.depth_limit_log2
+    reciprocal, mean_drop = mean_reciprocal(config)
+    return {
+        **config.transform_parameters(),
+        "Rows": config.rows,
+        "InWidth": config.divergence.width,
+        "DataWidth": config.data_width,
+        "Neumann": int(config.neumann),
+        "RowForwardOut": config.row_forward.fraction - elimination,
+        "StoreDrop": config.elimination.fraction - config.elimination_store.fraction,
+        "RowInverseIn": config.elimination.fraction - config.row_inverse.fraction,
+        "RowInverseOut": config.row_inverse.fraction - config.depth.fraction,
+        "TableWords": len(table.words),
+        "SettledWidth": table.settled_width,
+        "LastShiftWidth": table.last_shift_width,
+        "MomentDrop": config.moment_drop,
+        "MeanReciprocal": reciprocal,
+        "MeanDrop": mean_drop - config.moment_drop,
+    }
+
+
+def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Solve the Poisson equation for frames of divergence codes.
+
+    Parameters
+    ----------
+    f : int64 array (..., rows, columns), codes of `config.divergence`
+
+    Returns
+    -------
+    int64 array (..., rows, columns), codes of `config.depth`, bottom row first
+    """
+    burst = makhoul(config.columns)
+    natural = np.argsort(burst)
+    arithmetic: dict[str, Any] = {
+        "width": config.arithmetic_width, "coefficient_width": config.coefficient_width,
+        "alternate": not config.neumann,
+    }
+    parameters = solver_parameters(config)
+
+    modes = dst_forward(
+        f[..., burst],
+        input_drop=0,
+        output_drop=parameters["RowForwardOut"],
+        output_width=config.arithmetic_width,
+        monitor=monitor,
+        node="row_forward",
+        **arithmetic,
+    )
+    d = forward_elimination(modes, config, monitor)
+    stored = round_saturate(d, parameters["StoreDrop"], config.data_width, monitor, "frame_stack")
+    z = back_substitution(frame_stack(stored), config, monitor)
+    depth = dst_inverse(
+        z,
+        input_drop=parameters["RowInverseIn"],
+        output_drop=parameters["RowInverseOut"],
+        output_width=config.depth.width,
+        monitor=monitor,
+        node="row_inverse",
+        **arithmetic,
+    )
+    return depth[..., natural]
