@@ -29,7 +29,9 @@ from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
 from models.round_saturate import Monitor
+from models.spectral_divide import reciprocal_rom
 from models.tactile_depth import tactile_depth, top_parameters, write_roms
+from models.thomas_table import thomas_table
 
 BENCH = "frame_bench"
 DEFAULT_SCENE = "ball"
@@ -276,6 +278,13 @@ def check_registers(registers: dict[str, int], report: dict, stalls: float) -> l
     ]
 
 
+def coefficient_words(config: Configuration) -> int:
+    """Words of the table along the columns: reciprocals (spectral), or coefficients of Thomas's algorithm."""
+    if config.solver == "spectral":
+        return len(reciprocal_rom(config))
+    return len(thomas_table(config).words) + config.columns
+
+
 def table(report: dict, labels: tuple[str, ...]) -> str:
     """One line a frame, the sequence once; then what holds for all."""
 
@@ -358,6 +367,8 @@ def run(request: Request) -> int:
             "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
             "pixel_pitch_mm": pixel_pitch_mm,
             "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
+            "gradient_lsb": config.gradient_lsb,
+            "coefficient_table_words": coefficient_words(config),
             "contact_threshold_mm": CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
             "calibration": calibration.name,
             "source": frames.name,

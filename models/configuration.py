@@ -136,7 +136,9 @@ class Configuration:
                 f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are {lowest:g} to "
                 f"{highest:g} pixels per pixel; is its unit right?"
             )
-        deepest = min(self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit)
+        deepest = min(
+            self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit
+        )
         modes = self.column_inverse if self.solver == "spectral" else self.elimination_store
         step = modes.lsb * self.depth_limit_px
         if step > COARSEST_LSB * deepest:
@@ -179,7 +181,9 @@ class Configuration:
 
     @cached_property
     def row_forward(self) -> Format:
-        return Format.holding(self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width)
+        return Format.holding(
+            self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width
+        )
 
     @property
     def gradient(self) -> Format:
@@ -307,7 +311,14 @@ class _Responses(Monitor):
 @cache
 def bounds(size: int, neumann: bool = False) -> Bounds:
     """L1 norms of every node of the spectral solver, from the models run on unit vectors."""
-    wide: dict[str, Any] = {"alternate": not neumann, "input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    wide: dict[str, Any] = {
+        "alternate": not neumann,
+        "input_drop": 0,
+        "width": 62,
+        "coefficient_width": 50,
+        "output_drop": 0,
+        "output_width": 62,
+    }
     unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
     forward, inverse = _Responses(), _Responses()
     modes = dst_forward(unit, monitor=forward, node="forward", **wide)

@@ -44,4 +44,6 @@ def dst_inverse(
     drop = coefficient_width - 1 + input_drop
     re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
     re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
-    return round_saturate(alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output")
+    return round_saturate(
+        alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output"
+    )

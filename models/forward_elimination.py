@@ -21,6 +21,8 @@ def forward_elimination(
 ) -> np.ndarray:
     """d[i] = c[i] (f[i] - d[i-1]) down the rows of modes (..., rows, columns), codes of `config.elimination`.
 
+    Returns codes of `config.elimination_store`.
+
     Under Neumann the constant of the singular mode (position 0) is chosen so that its column has zero mean: its last
     row is minus the mean that the substitution would give with 0 there, sum over i of (i + 1) d[i] / rows.
     """
@@ -46,4 +48,10 @@ def forward_elimination(
                     -mean * reciprocal, mean_drop - config.moment_drop, width, monitor, node + ".mean"
                 )
         d[..., row, :] = state
-    return d
+    return round_saturate(
+        d,
+        config.elimination.fraction - config.elimination_store.fraction,
+        config.data_width,
+        monitor,
+        node + ".store",
+    )

@@ -134,7 +134,11 @@ MAP = (
             Field("data_width", 0, 7, "ro", "Bits of a depth code."),
             Field("gradient_width", 8, 15, "ro", "Bits of a slope code of the gradient table."),
             Field(
-                "gradient_fraction", 16, 23, "ro", "Its fraction bits: slope = code / 2^gradient_fraction."
+                "gradient_fraction",
+                16,
+                23,
+                "ro",
+                "Its fraction bits: slope = code / 2^gradient_fraction (tridiagonal: code * gradient_lsb of the run's report).",
             ),
             Field("bits_per_channel", 24, 31, "ro", "Top bits of each colour that index the gradient table."),
         ),

@@ -63,9 +63,13 @@ def write_thomas(folder: Path, config: Configuration) -> None:
     settled_width, shift_width = table.settled_width, table.last_shift_width
     address_width = (len(table.words) - 1).bit_length()
     write_words(
-        folder / "thomas_index.hex", table.base << settled_width | table.settled, address_width + settled_width
+        folder / "thomas_index.hex",
+        table.base << settled_width | table.settled,
+        address_width + settled_width,
     )
-    write_words(folder / "thomas_last.hex", table.last_shift << width | table.last & mask, shift_width + width)
+    write_words(
+        folder / "thomas_last.hex", table.last_shift << width | table.last & mask, shift_width + width
+    )
 
 
 def write_solver(folder: Path, config: Configuration) -> None:

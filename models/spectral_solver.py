@@ -40,7 +40,8 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     burst = makhoul(config.columns)
     natural = np.argsort(burst)
     arithmetic: dict[str, Any] = {
-        "width": config.arithmetic_width, "coefficient_width": config.coefficient_width,
+        "width": config.arithmetic_width,
+        "coefficient_width": config.coefficient_width,
         "alternate": not config.neumann,
     }
 

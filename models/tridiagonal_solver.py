@@ -14,7 +14,7 @@ from models.dst_inverse import dst_inverse
 from models.forward_elimination import forward_elimination, mean_reciprocal
 from models.frame_stack import frame_stack
 from models.orders import makhoul
-from models.round_saturate import Monitor, round_saturate
+from models.round_saturate import Monitor
 from models.thomas_table import thomas_table
 
 
@@ -56,7 +56,8 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
     burst = makhoul(config.columns)
     natural = np.argsort(burst)
     arithmetic: dict[str, Any] = {
-        "width": config.arithmetic_width, "coefficient_width": config.coefficient_width,
+        "width": config.arithmetic_width,
+        "coefficient_width": config.coefficient_width,
         "alternate": not config.neumann,
     }
     parameters = solver_parameters(config)
@@ -71,8 +72,7 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
         **arithmetic,
     )
     d = forward_elimination(modes, config, monitor)
-    stored = round_saturate(d, parameters["StoreDrop"], config.data_width, monitor, "frame_stack")
-    z = back_substitution(frame_stack(stored), config, monitor)
+    z = back_substitution(frame_stack(d), config, monitor)
     depth = dst_inverse(
         z,
         input_drop=parameters["RowInverseIn"],

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""back_substitution against its model: codes, latency, saturations; gaps, pauses, reset."""
+
+import cocotb
+from stream import check_bursts, configuration, uniform
+
+from models.back_substitution import back_substitution
+from models.latency import BACK_SUBSTITUTION
+
+
+async def check(dut, amplitude, frames=3, **behaviour):
+    config = configuration()
+
+    def model(x, monitor):
+        return back_substitution(x.reshape(-1, config.rows, config.columns), config, monitor)
+
+    words = uniform((frames * config.rows, config.columns, 1), config.data_width, amplitude)
+    await check_bursts(
+        dut, words, model, BACK_SUBSTITUTION, in_fields=["data"], out_fields=["data"], **behaviour
+    )
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(gap=[0, 30], pause=[0.0, 0.3], amplitude=[0.05, 1.0])
+async def frames(dut, gap, pause, amplitude):
+    await check(dut, amplitude, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+async def reset_in_mid_frame(dut):
+    config = configuration()
+    await check(dut, 0.1, interrupt=config.columns * (config.rows // 2) + config.columns // 2)

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""forward_elimination against its model: codes, latency, saturations; gaps, pauses, reset."""
+
+import cocotb
+from stream import check_bursts, configuration, uniform
+
+from models.forward_elimination import forward_elimination
+from models.latency import FORWARD_ELIMINATION
+
+
+async def check(dut, amplitude, frames=3, **behaviour):
+    config = configuration()
+
+    def model(x, monitor):
+        return forward_elimination(x.reshape(-1, config.rows, config.columns), config, monitor)
+
+    words = uniform((frames * config.rows, config.columns, 1), config.arithmetic_width, amplitude)
+    await check_bursts(
+        dut, words, model, FORWARD_ELIMINATION, in_fields=["data"], out_fields=["data"], **behaviour
+    )
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(gap=[0, 30], pause=[0.0, 0.3], amplitude=[0.01, 1.0])
+async def frames(dut, gap, pause, amplitude):
+    await check(dut, amplitude, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+async def reset_in_mid_frame(dut):
+    config = configuration()
+    await check(dut, 0.1, interrupt=config.columns * (config.rows // 2) + config.columns // 2)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_stack against its model: places, latency, rows without a pause; gaps, pauses, reset."""
+
+import cocotb
+import numpy as np
+from stream import check_bursts, parameters
+
+from models.frame_stack import frame_stack
+from models.latency import FRAME_STACK
+
+FRAMES = 4  # in place, the order of rows in the memory flips with every frame
+
+
+async def check(dut, frames=FRAMES, **behaviour):
+    size, rows = parameters(dut, "Size", "Rows")
+
+    def model(x, monitor):
+        return frame_stack(x.reshape(-1, rows, size))
+
+    words = np.arange(1, frames * rows * size + 1)  # each stands for its place
+    source, sink = await check_bursts(
+        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], **behaviour
+    )
+    last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
+    assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [FRAME_STACK] * frames
+    apart = np.diff(np.array(sink.starts).reshape(frames, rows), axis=1)
+    assert np.all(apart == size), "the rows of a frame follow each other without a pause"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
+async def frames(dut, gap, pause):
+    await check(dut, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(halves=[1, 3, 5])
+async def reset_in_mid_frame(dut, halves):
+    size, rows = parameters(dut, "Size", "Rows")
+    await check(dut, frames=2, interrupt=halves * size * rows // 2 + size // 2)
