@@ -27,7 +27,7 @@ module tactile_depth
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22,
+  parameter int DivideDrop       = 23,
   localparam int DepthBytes = (DataWidth + 7) / 8
 ) (
   input  logic                    clk,

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The configuration of a pipeline: the one source of its numbers.
 
-Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats follow from two
-bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Everything from slope to depth is linear, so
-the largest value a node can hold is an L1 norm, and that norm is taken from the bit-accurate model itself, run on unit
-vectors of floats (models/round_saturate.py).
+Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats
+follow from two bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Everything from
+slope to depth is linear, so the largest value a node can hold is an L1 norm, and that norm is taken from the
+bit-accurate model itself, run on unit vectors of floats (models/round_saturate.py).
 """
 
 from __future__ import annotations
@@ -107,13 +107,14 @@ class Configuration:
             object.__setattr__(self, "depth_range_px", self.size / 4)
         if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
             raise InputError(
-                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} pixels and more"
+                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} "
+                f"pixels and more"
             )
         lowest, highest = GRADIENT_LIMITS
         if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
             raise InputError(
-                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are {lowest:g} to "
-                f"{highest:g} pixels per pixel; is its unit right?"
+                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are "
+                f"{lowest:g} to {highest:g} pixels per pixel; is its unit right?"
             )
         deepest = min(self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * self.size * self.gradient_limit)
         step = self.column_inverse.lsb * self.depth_limit_px
@@ -122,8 +123,8 @@ class Configuration:
             mend = f"DATA_WIDTH={enough} or " if enough <= DATA_WIDTHS[1] else ""
             raise InputError(
                 f"DATA_WIDTH={self.data_width} cannot hold the formats of N={self.size} and a depth range of "
-                f"{self.depth_range_px:g} pixels (a mode would come in steps of {step:.3g} pixels, where depth reaches "
-                f"{deepest:.3g}): try {mend}a smaller DEPTH_RANGE"
+                f"{self.depth_range_px:g} pixels (a mode would come in steps of {step:.3g} pixels, where "
+                f"depth reaches {deepest:.3g}): try {mend}a smaller DEPTH_RANGE"
             )
 
     # Widths.
@@ -143,8 +144,8 @@ class Configuration:
         assert self.depth_range_px is not None
         return DEPTH_HEADROOM * self.depth_range_px
 
-    # Formats, in the order of the stream. Slopes, divergence and forward modes count in slopes (pixels per pixel);
-    # everything behind the divide counts in units of `depth_limit_px`.
+    # Formats, in the order of the stream. Slopes, divergence and forward modes count in slopes (pixels per
+    # pixel); everything behind the divide counts in units of `depth_limit_px`.
 
     @cached_property
     def row_forward(self) -> Format:
@@ -198,7 +199,7 @@ class Configuration:
         return {"Size": self.size, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
 
     def stream_parameters(self) -> dict[str, int]:
-        """Parameters of spectral_solver.sv, but for those of its divide (models/spectral_solver.py adds them)."""
+        """Parameters of spectral_solver.sv but those of its divide, which models/spectral_solver.py adds."""
         return {
             **self.transform_parameters(),
             "InWidth": self.divergence.width,

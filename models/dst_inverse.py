@@ -28,8 +28,8 @@ def dst_inverse(
     ----------
     modes : int64 array (..., N), bit-reversed order, as dst_forward puts them out
     input_drop, output_drop : int
-        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and from
-        there to the `output_width` bits of the output.
+        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative:
+        added), and from there to the `output_width` bits of the output.
 
     Returns
     -------

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Latency of each core in clocks, from the first word of a burst in to the first word out, and of the whole."""
+"""Latency of each core in clocks, first word of a burst in to first word out, and of the whole."""
 
 from __future__ import annotations
 
 from models.sdf_fft import twiddle_stages
 
+MEMORY_READ = 1
+DOT_PRODUCT = 4
 BUTTERFLY = 1  # beside its delay
 TWIDDLE_MULTIPLY = 6
 SPECTRAL_DIVIDE = 6
@@ -47,7 +49,7 @@ def spectral_solver_latency(size: int) -> int:
 
 
 def last_pixel_to_first_depth(size: int) -> int:
-    """Of the whole pipeline, from the edge that takes the last pixel of a frame; the same whatever the gaps."""
+    """Of the whole pipeline, from the edge that takes the last pixel of a frame; gaps do not change it."""
     ahead = AXIS_SKID + FRAME_GUARD + GRADIENT_LOOKUP + DIVERGENCE
     return ahead + spectral_solver_latency(size) + AXIS_SKID
 

@@ -21,7 +21,7 @@ def write_words(path: Path, words: Iterable[int], width: int) -> None:
 
 
 def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:
-    """Signed fields of `width` bits side by side, the first on top, as Python integers (a word may exceed 64 bits)."""
+    """Signed fields of `width` bits side by side, the first on top; Python integers: some exceed 64 bits."""
     mask = (1 << width) - 1
     words: list[int] = []
     for row in zip(*(np.asarray(field).tolist() for field in fields), strict=True):

@@ -33,7 +33,7 @@ class Reciprocals:
 
 @cache
 def reciprocals(config: Configuration) -> Reciprocals:
-    """By position of both modes. The scale takes back the coefficients' gain and turns pixels into depth codes."""
+    """By position of both modes; scaled to take back the coefficients' gain and to make depth codes."""
     k = config.size - bit_reversed(config.size)
     eigenvalue = 2 * (np.cos(np.pi * k / config.size) - 1)
     factor = 1 / (eigenvalue[:, None] + eigenvalue[None, :]) / config.transform_gain / config.depth_limit_px
@@ -53,7 +53,7 @@ def spectral_divide(
     """Divide modes (..., N, N), both axes in bit-reversed order, by the eigenvalues of the Laplacian."""
     table = reciprocals(config)
     product = modes * table.mantissa
-    # (product << shift) >> drop without leaving 64 bits: shift left only where fewer than one bit would be dropped.
+    # (product << shift) >> drop within 64 bits: shift left only where less than one bit would be dropped.
     drop = np.maximum(table.drop - table.shift, 1)
     lift = drop - (table.drop - table.shift)
     return round_saturate(product << lift, drop, config.arithmetic_width, monitor, node)

@@ -8,9 +8,10 @@ import numpy as np
 from models.configuration import Configuration
 from models.dst_forward import dst_forward
 from models.dst_inverse import dst_inverse
-from models.orders import makhoul
 from models.round_saturate import Monitor
+from models.row_reorder import row_reorder
 from models.spectral_divide import reciprocals, spectral_divide
+from models.transpose import transpose
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:
@@ -34,12 +35,10 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     -------
     int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
     """
-    burst = makhoul(config.size)
-    natural = np.argsort(burst)
     arithmetic = {"width": config.arithmetic_width, "coefficient_width": config.coefficient_width}
 
     modes = dst_forward(
-        f[..., burst],
+        row_reorder(f, to_burst=True),
         input_drop=config.divergence.fraction - config.row_forward.fraction,
         output_drop=config.row_forward.fraction - config.row_modes.fraction,
         output_width=config.row_modes.width,
@@ -47,9 +46,8 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
         node="row_forward",
         **arithmetic,
     )
-    modes = modes.swapaxes(-1, -2)  # first frame store: from here a burst is a column
     modes = dst_forward(
-        modes[..., burst],
+        transpose(modes, makhoul_in=False, makhoul_out=True),  # from here a burst is a column
         input_drop=config.row_modes.fraction - config.column_forward.fraction,
         output_drop=0,
         output_width=config.arithmetic_width,
@@ -67,9 +65,8 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
         node="column_inverse",
         **arithmetic,
     )
-    modes = modes[..., natural].swapaxes(-1, -2)  # second frame store: a burst is a row again
     depth = dst_inverse(
-        modes,
+        transpose(modes, makhoul_in=True, makhoul_out=False),  # a burst is a row again
         input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
         output_drop=config.row_inverse.fraction - config.depth.fraction,
         output_width=config.depth.width,
@@ -77,4 +74,4 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
         node="row_inverse",
         **arithmetic,
     )
-    return depth[..., natural]
+    return row_reorder(depth, to_burst=False)

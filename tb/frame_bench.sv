@@ -23,7 +23,7 @@ module frame_bench
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22
+  parameter int DivideDrop       = 23
 ) (
   input  logic                    clk,
   input  logic                    rst,
