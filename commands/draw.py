@@ -11,7 +11,7 @@ import numpy as np
 from models.frames import Frames
 
 matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402  (the backend is chosen first)
+from matplotlib import pyplot as plt
 
 FRAMES_DRAWN = 6
 UM_PER_MM = 1000
@@ -43,9 +43,7 @@ def draw_depth(
             (error, "PuOr", -limit, limit, "um"),
         )
         for axis, (image, colours, low, high, unit) in zip(row[1:], maps, strict=True):
-            shown = axis.imshow(
-                image, cmap=colours, vmin=low, vmax=high, extent=extent, interpolation="nearest"
-            )
+            shown = axis.imshow(image, cmap=colours, vmin=low, vmax=high, extent=extent, interpolation="nearest")
             figure.colorbar(shown, ax=axis, label=unit, shrink=0.85)
         row[0].set_ylabel(f"{frames.labels[index]}\nmm")
     for axis, name in zip(

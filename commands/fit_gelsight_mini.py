@@ -102,9 +102,7 @@ def data_folder() -> Path:
     beside = Path(__file__).resolve().parent.parent.parent / "shared" / "data"
     folder = Path(os.environ.get("TACTILE_DATA") or beside) / "gelslam"
     if not (folder / "presses.csv").is_file():
-        raise InputError(
-            f"{folder}: no presses.csv in it: set TACTILE_DATA to the folder that holds gelslam/"
-        )
+        raise InputError(f"{folder}: no presses.csv in it: set TACTILE_DATA to the folder that holds gelslam/")
     return folder
 
 

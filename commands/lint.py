@@ -30,9 +30,7 @@ def commands() -> list[tuple[str, list[str]]]:
     modules = [path.stem for path in simulation.sources() if not path.stem.endswith("_pkg")]
     checks = [(f"verilator {module}", verilator(module, {})) for module in modules]
     for size in GRIDS:
-        checks.append(
-            (f"verilator {TOP} {size}", verilator(TOP, top_parameters(Configuration(columns=size))))
-        )
+        checks.append((f"verilator {TOP} {size}", verilator(TOP, top_parameters(Configuration(columns=size)))))
     python = sys.executable
     checks.append(("ruff check", [python, "-m", "ruff", "check", "."]))
     checks.append(("ruff format", [python, "-m", "ruff", "format", "--check", "."]))

@@ -72,7 +72,10 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    accepted = "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS STALLS WAVES OUT"
+    accepted = (
+        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED "
+        "GAPS STALLS WAVES OUT"
+    )
     given: dict[str, str] = {}
     for argument in arguments:
         key, equals, value = argument.partition("=")
@@ -143,9 +146,7 @@ def build(request: Request, config: Configuration) -> Path:
     bench = simulation.ROOT / "tb" / BENCH
     sources = [*simulation.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
     parameters = top_parameters(config)
-    key = hashlib.sha256(
-        json.dumps([request.simulator, request.waves, parameters, simulation.versions()]).encode()
-    )
+    key = hashlib.sha256(json.dumps([request.simulator, request.waves, parameters, simulation.versions()]).encode())
     for source in sources:
         key.update(source.read_bytes())
     folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
@@ -175,9 +176,7 @@ def build(request: Request, config: Configuration) -> Path:
     return folder
 
 
-def simulate(
-    request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path
-) -> None:
+def simulate(request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path) -> None:
     """Run the bench in `folder`, which then holds depth.bin, events.txt and registers.json."""
     write_roms(folder, calibration, config)
     frames.pixels[..., [0, 2, 1]].tofile(folder / "frames.bin")
@@ -376,13 +375,9 @@ def run(request: Request) -> int:
             **measure(work / "events.txt"),
             **{key: values * request.repeat for key, values in per_frame.items()},
             "bit_exact": bit_exact,
-            "saturations": {
-                node: count * request.repeat for node, count in sorted(monitor.saturations.items())
-            },
+            "saturations": {node: count * request.repeat for node, count in sorted(monitor.saturations.items())},
         }
-        differences = check_registers(
-            json.loads((work / "registers.json").read_text()), report, request.stalls
-        )
+        differences = check_registers(json.loads((work / "registers.json").read_text()), report, request.stalls)
         report["registers_agree"] = not differences
 
         result = work / "result"

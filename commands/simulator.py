@@ -35,9 +35,7 @@ class ClosedVerilator(Verilator):
     """
 
     def _build_command(self) -> list[list[str]]:
-        return [
-            [word for word in command if word != "--public-flat-rw"] for command in super()._build_command()
-        ]
+        return [[word for word in command if word != "--public-flat-rw"] for command in super()._build_command()]
 
 
 def check(simulator: str) -> None:

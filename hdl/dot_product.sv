@@ -2,7 +2,7 @@
 // dot_product: a0 b0 + a1 b1, exact. Latency: 4 cycles.
 //
 // Registered and staggered as two cascaded DSP48E2 take it: operands, product, sum. No reset on the way.
-// Bit-accurate model: the formula.
+// Bit-accurate model: models/dot_product.py.
 
 module dot_product #(
   parameter int AWidth = 27,

@@ -3,7 +3,7 @@
 //
 // A tag is pushed with the last pixel of a frame and taken off with its first depth; head is the oldest tag. The solver
 // keeps the order of frames, so a queue is enough. Depth 4: at most three frames lie between these two events, at the
-// smallest grid. Bit-accurate model: a queue.
+// smallest grid. Cycle-accurate model: models/frame_tags.py, a queue.
 
 module frame_tags #(
   parameter int Width = 33

@@ -2,6 +2,7 @@
 // rom: read-only memory. Read latency: 1 cycle.
 //
 // Contents come from File (one line per word, $readmemh), written by models/rom_files.py.
+// Bit-accurate model: models/rom.py.
 
 module rom #(
   parameter int Width = 54,

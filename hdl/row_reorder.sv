@@ -5,7 +5,7 @@
 // what follows never sees a gap.
 //   ToBurst = 1: natural order in, Makhoul order out (0, 2, 4, .., 5, 3, 1).  ToBurst = 0: the reverse.
 // Latency: 2 cycles from the last word of a row to its first word out. Two rows of memory, written and read in turn.
-// Bit-accurate model: models/orders.py, makhoul().
+// Bit-accurate model: models/row_reorder.py.
 
 module row_reorder #(
   parameter int Width   = 24,

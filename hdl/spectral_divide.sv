@@ -14,7 +14,7 @@ module spectral_divide #(
   parameter int CoeffWidth = 18,
   parameter int Size       = 128,
   parameter int ShiftWidth = 4,
-  parameter int Drop       = 22,
+  parameter int Drop       = 23,
   parameter     File       = "reciprocal.hex"  // Size (Size + 1) / 2 words {S, M}
 ) (
   input  logic                    clk,

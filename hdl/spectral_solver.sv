@@ -18,11 +18,11 @@ module spectral_solver #(
   parameter int CoeffWidth       = 18,
   parameter int RowForwardOut    = 3,   // fraction bits dropped on the way out of, and into, each transform
   parameter int ColumnForwardIn  = 1,
-  parameter int ColumnInverseOut = 1,
+  parameter int ColumnInverseOut = -1,
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22,
+  parameter int DivideDrop       = 23,
   parameter int Neumann          = 0    // 1: zero slope at the edge and zero mean, by cosine transforms
 ) (
   input  logic                        clk,

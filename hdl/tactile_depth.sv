@@ -30,7 +30,7 @@ module tactile_depth
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22,
+  parameter int DivideDrop       = 23,
   parameter int StoreDrop        = 3,    // from here: tridiagonal
   parameter int TableWords       = 1379,
   parameter int SettledWidth     = 7,

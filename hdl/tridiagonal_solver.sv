@@ -19,14 +19,14 @@ module tridiagonal_solver #(
   parameter int Neumann        = 0,
   parameter int RowForwardOut  = 4,    // fraction bits dropped on the way
   parameter int StoreDrop      = 3,
-  parameter int RowInverseIn   = 0,
+  parameter int RowInverseIn   = -1,
   parameter int RowInverseOut  = -1,
   parameter int TableWords     = 1379,
   parameter int SettledWidth   = 7,
   parameter int LastShiftWidth = 1,
-  parameter int MomentDrop     = 13,
+  parameter int MomentDrop     = 7,
   parameter int MeanReciprocal = 65536,
-  parameter int MeanDrop       = 10
+  parameter int MeanDrop       = 16
 ) (
   input  logic                        clk,
   input  logic                        rst,

@@ -17,7 +17,7 @@ def back_substitution(
 
     Parameters
     ----------
-    d : int64 array (..., rows, columns), codes of `config.elimination_store`, rows in the order of the stream: last row first
+    d : int64 array (..., rows, columns), codes of `config.elimination_store`, last row first
 
     Returns
     -------

@@ -85,9 +85,7 @@ def _read(name: str, path: Path) -> Calibration:
             arrays = {key: np.asarray(data[key]) for key in ("gradient", "pixel_pitch_mm") if key in data}
     except Exception as error:  # numpy, zipfile and zlib raise a dozen kinds over a damaged file
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(
-            f"{path}: not a readable .npz ({reason}): write it with numpy.savez_compressed"
-        ) from error
+        raise InputError(f"{path}: not a readable .npz ({reason}): write it with numpy.savez_compressed") from error
     for key in ("gradient", "pixel_pitch_mm"):
         if key not in arrays:
             raise InputError(f"{path}: no `{key}` in it: a calibration holds `gradient` and `pixel_pitch_mm`")
@@ -115,9 +113,7 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
 
 def _pitch(path: Path, pitch: np.ndarray) -> float:
     if pitch.shape != () or pitch.dtype.kind not in "iuf":
-        raise InputError(
-            f"{path}: `pixel_pitch_mm` is {pitch.dtype} {pitch.shape}: accepted is one number, in mm"
-        )
+        raise InputError(f"{path}: `pixel_pitch_mm` is {pitch.dtype} {pitch.shape}: accepted is one number, in mm")
     if not 0 < float(pitch) < math.inf:
         raise InputError(f"{path}: `pixel_pitch_mm` is {float(pitch):g}: accepted is a number above 0, in mm")
     return float(pitch)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The configuration of a pipeline: the one source of its numbers.
 
-Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats follow from two
-bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Everything from slope to depth is linear, so
-the largest value a node can hold is an L1 norm, and that norm is taken from the bit-accurate model itself, run on unit
-vectors of floats (models/round_saturate.py).
+Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats
+follow from two bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Everything from
+slope to depth is linear, so the largest value a node can hold is an L1 norm, and that norm is taken from the
+bit-accurate model itself, run on unit vectors of floats (models/round_saturate.py).
 """
 
 from __future__ import annotations
@@ -25,12 +25,8 @@ from models.sdf_fft import twiddle_stages
 from models.twiddle_multiply import coefficient_gain
 
 GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits as gladly as 24
-DEPTH_HEADROOM = (
-    9 / 8
-)  # full scale of the depth code over the depth range: room for a contact that reads a little deep
-DEEPEST = (
-    0.67  # depth that slopes up to 1 can reach over N pixels (L1 norm of the linear map), as a share of N
-)
+DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: room for a contact that reads a little deep
+DEEPEST = 0.67  # depth that slopes up to 1 can reach over N pixels (L1 norm of the linear map), as a share of N
 COARSEST_LSB = 1 / 32  # of a mode's word, as a share of the deepest depth: with less a word carries no shape
 SMALLEST_DEPTH_RANGE_PX = 1 / 16
 
@@ -102,9 +98,7 @@ class Configuration:
     def __post_init__(self) -> None:
         def within(name: str, value: int, accepted: tuple[int, int]) -> None:
             if not accepted[0] <= value <= accepted[1]:
-                raise InputError(
-                    f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}"
-                )
+                raise InputError(f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}")
 
         if self.solver not in COLUMNS:
             raise InputError(f"SOLVER={self.solver} is unknown: accepted are {', '.join(COLUMNS)}")
@@ -128,13 +122,14 @@ class Configuration:
             object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
         if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
             raise InputError(
-                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} pixels and more"
+                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} "
+                f"pixels and more"
             )
         lowest, highest = GRADIENT_LIMITS
         if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
             raise InputError(
-                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are {lowest:g} to "
-                f"{highest:g} pixels per pixel; is its unit right?"
+                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are "
+                f"{lowest:g} to {highest:g} pixels per pixel; is its unit right?"
             )
         deepest = min(
             self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit
@@ -181,9 +176,7 @@ class Configuration:
 
     @cached_property
     def row_forward(self) -> Format:
-        return Format.holding(
-            self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width
-        )
+        return Format.holding(self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width)
 
     @property
     def gradient(self) -> Format:
@@ -255,7 +248,7 @@ class Configuration:
         return {"Size": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
 
     def stream_parameters(self) -> dict[str, int]:
-        """Parameters of spectral_solver.sv, but for those of its divide (models/spectral_solver.py adds them)."""
+        """Parameters of spectral_solver.sv but those of its divide, which models/spectral_solver.py adds."""
         return {
             **self.transform_parameters(),
             "InWidth": self.divergence.width,
@@ -335,9 +328,7 @@ def bounds(size: int, neumann: bool = False) -> Bounds:
 
     def column(response: np.ndarray) -> np.ndarray:  # outer product with every row mode
         x, y = l1(modes), _variation(modes)
-        return np.maximum.reduce(
-            [v * l1(response) + u * _variation(response) for u, v in zip(x, y, strict=True)]
-        )
+        return np.maximum.reduce([v * l1(response) + u * _variation(response) for u, v in zip(x, y, strict=True)])
 
     largest_mode = float(l1(modes).max())
     return Bounds(

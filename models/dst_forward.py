@@ -37,19 +37,18 @@ def dst_forward(
     ----------
     x : int64 array (..., N), Makhoul order
     input_drop, output_drop : int
-        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and from
-        there to the `output_width` bits of the output.
+        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and
+        from there to the `output_width` bits of the output.
     alternate : bool
         Without it the sign (-1)^n is left out, and the transform is a DCT-II.
 
     Returns
     -------
-    int64 array (..., N): sum over n of x[n] sin(pi (2n + 1) (N - k) / 2N) at position p, k = bit_reversed(N)[p], times
-    the gain 2**-halvings (1 - 2**(1 - coefficient_width)) ** (twiddle_stages + 1).
+    int64 array (..., N): sum over n of x[n] sin(pi (2n + 1) (N - k) / 2N) at position p,
+    k = bit_reversed(N)[p], times the gain
+    2**-halvings (1 - 2**(1 - coefficient_width)) ** (twiddle_stages + 1).
     """
-    signed = round_saturate(
-        alternate_sign(x) if alternate else x, input_drop, width, monitor, node + ".input"
-    )
+    signed = round_saturate(alternate_sign(x) if alternate else x, input_drop, width, monitor, node + ".input")
     re, im = sdf_fft(signed, np.zeros_like(signed), False, width, coefficient_width, monitor, node + ".fft")
     factors = phase_factors(x.shape[-1], False, coefficient_width)
     drop = coefficient_width - 1 + output_drop

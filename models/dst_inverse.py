@@ -29,8 +29,8 @@ def dst_inverse(
     ----------
     modes : int64 array (..., N), bit-reversed order, as dst_forward puts them out
     input_drop, output_drop : int
-        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and from
-        there to the `output_width` bits of the output.
+        Fraction bits dropped on the way from the input to the `width` bits of the arithmetic (negative: added), and
+        from there to the `output_width` bits of the output.
     alternate : bool
         Without it the sign (-1)^n is left out, and the transform is a DCT-II.
 
@@ -44,6 +44,4 @@ def dst_inverse(
     drop = coefficient_width - 1 + input_drop
     re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
     re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
-    return round_saturate(
-        alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output"
-    )
+    return round_saturate(alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output")

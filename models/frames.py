@@ -109,9 +109,7 @@ def read_picture(path: Path) -> np.ndarray:
     except Exception as error:  # the readers behind it raise a dozen kinds over a damaged file
         raise InputError(f"{path}: not a readable picture ({_line(error)}): give an intact PNG") from error
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] not in (3, 4):
-        raise InputError(
-            f"{path}: a picture of {image.dtype} {image.shape}: save it as 8-bit RGB, (rows, cols, 3)"
-        )
+        raise InputError(f"{path}: a picture of {image.dtype} {image.shape}: save it as 8-bit RGB, (rows, cols, 3)")
     return image[:, :, :3]
 
 

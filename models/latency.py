@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Latency of each core in clocks, from the first word of a burst in to the first word out, and of the whole."""
+"""Latency of each core in clocks, first word of a burst in to first word out, and of the whole."""
 
 from __future__ import annotations
 
 from models.configuration import Configuration
 from models.sdf_fft import twiddle_stages
 
+MEMORY_READ = 1
+DOT_PRODUCT = 4
 BUTTERFLY = 1  # beside its delay
 TWIDDLE_MULTIPLY = 6
 SPECTRAL_DIVIDE = 6

@@ -34,7 +34,8 @@ def mirror(size: int) -> np.ndarray:
 def eigenvalues(size: int, neumann: bool) -> np.ndarray:
     """Eigenvalue 2 (cos(pi k / N) - 1) of the second difference, by position in bit-reversed order, float64 (size,).
 
-    The mode of DCT index c is that of k = c under Neumann, of k = N - c under Dirichlet (the sign (-1)^n reverses modes).
+    The mode of DCT index c is that of k = c under Neumann, of k = N - c under Dirichlet (the sign (-1)^n
+    reverses modes).
     """
     index = bit_reversed(size)
     return 2 * (np.cos(np.pi * (index if neumann else size - index) / size) - 1)

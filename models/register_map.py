@@ -100,9 +100,7 @@ class Register:
         for name, value in values.items():
             field = self.field(name)
             if not 0 <= value < 1 << field.width:
-                raise ValueError(
-                    f"{self.name}.{name}={value} does not fit: accepted are 0 to {(1 << field.width) - 1}"
-                )
+                raise ValueError(f"{self.name}.{name}={value} does not fit: accepted are 0 to {(1 << field.width) - 1}")
             word |= value << field.low
         return word
 
@@ -138,7 +136,8 @@ MAP = (
                 16,
                 23,
                 "ro",
-                "Its fraction bits: slope = code / 2^gradient_fraction (tridiagonal: code * gradient_lsb of the run's report).",
+                "Its fraction bits: slope = code / 2^gradient_fraction (tridiagonal: code * gradient_lsb of the "
+                "run's report).",
             ),
             Field("bits_per_channel", 24, 31, "ro", "Top bits of each colour that index the gradient table."),
         ),
@@ -256,9 +255,7 @@ def package() -> str:
         "Values after reset that are not zero.": resets,
         "Bits: number of a flag, lowest of a wider field.": bits,
     }
-    body = "\n\n".join(
-        "\n".join(f"  {line}" for line in (f"// {title}", *lines)) for title, lines in sections.items()
-    )
+    body = "\n\n".join("\n".join(f"  {line}" for line in (f"// {title}", *lines)) for title, lines in sections.items())
     return (
         "// SPDX-License-Identifier: Apache-2.0\n"
         "// register_map_pkg: offsets, reset values and bits of the AXI4-Lite registers.\n"

@@ -10,8 +10,8 @@ import numpy as np
 
 from models.configuration import Configuration
 from models.sdf_fft import stages
-from models.thomas_table import thomas_table
 from models.spectral_divide import reciprocal_rom, reciprocals
+from models.thomas_table import thomas_table
 from models.twiddle_multiply import phase_factors, twiddle_factors
 
 
@@ -22,7 +22,7 @@ def write_words(path: Path, words: Iterable[int], width: int) -> None:
 
 
 def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:
-    """Signed fields of `width` bits side by side, the first on top, as Python integers (a word may exceed 64 bits)."""
+    """Signed fields of `width` bits side by side, the first on top; Python integers: some exceed 64 bits."""
     mask = (1 << width) - 1
     words: list[int] = []
     for row in zip(*(np.asarray(field).tolist() for field in fields), strict=True):
@@ -67,9 +67,7 @@ def write_thomas(folder: Path, config: Configuration) -> None:
         table.base << settled_width | table.settled,
         address_width + settled_width,
     )
-    write_words(
-        folder / "thomas_last.hex", table.last_shift << width | table.last & mask, shift_width + width
-    )
+    write_words(folder / "thomas_last.hex", table.last_shift << width | table.last & mask, shift_width + width)
 
 
 def write_solver(folder: Path, config: Configuration) -> None:

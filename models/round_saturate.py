@@ -16,9 +16,9 @@ class Monitor:
     saturations : Counter
         Node name to number of values clipped there (integer models).
     peak : dict
-        Node name to the largest row sum of absolute values seen there. Fed with a unit matrix of floats, a model is
-        its own linear map and the row sum is the L1 norm of the node's response: the largest value that inputs bounded
-        by 1 can produce there.
+        Node name to the largest row sum of absolute values seen there. Fed with a unit matrix of floats, a
+        model is its own linear map and the row sum is the L1 norm of the node's response: the largest value
+        that inputs bounded by 1 can produce there.
     """
 
     def __init__(self) -> None:
@@ -65,8 +65,8 @@ def round_saturate(
 ) -> np.ndarray:
     """Drop `drop` fraction bits with round half to even, then clip to `width` signed bits.
 
-    Floats pass as x / 2**drop, neither rounded nor clipped, and `monitor` is told their L1 norm: so the integer
-    model of a core and its ideal linear map are one piece of code.
+    Floats pass as x / 2**drop, neither rounded nor clipped, and `monitor` is told their L1 norm: so the
+    integer model of a core and its ideal linear map are one piece of code.
     """
     if np.issubdtype(x.dtype, np.floating):
         x = x / np.exp2(np.asarray(drop, float))

@@ -110,10 +110,7 @@ def _star(radius: float, waist: float) -> list[tuple[float, float]]:
     """Outline of a five-pointed star, closed."""
     turns = np.arange(11) / 10
     reach = np.where(np.arange(11) % 2, waist, radius)
-    return [
-        (r * math.sin(2 * math.pi * t), -r * math.cos(2 * math.pi * t))
-        for r, t in zip(reach, turns, strict=True)
-    ]
+    return [(r * math.sin(2 * math.pi * t), -r * math.cos(2 * math.pi * t)) for r, t in zip(reach, turns, strict=True)]
 
 
 def _cap(distance: np.ndarray, peak: float, edge_slope: float) -> np.ndarray:

@@ -47,9 +47,7 @@ def _butterfly(x: np.ndarray, delay: int) -> np.ndarray:
     return np.stack((first + second, first - second), axis=-2).reshape(x.shape)
 
 
-def _rotate_last_quarter(
-    re: np.ndarray, im: np.ndarray, block: int, inverse: bool
-) -> tuple[np.ndarray, np.ndarray]:
+def _rotate_last_quarter(re: np.ndarray, im: np.ndarray, block: int, inverse: bool) -> tuple[np.ndarray, np.ndarray]:
     """Multiply the last quarter of each block by -j (inverse: +j)."""
     sign = -1 if inverse else 1
     quarters = (*re.shape[:-1], -1, 4, block // 4)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/sdf_fft.sv: radix-2^2 single-path delay feedback FFT (He and Torkelson, IPPS 1996)."""
+"""Bit-accurate model of hdl/sdf_fft.sv: radix-2^2 single-path delay feedback FFT.
+
+S. He, M. Torkelson, A new approach to pipeline FFT processor, IPPS 1996.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +28,10 @@ class Stage:
 def stages(size: int, inverse: bool) -> list[Stage]:
     """The stages in stream order.
 
-    Forward runs from the whole block down and takes natural order, inverse is the same graph reversed and takes
-    bit-reversed order. The second butterfly of each pair halves, which keeps a pair orthonormal. When log2(size) is odd
-    one butterfly is left over; it halves in the inverse only, so forward then inverse is always the identity.
+    Forward runs from the whole block down and takes natural order, inverse is the same graph reversed and
+    takes bit-reversed order. The second butterfly of each pair halves, which keeps a pair orthonormal. When
+    log2(size) is odd one butterfly is left over; it halves in the inverse only, so forward then inverse is
+    always the identity.
     """
     chain = []
     block = size
@@ -75,8 +79,8 @@ def sdf_fft(
     Returns
     -------
     re, im : int64 arrays (..., N)
-        Forward: bit-reversed order. Inverse: natural order. The gain is 2**-halvings (1 - 2**(1 - coefficient_width)) **
-        twiddle_stages, relative to the sum without a factor.
+        Forward: bit-reversed order. Inverse: natural order. The gain is
+        2**-halvings (1 - 2**(1 - coefficient_width)) ** twiddle_stages, relative to the sum without a factor.
     """
     for index, stage in enumerate(stages(re.shape[-1], inverse)):
         name = f"{node}.stage{index}"

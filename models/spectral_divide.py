@@ -43,9 +43,7 @@ def reciprocals(config: Configuration) -> Reciprocals:
     mantissa = np.rint(fraction * 2 ** (config.coefficient_width - 1)).astype(np.int64)
     lowest = min(int(exponent[~singular].min()), config.coefficient_width - 2)  # at least one bit is dropped
     shift = np.where(singular, 0, exponent.astype(np.int64) - lowest)
-    return Reciprocals(
-        mantissa, shift, config.coefficient_width - 1 - lowest, max(1, int(shift.max()).bit_length())
-    )
+    return Reciprocals(mantissa, shift, config.coefficient_width - 1 - lowest, max(1, int(shift.max()).bit_length()))
 
 
 def spectral_divide(
@@ -54,7 +52,7 @@ def spectral_divide(
     """Divide modes (..., N, N), both axes in bit-reversed order, by the eigenvalues of the Laplacian."""
     table = reciprocals(config)
     product = modes * table.mantissa
-    # (product << shift) >> drop without leaving 64 bits: shift left only where fewer than one bit would be dropped.
+    # (product << shift) >> drop within 64 bits: shift left only where less than one bit would be dropped.
     drop = np.maximum(table.drop - table.shift, 1)
     lift = drop - (table.drop - table.shift)
     return round_saturate(product << lift, drop, config.arithmetic_width, monitor, node)

@@ -10,9 +10,10 @@ import numpy as np
 from models.configuration import Configuration
 from models.dst_forward import dst_forward
 from models.dst_inverse import dst_inverse
-from models.orders import makhoul
 from models.round_saturate import Monitor
+from models.row_reorder import row_reorder
 from models.spectral_divide import reciprocals, spectral_divide
+from models.transpose import transpose
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:
@@ -37,8 +38,6 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     -------
     int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
     """
-    burst = makhoul(config.columns)
-    natural = np.argsort(burst)
     arithmetic: dict[str, Any] = {
         "width": config.arithmetic_width,
         "coefficient_width": config.coefficient_width,
@@ -46,7 +45,7 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     }
 
     modes = dst_forward(
-        f[..., burst],
+        row_reorder(f, to_burst=True),
         input_drop=config.divergence.fraction - config.row_forward.fraction,
         output_drop=config.row_forward.fraction - config.row_modes.fraction,
         output_width=config.row_modes.width,
@@ -54,9 +53,8 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
         node="row_forward",
         **arithmetic,
     )
-    modes = modes.swapaxes(-1, -2)  # first frame store: from here a burst is a column
     modes = dst_forward(
-        modes[..., burst],
+        transpose(modes, makhoul_in=False, makhoul_out=True),  # from here a burst is a column
         input_drop=config.row_modes.fraction - config.column_forward.fraction,
         output_drop=0,
         output_width=config.arithmetic_width,
@@ -74,9 +72,8 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
         node="column_inverse",
         **arithmetic,
     )
-    modes = modes[..., natural].swapaxes(-1, -2)  # second frame store: a burst is a row again
     depth = dst_inverse(
-        modes,
+        transpose(modes, makhoul_in=True, makhoul_out=False),  # a burst is a row again
         input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
         output_drop=config.row_inverse.fraction - config.depth.fraction,
         output_width=config.depth.width,
@@ -84,4 +81,4 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
         node="row_inverse",
         **arithmetic,
     )
-    return depth[..., natural]
+    return row_reorder(depth, to_burst=False)

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from models import spectral_solver, tridiagonal_solver
 from models.calibration import Calibration
 from models.configuration import Configuration
 from models.divergence import divergence
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.rom_files import write_gradient, write_solver
 from models.round_saturate import Monitor
-from models import spectral_solver, tridiagonal_solver
 
 
 def tactile_depth(
@@ -30,7 +30,11 @@ def tactile_depth(
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
     slopes = gradient_lookup(frames, gradient_codes(calibration, config), config.bits_per_channel)
-    f = divergence(slopes, config.neumann)
+    return solve(divergence(slopes, config.neumann), config, monitor)
+
+
+def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Depth codes of divergence codes (..., rows, columns), by the configuration's solver."""
     if config.solver == "tridiagonal":
         return tridiagonal_solver.tridiagonal_solver(f, config, monitor)
     return spectral_solver.spectral_solver(f, config, monitor)

@@ -13,8 +13,8 @@ from models.dst_forward import dst_forward
 from models.dst_inverse import dst_inverse
 from models.forward_elimination import forward_elimination, mean_reciprocal
 from models.frame_stack import frame_stack
-from models.orders import makhoul
 from models.round_saturate import Monitor
+from models.row_reorder import row_reorder
 from models.thomas_table import thomas_table
 
 
@@ -53,8 +53,6 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
     -------
     int64 array (..., rows, columns), codes of `config.depth`, bottom row first
     """
-    burst = makhoul(config.columns)
-    natural = np.argsort(burst)
     arithmetic: dict[str, Any] = {
         "width": config.arithmetic_width,
         "coefficient_width": config.coefficient_width,
@@ -63,7 +61,7 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
     parameters = solver_parameters(config)
 
     modes = dst_forward(
-        f[..., burst],
+        row_reorder(f, to_burst=True),
         input_drop=0,
         output_drop=parameters["RowForwardOut"],
         output_width=config.arithmetic_width,
@@ -82,4 +80,4 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
         node="row_inverse",
         **arithmetic,
     )
-    return depth[..., natural]
+    return row_reorder(depth, to_burst=False)

@@ -10,7 +10,7 @@ from models.round_saturate import Monitor, round_saturate
 
 
 def coefficient(x: np.ndarray, coefficient_width: int) -> np.ndarray:
-    """Factors in [-1, 1] as signed words: 1 is 2**(w-1) - 1, so every product carries the same gain 1 - 2**(1-w).
+    """Factors in [-1, 1] as signed words: 1 is 2**(w-1) - 1, so every product has the same gain 1 - 2**(1-w).
 
     That gain is common to all words of a stage and is taken back once, at the end of the chain.
     """
@@ -27,7 +27,7 @@ def _factors(angle: np.ndarray, coefficient_width: int) -> np.ndarray:
 
 
 def twiddle_factors(block: int, inverse: bool, coefficient_width: int) -> np.ndarray:
-    """exp(-+2 pi j e / block) for each word of a block, int64 (block, 2); e is 0, 2n, n, 3n in its quarters."""
+    """exp(-+2 pi j e / block) of each word of a block, int64 (block, 2); e: 0, 2n, n, 3n in its quarters."""
     n = np.arange(block // 4)
     exponent = np.concatenate((0 * n, 2 * n, n, 3 * n))
     return _factors(2 * np.pi * exponent / block * (1 if inverse else -1), coefficient_width)

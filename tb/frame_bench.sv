@@ -26,7 +26,7 @@ module frame_bench
   parameter int RowInverseIn     = -3,
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 22,
+  parameter int DivideDrop       = 23,
   parameter int StoreDrop        = 3,
   parameter int TableWords       = 1379,
   parameter int SettledWidth     = 7,

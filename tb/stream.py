@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drivers and monitors of the streams between cores, and the one loop that most testbenches need."""
 
+import json
+import os
 import random
 
 import cocotb
@@ -10,6 +12,7 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
+from models.configuration import Configuration
 from models.round_saturate import Monitor
 
 CLOCK_NS = 6
@@ -17,7 +20,12 @@ CLOCK_NS = 6
 
 def parameters(dut, *names):
     """Values of the device's parameters."""
-    return tuple(int(getattr(dut, name).value) for name in names)
+    return tuple(getattr(dut, name).value.to_signed() for name in names)
+
+
+def configuration():
+    """The configuration that the test built the device for, from the environment variable CONFIGURATION."""
+    return Configuration(**json.loads(os.environ["CONFIGURATION"]))
 
 
 def uniform(shape, width, amplitude=1.0):
@@ -27,10 +35,26 @@ def uniform(shape, width, amplitude=1.0):
     return np.clip(np.rint(words), -limit, limit - 1).astype(np.int64)
 
 
+def extremes(size, width, fields=1):
+    """Bursts (8, size, fields) of words at their limits; the first is zero throughout.
+
+    Then: highest, lowest, both in turn, by halves, in turn over the fields, a lone word at either end.
+    """
+    low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
+    bursts = np.zeros((8, size, fields), np.int64)
+    bursts[1], bursts[2] = high, low
+    bursts[3, 0::2], bursts[3, 1::2] = high, low
+    bursts[4, : size // 2], bursts[4, size // 2 :] = low, high
+    bursts[5] = np.where(np.arange(fields) % 2, low, high)
+    bursts[6, 0], bursts[7, -1] = high, low
+    return bursts
+
+
 class StreamDriver(BusDriver):
     """Sends words under a qualifier: `start` (with the first word of a burst) or `valid` (with each word).
 
-    A transaction is a list of tuples, one word each, in the order of `fields`. A word counts in a clock with `en`.
+    A transaction is a list of tuples, one word each, in the order of `fields`. A word counts in a clock with
+    `en`.
     """
 
     def __init__(self, dut, name, qualifier, fields):
@@ -72,7 +96,10 @@ class StreamMonitor(BusMonitor):
         handles = [(getattr(self.bus, field), field in self.unsigned) for field in self.fields]
         while True:
             await RisingEdge(self.clock)
-            if self.in_reset or not self.entity.en.value:
+            if self.in_reset:
+                left = 0
+                continue
+            if not self.entity.en.value:
                 continue
             clock += 1
             if qualifier.value:
@@ -81,10 +108,12 @@ class StreamMonitor(BusMonitor):
                 left = self.length
             if left:
                 left -= 1
-                self.words.append(
-                    tuple(int(h.value) if unsigned else h.value.to_signed() for h, unsigned in handles)
-                )
+                self.words.append(tuple(int(h.value) if unsigned else h.value.to_signed() for h, unsigned in handles))
                 self._recv(self.words[-1])
+
+    def forget(self):
+        self.words.clear()
+        self.starts.clear()
 
     @property
     def in_reset(self):
@@ -98,6 +127,7 @@ class Bench:
         self.dut, self.pause = dut, pause
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.clock, self.saturations = 0, 0  # clocks with en; values clipped
+        self.held = False
 
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
@@ -111,11 +141,19 @@ class Bench:
     async def _run(self):
         counts = hasattr(self.dut, "saturations")
         while True:
-            self.dut.en.value = int(self.random.random() >= self.pause)
+            self.dut.en.value = int(not self.held and self.random.random() >= self.pause)
             await RisingEdge(self.dut.clk)
             self.clock += int(self.dut.en.value)
-            if counts:
+            if counts and not self.dut.rst.value:
                 self.saturations += int(self.dut.saturations.value)
+
+    async def reset(self):
+        """One clock of reset, without en, so that nothing moves on by itself."""
+        self.held = True
+        self.dut.rst.value, self.dut.en.value = 1, 0
+        await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+        self.held, self.saturations = False, 0
 
     async def clocks(self, count):
         """Wait for `count` clocks with en."""
@@ -124,18 +162,35 @@ class Bench:
             await RisingEdge(self.dut.clk)
 
 
-async def check_bursts(dut, bursts, model, latency, *, in_fields, out_fields, gap=0, pause=0.0, settle=40):
+async def send_apart(bench, driver, words, gap):
+    """Send words (tuples) one by one, an idle clock before each with probability `gap`."""
+    for word in words:
+        while bench.random.random() < gap:
+            await bench.clocks(1)
+        await driver.send([word])
+
+
+async def check_bursts(dut, bursts, model, latency, *, in_fields, out_fields, gap=0, pause=0.0, interrupt=0, settle=40):
     """Send bursts (count, size, fields); compare what leaves with the model of what was seen going in.
 
-    `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the number of
-    clocks from each start in to its start out, or None where the core regroups bursts. Up to `gap` idle clocks lie
-    between bursts.
+    `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
+    number of clocks from each start in to its start out, or None where the core regroups bursts. Up to `gap`
+    idle clocks lie between bursts. With `interrupt` the device is first reset when so many words are in.
+
+    Returns the monitors of both sides.
     """
     bench = Bench(dut, pause)
+    size = bursts.shape[1]
     driver = StreamDriver(dut, "in", "start", in_fields)
-    source = StreamMonitor(dut, "in", "start", in_fields, length=bursts.shape[1])
-    sink = StreamMonitor(dut, "out", "start", out_fields, length=bursts.shape[1])
+    source = StreamMonitor(dut, "in", "start", in_fields, length=size)
+    sink = StreamMonitor(dut, "out", "start", out_fields, length=size)
     await bench.start()
+    if interrupt:
+        for sent in range(0, interrupt, size):
+            await driver.send(bursts[sent // size % len(bursts), : interrupt - sent].tolist())
+        await bench.reset()
+        source.forget()
+        sink.forget()
     for burst in bursts:
         if gap:
             await bench.clocks(bench.random.randint(0, gap))
@@ -145,11 +200,45 @@ async def check_bursts(dut, bursts, model, latency, *, in_fields, out_fields, ga
     np.testing.assert_array_equal(seen, bursts, "the driver sent something else")
     clipped = Monitor()
     expected = model(seen, clipped).reshape(-1, len(out_fields))
-    await bench.clocks((latency or len(expected)) + 2 * bursts.shape[1] + settle)
+    await bench.clocks((latency or len(expected)) + 2 * size + settle)
     np.testing.assert_array_equal(np.array(sink.words), expected)
     if latency is not None:
         measured = {after - before for before, after in zip(source.starts, sink.starts, strict=True)}
         assert measured == {latency}, f"latency {measured}, expected {latency}"
     total = clipped.saturations.total()
     assert bench.saturations == total, f"{bench.saturations} values clipped, {total} in the model"
-    return bench, sink
+    return source, sink
+
+
+async def drive(dut, stimuli, outputs, pause=0.0):
+    """Give the pins of each clock their values (one dict a clock); return what stood at all pins at its end.
+
+    For cores without a stream. Where there is an `en` it pauses at random, and only clocks with it count.
+
+    Returns
+    -------
+    dict of pin to list of LogicArray
+    """
+    chance = random.Random(cocotb.RANDOM_SEED)
+    has_en = hasattr(dut, "en")
+    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    for pin in ("rst", "en"):
+        if hasattr(dut, pin):
+            getattr(dut, pin).value = 1
+    await RisingEdge(dut.clk)
+    await RisingEdge(dut.clk)
+    if hasattr(dut, "rst"):
+        dut.rst.value = 0
+    seen = {pin: [] for pin in (*stimuli[0], *outputs)}
+    for clock in stimuli:
+        for pin, value in clock.items():
+            getattr(dut, pin).value = int(value)
+        paused = True
+        while paused:
+            paused = has_en and chance.random() < pause
+            if has_en:
+                dut.en.value = int(not paused)
+            await RisingEdge(dut.clk)
+        for pin, values in seen.items():
+            values.append(getattr(dut, pin).value)
+    return seen

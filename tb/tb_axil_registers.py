@@ -36,9 +36,7 @@ INPUTS = (
 )
 OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
-COUNTER_SIGNALS = dict(
-    zip(COUNTERS, ("frames_in", "frames_out", "frames_dropped", "saturations_count"), strict=True)
-)
+COUNTER_SIGNALS = dict(zip(COUNTERS, ("frames_in", "frames_out", "frames_dropped", "saturations_count"), strict=True))
 RANDOM_CLOCKS = 10_000
 
 

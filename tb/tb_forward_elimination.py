@@ -15,9 +15,7 @@ async def check(dut, amplitude, frames=3, **behaviour):
         return forward_elimination(x.reshape(-1, config.rows, config.columns), config, monitor)
 
     words = uniform((frames * config.rows, config.columns, 1), config.arithmetic_width, amplitude)
-    await check_bursts(
-        dut, words, model, FORWARD_ELIMINATION, in_fields=["data"], out_fields=["data"], **behaviour
-    )
+    await check_bursts(dut, words, model, FORWARD_ELIMINATION, in_fields=["data"], out_fields=["data"], **behaviour)
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")

@@ -33,9 +33,7 @@ async def stream_frames(dut):
     dut._log.info("go")
     dut.go.value = 1
     # Twice the clocks that gaps and stalls make likely: a pipeline that hangs ends with a failure.
-    clocks = int(
-        2 * (wanted["total_frames"] + 4) * wanted["pixels"] / (1 - wanted["gap"]) / (1 - wanted["stall"])
-    )
+    clocks = int(2 * (wanted["total_frames"] + 4) * wanted["pixels"] / (1 - wanted["gap"]) / (1 - wanted["stall"]))
     await with_timeout(RisingEdge(dut.done), clocks * CLOCK_NS, "ns")
     await ClockCycles(dut.clk, 4)
     counts = {

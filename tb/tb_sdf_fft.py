@@ -1,24 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
-"""sdf_fft against models.sdf_fft: codes, latency, saturations; bursts back to back and apart, with pauses."""
+"""sdf_fft against models.sdf_fft: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
 import cocotb
 import numpy as np
-from stream import check_bursts, parameters, uniform
+from stream import check_bursts, extremes, parameters, uniform
 
 from models.latency import sdf_fft_latency
 from models.sdf_fft import sdf_fft
 
+FIELDS = ["re", "im"]
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(gap=[0, 30], pause=[0.0, 0.3], amplitude=[0.3, 1.0])
-async def bursts(dut, gap, pause, amplitude):
-    size, width, coeff, inverse = parameters(dut, "Size", "Width", "CoeffWidth", "Inverse")
+
+async def check(dut, x, **behaviour):
+    width, coeff, inverse = parameters(dut, "Width", "CoeffWidth", "Inverse")
 
     def model(x, monitor):
         return np.stack(sdf_fft(x[..., 0], x[..., 1], bool(inverse), width, coeff, monitor), axis=-1)
 
-    x = uniform((5, size, 2), width, amplitude)
-    fields = ["re", "im"]
-    await check_bursts(
-        dut, x, model, sdf_fft_latency(size), in_fields=fields, out_fields=fields, gap=gap, pause=pause
-    )
+    latency = sdf_fft_latency(x.shape[1])
+    return await check_bursts(dut, x, model, latency, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0])
+async def bursts(dut, gap, pause, amplitude):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((5, size, 2), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def limits(dut):
+    size, width = parameters(dut, "Size", "Width")
+    _, sink = await check(dut, extremes(size, width, 2))
+    assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(out=[False, True])
+async def reset_in_mid_burst(dut, out):
+    size, width = parameters(dut, "Size", "Width")
+    interrupt = size // 2 + 3 + out * sdf_fft_latency(size)
+    await check(dut, uniform((2, size, 2), width), interrupt=interrupt)

@@ -11,7 +11,32 @@ from commands import simulator as simulation
 SEED = int(os.environ.get("SEED", "1"))
 
 
-@pytest.fixture(params=os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(","))
+SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
+
+
+def pytest_configure(config):
+    config.addinivalue_line(
+        "markers",
+        "structures(names, both=[..], icarus=[..]): the parameter sets of a test of RTL, as in parametrize; "
+        "those under `icarus` are built there alone, in 0.1 s each, where Verilator takes 5 s.",
+    )
+
+
+def pytest_generate_tests(metafunc):
+    """Every test that takes a simulator runs on each, but for what its `structures` leave to Icarus."""
+    if "simulator" not in metafunc.fixturenames:
+        return
+    mark = metafunc.definition.get_closest_marker("structures")
+    if mark is None:
+        metafunc.parametrize("simulator", SIMULATORS, indirect=True)
+        return
+    names, (both, icarus) = mark.args[0], (mark.kwargs["both"], mark.kwargs.get("icarus", []))
+    cases = [(name, *case) for name in SIMULATORS for case in both]
+    cases += [("icarus", *case) for case in icarus if "icarus" in SIMULATORS]
+    metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"])
+
+
+@pytest.fixture
 def simulator(request):
     return request.param
 
@@ -50,8 +75,6 @@ def run_tb(simulator, request):
         )
         if failed or not count:
             lines = [line for line in log.read_text().splitlines() if not line.startswith("make")]
-            pytest.fail(
-                f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False
-            )
+            pytest.fail(f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False)
 
     return run

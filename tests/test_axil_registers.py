@@ -10,8 +10,8 @@ SOURCES = ["register_map_pkg.sv", "axil_registers.sv"]
 
 def built(configuration: Configuration) -> dict[str, int]:
     return {
-        "Rows": configuration.size,
-        "Columns": configuration.size,
+        "Rows": configuration.rows,
+        "Columns": configuration.columns,
         "DataWidth": configuration.data_width,
         "GradientWidth": configuration.gradient.width,
         "GradientFraction": configuration.gradient.fraction,

@@ -29,8 +29,7 @@ def test_rtl(run_tb, choices):
     run_tb(
         "back_substitution",
         SOURCES,
-        {name: parameters[name] for name in NAMES}
-        | {"InWidth": config.data_width, "Lift": parameters["StoreDrop"]},
+        {name: parameters[name] for name in NAMES} | {"InWidth": config.data_width, "Lift": parameters["StoreDrop"]},
         roms=lambda folder: write_thomas(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},
     )

@@ -111,9 +111,7 @@ def test_flat_field_comes_before_the_average_and_is_clipped_after(tmp_path):
     image, reference = np.full((32, 32, 3), 60, np.uint8), np.full((32, 32, 3), 120, np.uint8)
     reference[:, ::2] = 40  # 128 * 60 / 40 = 192 beside 64: 128; averaged first it would be 96
     image[:16, :, 2] = 255
-    loaded = load_frames(
-        str(picture(tmp_path / "i.png", image)), (16, 16), str(picture(tmp_path / "r.png", reference))
-    )
+    loaded = load_frames(str(picture(tmp_path / "i.png", image)), (16, 16), str(picture(tmp_path / "r.png", reference)))
     assert (loaded.pixels[..., :2] == 128).all()
     assert (loaded.pixels[0, :8, :, 2] == 255).all()
 

@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.calibration import Calibration
+from models.calibration import Calibration, synthetic
 from models.divergence import divergence
 from models.reference import depth, eigenvalues, slopes, solve
+from models.scenes import dome, photograph
 
 
 def second_difference(z: np.ndarray, axis: int) -> np.ndarray:
@@ -61,3 +62,19 @@ def test_depth_is_the_chain_and_frames_do_not_mix():
     whole = depth(frames, calibration)
     for frame, z in zip(frames, whole, strict=True):
         np.testing.assert_allclose(z, solve(divergence(slopes(frame, calibration))), atol=1e-13)
+
+
+# A dome of 12 pixels' peak and 31 pixels' radius whose centre lies `centre` pixels from the left edge, at N = 128:
+# height kept, of the true one, by boundary. What lies outside the frame is not seen.
+@pytest.mark.parametrize(("centre", "dirichlet"), [(64, 1.0), (30, 1.0), (20, 0.90), (14, 0.73), (8, 0.47), (4, 0.26)])
+def test_height_of_a_contact_that_the_edge_cuts(centre, dirichlet):
+    whole = dome(128, 12.0)
+    row, column = np.unravel_index(whole.argmax(), whole.shape)
+    height = np.zeros_like(whole)
+    height[:, : 128 - (column - centre)] = whole[:, column - centre :]
+    frame = photograph(height)
+    area = np.s_[row - 1 : row + 2, centre - 1 : centre + 2]
+    for neumann, kept in ((False, dirichlet), (True, 1.0)):
+        z = depth(frame, synthetic(), neumann)
+        top, untouched = z[area].mean(), z[:, 108:].mean()
+        assert (top - untouched) / height[area].mean() == pytest.approx(kept, abs=0.02)

@@ -10,7 +10,9 @@ from skimage import io
 
 from commands import sim
 from models.calibration import load
+from models.configuration import COLUMNS, Configuration
 from models.latency import first_depth_latency, last_pixel_to_first_depth
+from models.scenes import render
 
 PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
 
@@ -30,40 +32,89 @@ def only(values):
     return values[0]
 
 
+@pytest.mark.parametrize("solver", COLUMNS)
 @pytest.mark.parametrize("size", [64, 128, 256])
-def test_every_grid_on_every_simulator(tmp_path, simulator, size):
-    report = run(tmp_path, f"N={size}", f"SIM={simulator}")
+def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
+    report = run(tmp_path, f"N={size}", f"SIM={simulator}", f"SOLVER={solver}")
     assert report["bit_exact"]
     assert report["registers_agree"]
-    assert only(report["first_depth_latency_cycles"]) == first_depth_latency(size)
-    assert first_depth_latency(size) <= 2 * size**2 + 16 * size < PUBLISHED_FIRST_DEPTH[size]
+    latency = first_depth_latency(Configuration(columns=size, solver=solver))
+    assert only(report["first_depth_latency_cycles"]) == latency
+    bar = 2 * size**2 + 16 * size if solver == "spectral" else size**2 + 8 * size + 64
+    assert latency <= bar < PUBLISHED_FIRST_DEPTH[size]
+    if solver == "tridiagonal":
+        assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * size + 64
 
 
-@pytest.mark.parametrize(("size", "percent"), [(64, 0.005), (128, 0.005), (256, 0.02)])
-def test_accuracy_and_rate(tmp_path, size, percent):
-    report = run(tmp_path, f"N={size}", "FRAMES=contacts")
+@pytest.mark.parametrize("boundary", sim.BOUNDARIES)
+@pytest.mark.parametrize(("rows", "columns", "chosen"), [(8, 16, "icarus"), (240, 256, "verilator")])
+def test_rectangles(tmp_path, rows, columns, boundary, chosen):
+    np.save(tmp_path / "frames.npy", render("contacts", columns).frames)
+    given = [f"FRAMES={tmp_path / 'frames.npy'}", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
+    report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
+    assert report["grid"] == [rows, columns]
+    assert only(report["frame_interval_cycles"][1:]) == rows * columns
+    assert np.load(tmp_path / "out" / "depth.npy").shape == (8, rows, columns)
+    assert max(report["rms_percent_of_peak"]) <= 0.06
+
+
+def test_rows_are_in_the_order_of_the_input(tmp_path):
+    depth = {}
+    for solver in COLUMNS:
+        report = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
+        depth[solver] = np.load(tmp_path / "out" / "depth.npy") * report["depth_lsb_mm"]
+    np.testing.assert_allclose(depth["spectral"], depth["tridiagonal"], atol=1e-3 * depth["spectral"].max())
+
+
+def test_the_largest_grid(tmp_path):
+    report = run(tmp_path, "N=1024", "SOLVER=tridiagonal")
+    assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * 1024 + 64
+
+
+# The bars in % of peak; Neumann twice that.
+@pytest.mark.parametrize(
+    ("solver", "boundary", "size", "data_width", "percent"),
+    [
+        ("spectral", "dirichlet", 64, 24, 0.005),
+        ("spectral", "dirichlet", 128, 24, 0.005),
+        ("spectral", "dirichlet", 256, 24, 0.02),
+        ("spectral", "neumann", 128, 24, 0.01),
+        ("tridiagonal", "dirichlet", 64, 24, 0.005),
+        ("tridiagonal", "dirichlet", 128, 24, 0.005),
+        ("tridiagonal", "dirichlet", 128, 27, 0.001),
+        ("tridiagonal", "neumann", 128, 24, 0.01),
+        ("tridiagonal", "neumann", 128, 27, 0.002),
+        ("tridiagonal", "dirichlet", 512, 27, 0.01),
+    ],
+)
+def test_accuracy_and_rate(tmp_path, solver, boundary, size, data_width, percent):
+    chosen = [f"SOLVER={solver}", f"BOUNDARY={boundary}", f"DATA_WIDTH={data_width}"]
+    report = run(tmp_path, f"N={size}", "FRAMES=contacts", *chosen)
+    latency = first_depth_latency(Configuration(columns=size, solver=solver))
     assert len(report["rms_percent_of_peak"]) >= 6
     assert np.mean(report["rms_percent_of_peak"]) <= percent
     assert max(report["rms_percent_of_peak"]) <= 3 * percent
-    assert only(report["first_depth_latency_cycles"]) == first_depth_latency(size)
+    assert only(report["first_depth_latency_cycles"]) == latency
     assert only(report["frame_interval_cycles"][1:]) == size**2
     assert report["frame_interval_cycles"][0] is None
     assert report["saturations"] == {}
-    assert all(latency > first_depth_latency(size) for latency in report["contact_latency_cycles"])
+    assert all(contact > latency for contact in report["contact_latency_cycles"])
     codes = np.load(tmp_path / "out" / "depth.npy")
     assert codes.dtype == np.int32
     assert codes.shape == (8, size, size)
 
 
+@pytest.mark.parametrize("solver", COLUMNS)
 @pytest.mark.parametrize("disturbance", [["GAPS=0.3"], ["STALLS=0.3"], ["GAPS=0.3", "STALLS=0.3"]])
-def test_gaps_and_stalls(tmp_path, disturbance):
-    quiet = run(tmp_path, "N=64", "FRAMES=contacts")
+def test_gaps_and_stalls(tmp_path, disturbance, solver):
+    quiet = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
     codes = np.load(tmp_path / "out" / "depth.npy")
-    report = run(tmp_path, "N=64", "FRAMES=contacts", *disturbance)
+    report = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}", *disturbance)
     np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), codes)
     if disturbance == ["GAPS=0.3"]:
-        assert only(report["last_pixel_to_first_depth_cycles"]) == last_pixel_to_first_depth(64)
-        assert only(quiet["last_pixel_to_first_depth_cycles"]) == last_pixel_to_first_depth(64)
+        expected = last_pixel_to_first_depth(Configuration(columns=64, solver=solver))
+        assert only(report["last_pixel_to_first_depth_cycles"]) == expected
+        assert only(quiet["last_pixel_to_first_depth_cycles"]) == expected
 
 
 def test_repeat_keeps_every_latency(tmp_path):
@@ -75,13 +126,15 @@ def test_repeat_keeps_every_latency(tmp_path):
     assert np.load(tmp_path / "out" / "depth.npy").shape == (20, 64, 64)
 
 
-def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path):
-    assert run(tmp_path, "N=64", "FRAMES=deep")["saturations"] == {}
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path, solver):
+    assert run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}")["saturations"] == {}
 
 
-def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path):
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path, solver):
     deepest = 16 * 15.232 / 64  # mm: the peak of `deep` at N = 64, a quarter of the grid
-    report = run(tmp_path, "N=64", "FRAMES=deep", f"DEPTH_RANGE={deepest / 2.05}")
+    report = run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}", f"DEPTH_RANGE={deepest / 2.05}")
     assert sum(report["saturations"].values()) > 0
     assert report["registers_agree"]  # the hardware counted the same number
     codes = np.load(tmp_path / "out" / "depth.npy")
@@ -157,15 +210,17 @@ BAD_INPUT = {
     "not a power of two": lambda t: "N=100",
     "N too small": lambda t: "N=8",
     "N too large": lambda t: "N=1024",
+    "a rectangle for the spectral solver": lambda t: "ROWS=24 COLS=32",
+    "too few rows": lambda t: "ROWS=4 COLS=16 SOLVER=tridiagonal",
+    "columns no power of two": lambda t: "COLS=24 ROWS=16 SOLVER=tridiagonal",
+    "boundary": lambda t: "BOUNDARY=periodic",
     "N no number": lambda t: "N=big",
     "solver": lambda t: "SOLVER=multigrid",
     "simulator": lambda t: "SIM=other",
     "calibration": lambda t: "CALIBRATION=other",
     "truncated calibration": lambda t: f"CALIBRATION={_cut(_calibration(t / 'c.npz'))}",
     "NaN": lambda t: f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), np.nan))}",
-    "unit of slopes": lambda t: (
-        f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), 1e6))}"
-    ),
+    "unit of slopes": lambda t: f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), 1e6))}",
     "data width": lambda t: "DATA_WIDTH=33",
     "coefficient width": lambda t: "COEFF_WIDTH=9",
     "width and format": lambda t: "DATA_WIDTH=12 N=512",

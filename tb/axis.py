@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: Apache-2.0
+"""AXI4-Stream: driver of each side, monitor that checks the rules, and video frames, whole and broken.
+
+A word is a tuple in the order of the bus's fields: data, last, user unless said otherwise.
+"""
+
+import random
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import cycle, repeat
+
+import cocotb
+from cocotb.triggers import RisingEdge
+from cocotb_bus.drivers import BusDriver
+from cocotb_bus.monitors import BusMonitor
+
+from models.frame_guard import Word
+
+VIDEO = ("data", "last", "user")
+
+# Profiles: generators of one bool a clock. For a sink True is ready; for a source True is a word offered.
+
+PROFILES = {
+    "none": lambda rng: repeat(True),
+    "one_in_four": lambda rng: cycle((True, True, True, False)),
+    "alternating": lambda rng: cycle((False, True)),
+    "long": lambda rng: cycle([True] * 150 + [False] * 200),
+    "random": lambda rng: (rng.random() >= 0.4 for _ in repeat(None)),
+}
+
+
+def profile(name: str, seed: int = 0) -> Iterator[bool]:
+    """A profile by its name; two that are random differ by `seed`, and from run to run by cocotb's."""
+    return PROFILES[name](random.Random(f"{cocotb.RANDOM_SEED} {seed}"))
+
+
+def _signals(fields: Sequence[str], prefix: str) -> dict[str, str]:
+    return {name: prefix + name for name in ("valid", "ready", *fields)}
+
+
+class AxisSource(BusDriver):
+    """Sends words, each held until it is taken. In a transaction None is a clock without a word.
+
+    `offers` is a profile: when it is False no new word is offered. Pins are "<name>_<prefix>valid" and so on.
+    """
+
+    def __init__(self, dut, name, fields=VIDEO, prefix="", offers=None):
+        self._signals = _signals(fields, prefix)
+        self.offers = offers or repeat(True)
+        super().__init__(dut, name, dut.clk)
+        self.pins = [getattr(self.bus, field) for field in fields]
+        self.aborted = False
+        self.bus.valid.value = 0
+
+    def abort(self) -> None:
+        """Withdraw what is offered and forget the rest of the transaction: for resets only."""
+        self.aborted = True
+        self.clear()
+        self.bus.valid.value = 0
+
+    async def _driver_send(self, transaction: Iterable[Sequence[int] | None], sync: bool = True) -> None:
+        valid, ready, edge = self.bus.valid, self.bus.ready, RisingEdge(self.clock)
+        self.aborted = False
+        for word in transaction:
+            while word is None or not next(self.offers):
+                valid.value = 0
+                await edge
+                if self.aborted:
+                    return
+                if word is None:
+                    break
+            if word is None:
+                continue
+            for pin, value in zip(self.pins, word, strict=True):
+                pin.value = int(value)
+            valid.value = 1
+            await edge
+            while not ready.value and not self.aborted:
+                await edge
+            if self.aborted:
+                return
+        valid.value = 0
+
+
+class AxisSink(BusDriver):
+    """Drives ready from a profile, whether there is something valid or not; `stall(profile)` changes it."""
+
+    def __init__(self, dut, name, prefix="", accepts=None):
+        self._signals = {"ready": prefix + "ready"}
+        super().__init__(dut, name, dut.clk)
+        self.stall(accepts or repeat(True))
+        self.append(None)
+
+    def stall(self, accepts: Iterable[bool]) -> None:
+        self.accepts = iter(accepts)
+
+    async def _driver_send(self, transaction: None, sync: bool = True) -> None:
+        while True:
+            self.bus.ready.value = int(next(self.accepts))
+            await RisingEdge(self.clock)
+
+
+class AxisMonitor(BusMonitor):
+    """Keeps what passes, and checks the rules: a word once valid stays the same until ready; none in reset.
+
+    valid and ready are never unknown, nor is a field while valid is high (on Icarus X raises where it is
+    read). Values are unsigned.
+
+    Attributes
+    ----------
+    words : list of tuple
+        As they were taken. With `silence`, also None for each clock in which nothing was offered (and the pin
+        that `silence` names, if it is a string, was high).
+    taken, offered : list of int
+        For each entry of `words`, the clock of its handshake, and the first in which it stood on the pins.
+    """
+
+    def __init__(self, dut, name, fields=VIDEO, prefix="", silence=False):
+        self._signals = _signals(fields, prefix)
+        self.clock_count = 0
+        self.silence = silence
+        self.forget()
+        super().__init__(dut, name, dut.clk)
+        self.pins = [getattr(self.bus, field) for field in fields]
+        self.make = Word._make if tuple(fields) == VIDEO else tuple
+
+    def forget(self) -> None:
+        self.words, self.taken, self.offered = [], [], []
+
+    async def _monitor_recv(self):
+        valid, ready, edge = self.bus.valid, self.bus.ready, RisingEdge(self.clock)
+        reset, was_reset = self.entity.rst, True  # so that nothing is read before the first edge
+        enable = getattr(self.entity, self.silence) if isinstance(self.silence, str) else None
+        held, since = None, 0
+        while True:
+            await edge
+            clock = self.clock_count = self.clock_count + 1
+            if reset.value:
+                assert clock == 1 or not was_reset or not valid.value, f"{self}: valid in reset"
+                was_reset, held = True, None
+                continue
+            if not valid.value:
+                assert held is None, f"{self}: clock {clock}: valid fell before ready came"
+                bool(ready.value)  # raises if it is unknown
+                if self.silence and (enable is None or enable.value):
+                    self.words.append(None)
+                    self.taken.append(clock)
+                    self.offered.append(clock)
+                was_reset = False
+                continue
+            assert not was_reset, f"{self}: clock {clock}: valid right after reset"
+            word = self.make(int(pin.value) for pin in self.pins)
+            if held is None:
+                since = clock
+            else:
+                assert word == held, f"{self}: clock {clock}: {held} became {word} before ready came"
+            held = word
+            if ready.value:
+                held = None
+                self.words.append(word)
+                self.taken.append(clock)
+                self.offered.append(since)
+                self._recv(word)
+
+
+# Video frames.
+
+
+def video(pixels: Iterable[int], columns: int) -> list[Word]:
+    """The words of a frame of pixels in raster order."""
+    return [
+        Word(int(pixel), int(position % columns == columns - 1), int(position == 0))
+        for position, pixel in enumerate(pixels)
+    ]
+
+
+def positions(fault: str, rows: int, columns: int) -> list[int]:
+    """Pixels of a frame at which it can be broken in this way."""
+    pixels = range(rows * columns)
+    return {
+        "row_short": [p for p in pixels if p % columns < columns - 1],
+        "row_long": [p for p in pixels if p % columns == columns - 1],
+        "start_missing": [0],
+        "start_early": list(pixels[1:]),
+        "timed_out": list(pixels[1:]),
+    }[fault]
+
+
+def broken(words: Sequence[Word], fault: str, position: int, columns: int, timeout: int = 0) -> list[Word | None]:
+    """A frame with one fault at a position, as a camera would go on from there.
+
+    A row that ends early is followed by the next; one that is too long has one more pixel; a frame cut short
+    by an early start ends before the position; one given up after `timeout` clocks goes on after them.
+    """
+    before, word, after = list(words[:position]), words[position], list(words[position + 1 :])
+    if fault == "row_short":
+        missing = columns - 1 - position % columns
+        return [*before, word._replace(last=1), *after[missing:]]
+    if fault == "row_long":
+        return [*before, word._replace(last=0), word._replace(user=0), *after]
+    if fault == "start_missing":
+        return [word._replace(user=0), *after]
+    if fault == "start_early":
+        return before
+    assert fault == "timed_out", fault
+    return [*before, *[None] * (timeout + 1), word, *after]

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""dst_forward against models.dst_forward: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+import cocotb
+import numpy as np
+from stream import check_bursts, extremes, parameters, uniform
+
+from models.dst_forward import dst_forward
+from models.latency import dst_forward_latency
+
+
+async def check(dut, x, **behaviour):
+    input_drop, width, coeff, output_drop, out_width = parameters(
+        dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth"
+    )
+
+    def model(x, monitor):
+        return dst_forward(x[..., 0], input_drop, width, coeff, output_drop, out_width, monitor)
+
+    latency = dst_forward_latency(x.shape[1])
+    return await check_bursts(dut, x, model, latency, in_fields=["data"], out_fields=["data"], **behaviour)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0])
+async def bursts(dut, gap, pause, amplitude):
+    size, width = parameters(dut, "Size", "InWidth")
+    await check(dut, uniform((5, size, 1), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut):
+    size, width = parameters(dut, "Size", "InWidth")
+    _, sink = await check(dut, extremes(size, width))
+    assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(out=[False, True])
+async def reset_in_mid_burst(dut, out):
+    size, width = parameters(dut, "Size", "InWidth")
+    interrupt = size // 2 + 3 + out * dst_forward_latency(size)
+    await check(dut, uniform((2, size, 1), width), interrupt=interrupt)

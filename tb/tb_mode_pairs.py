@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""mode_pairs against models.mode_pairs: codes, latency; gaps, pauses, reset."""
+
+import cocotb
+import numpy as np
+from stream import check_bursts, parameters, uniform
+
+from models.latency import mode_pairs_latency
+from models.mode_pairs import mode_pairs
+
+
+async def check(dut, x, **behaviour):
+    def model(x, monitor):
+        return np.stack(mode_pairs(x[..., 0]), axis=-1)
+
+    await check_bursts(
+        dut,
+        x,
+        model,
+        mode_pairs_latency(x.shape[1]),
+        in_fields=["mode"],
+        out_fields=["mode", "mirrored"],
+        **behaviour,
+    )
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
+async def bursts(dut, gap, pause):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((6, size, 1), width), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(quarters=[1, 2, 3, 5])
+async def reset_in_mid_burst(dut, quarters):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((2, size, 1), width), interrupt=quarters * size // 4 + 1)

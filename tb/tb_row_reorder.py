@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""row_reorder against its model: places, latency from the last word; gaps inside rows, pauses, reset."""
+
+import cocotb
+import numpy as np
+from stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
+
+from models.latency import ROW_REORDER
+from models.row_reorder import row_reorder
+
+ROWS = 7
+
+
+async def check(dut, gap=0.0, pause=0.0, interrupt=0):
+    size, to_burst = parameters(dut, "Size", "ToBurst")
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", ["data"])
+    source = StreamMonitor(dut, "in", "valid", ["data"])
+    sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
+    await bench.start()
+    words = np.arange(1, ROWS * size + 1).reshape(-1, 1).tolist()  # each stands for its place
+    if interrupt:
+        await send_apart(bench, driver, words[-interrupt:], gap)
+        await bench.reset()
+        source.forget()
+        sink.forget()
+    await send_apart(bench, driver, words, gap)
+    await bench.clocks(ROW_REORDER + size + 4)
+
+    assert source.words == [tuple(word) for word in words], "the driver sent something else"
+    rows = np.array(source.words).reshape(ROWS, size)
+    np.testing.assert_array_equal(np.array(sink.words).reshape(rows.shape), row_reorder(rows, bool(to_burst)))
+    ends = source.starts[size - 1 :: size]
+    assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [ROW_REORDER] * ROWS
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
+async def rows(dut, gap, pause):
+    await check(dut, gap, pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(eighths=[3, 8, 13])  # half in, just complete, half out
+async def reset_in_mid_row(dut, eighths):
+    (size,) = parameters(dut, "Size")
+    await check(dut, interrupt=eighths * size // 8)

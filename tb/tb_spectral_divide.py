@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""spectral_divide against its model: whole frames, so all positions; gaps, pauses, extremes, reset."""
+
+import cocotb
+import numpy as np
+from stream import check_bursts, configuration, extremes, parameters, uniform
+
+from models.latency import SPECTRAL_DIVIDE
+from models.spectral_divide import spectral_divide
+
+
+async def check(dut, x, **behaviour):
+    config = configuration()
+
+    def model(x, monitor):
+        return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
+
+    return await check_bursts(dut, x, model, SPECTRAL_DIVIDE, in_fields=["data"], out_fields=["data"], **behaviour)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), amplitude=[0.001, 1.0])
+async def frames(dut, gap, pause, amplitude):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((3 * size, size, 1), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut):
+    """Each kind of burst fills a frame of its own: every position sees it, and the lowest modes clip."""
+    size, width = parameters(dut, "Size", "Width")
+    _, sink = await check(dut, np.repeat(extremes(size, width), size, axis=0))
+    assert not np.any(sink.words[: size * size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(halves=[1, 3])
+async def reset_in_mid_frame(dut, halves):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((size, size, 1), width, 0.01), interrupt=halves * size * size // 2 + 5)

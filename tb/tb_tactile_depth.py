@@ -1,0 +1,655 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tactile_depth against its models, at its pins.
+
+Whatever a test sends, `Pipeline.check` then feeds the models with what the monitor saw on s_axis and compares
+every code, side-band, latency, counter and status bit; `contact` is compared in every clock.
+"""
+
+import os
+import random
+from itertools import pairwise, product, repeat
+
+import cocotb
+import numpy as np
+from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, profile, video
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+from stream import CLOCK_NS, configuration
+from tb_axil_registers import master_of, response_of
+
+from models.axil_registers import WORD, Response
+from models.calibration import synthetic
+from models.divergence import divergence
+from models.frame_guard import FAULTS, frame_guard
+from models.gradient_lookup import gradient_codes, gradient_lookup
+from models.latency import first_depth_latency, last_pixel_to_first_depth
+from models.register_map import MAP, REGISTERS
+from models.round_saturate import Monitor
+from models.tactile_depth import solve, top_parameters
+from models.threshold_comparator import ThresholdComparator
+
+OFFSET = {register.name: register.offset for register in MAP}
+STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
+STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
+GREEN, BLUE, RED = 0, 8, 16  # lowest bits of the colours in a word
+SKID_WORDS = 2  # that a stalled output holds
+
+
+def pixel(red, green, blue):
+    return int(red) << RED | int(green) << GREEN | int(blue) << BLUE
+
+
+def colours(pixels):
+    """Words of pixels to uint8 (..., 3), RGB."""
+    words = np.asarray(pixels)
+    return np.stack([words >> low & 255 for low in (RED, GREEN, BLUE)], axis=-1).astype(np.uint8)
+
+
+class Pipeline:
+    """The device, driven and watched at its pins."""
+
+    table = None  # slope codes in the gradient table: it survives resets, so it survives a test
+
+    def __init__(self, dut, offers="none", accepts="none", timeout=0):
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.random = dut, random.Random(cocotb.RANDOM_SEED)
+        self.config = configuration()
+        bits = self.config.bits_per_channel
+        self.rows, self.columns = self.config.rows, self.config.columns
+        self.pixels = self.rows * self.columns
+        if Pipeline.table is None:
+            Pipeline.table = gradient_codes(synthetic(bits), self.config)
+        self.timeout, self.stalled = timeout, accepts != "none"
+        dut.rst.value = 1
+        self.source = AxisSource(dut, "s_axis", prefix="t", offers=profile(offers, 1))
+        self.sink = AxisSink(dut, "m_axis", prefix="t", accepts=profile(accepts, 2))
+        self.master = master_of(dut)
+        self.into = AxisMonitor(dut, "s_axis", prefix="t", silence=bool(timeout))
+        self.out = AxisMonitor(dut, "m_axis", prefix="t")
+        self.comparator = ThresholdComparator()
+        self.contacts = []  # clocks in which contact rose
+        self.expect_reset_values()
+
+    async def start(self):
+        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        cocotb.start_soon(self.watch_contact())
+        await self.reset(3)
+        if self.timeout:
+            await self.write("TIMEOUT", self.timeout)
+
+    def expect_reset_values(self):
+        self.counters = dict.fromkeys(("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS"), 0)
+        self.sticky, self.latency = set(), 0
+
+    async def reset(self, clocks):
+        """Reset; what was sent before no longer counts."""
+        self.source.abort()
+        self.dut.rst.value = 1
+        await ClockCycles(self.dut.clk, clocks)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)  # AXI: the first edge out of reset comes before the first word
+        self.forget()
+        self.expect_reset_values()
+
+    def forget(self):
+        self.into.forget()
+        self.out.forget()
+        self.contacts.clear()
+
+    async def watch_contact(self):
+        """contact is what the beats up to the clock before make of it; thresholds as the registers say."""
+        dut, model, edge = self.dut, self.comparator, RisingEdge(self.dut.clk)
+        await edge
+        clock, was = 1, False
+        while True:
+            await edge
+            clock += 1
+            contact = bool(dut.contact.value)
+            if dut.rst.value:
+                model.reset()
+                was = False
+                continue
+            assert contact == model.contact, f"contact is {contact} in clock {clock}"
+            if contact and not was:
+                self.contacts.append(clock)
+            was = contact
+            if dut.m_axis_tvalid.value and dut.m_axis_tready.value:
+                threshold, hold = dut.threshold.value.to_signed(), bool(dut.hold_contact.value)
+                model.beat(self.signed(dut.m_axis_tdata.value), bool(dut.m_axis_tuser.value), threshold, hold)
+
+    def signed(self, data):
+        width = 8 * ((self.config.data_width + 7) // 8)
+        return (int(data) ^ 1 << width - 1) - (1 << width - 1)
+
+    # Registers.
+
+    async def write(self, name, value):
+        return await response_of(self.master.write(OFFSET[name], value & WORD))
+
+    async def read(self, name):
+        return int(await self.master.read(OFFSET[name]))
+
+    async def write_bin(self, index, slopes):
+        """Write one bin of the gradient table; how its last write is answered."""
+        for name, value in (("TABLE_INDEX", index), ("TABLE_GX", slopes[0])):
+            assert await self.write(name, int(value)) == Response.OKAY
+        return await self.write("TABLE_GY", int(slopes[1]))
+
+    async def write_table(self, table):
+        """Write all bins, one after another as they come."""
+        await self.write("TABLE_INDEX", 0)
+        for index, (gx, gy) in enumerate(table.tolist()):
+            await self.write("TABLE_GX", gx)
+            assert await self.write("TABLE_GY", gy) == Response.OKAY, f"refused at bin {index}"
+        assert await self.read("TABLE_INDEX") == 0, "it does not wrap at the end of the table"
+        Pipeline.table = table.copy()
+
+    # Frames.
+
+    def frame(self):
+        """Words of a frame of random colours."""
+        return video((self.random.getrandbits(24) for _ in range(self.pixels)), self.columns)
+
+    def frame_of(self, wanted):
+        """Words of a frame whose slopes are those of the table nearest to wanted, (rows, columns, 2)."""
+        slopes = self.table * self.config.gradient_lsb
+        bins = ((wanted.reshape(-1, 1, 2) - slopes) ** 2).sum(axis=-1).argmin(axis=1)
+        bits = self.config.bits_per_channel
+        parts = [(bins >> shift & (1 << bits) - 1) << 8 - bits for shift in (2 * bits, bits, 0)]
+        return video((pixel(*rgb) for rgb in zip(*parts, strict=True)), self.columns)
+
+    def pressed(self, slope=0.5):
+        """Words of a frame with a pyramid in it: up one side and down the other along both axes."""
+        along, down = (np.where(np.arange(n) < n // 2, slope, -slope) for n in (self.columns, self.rows))
+        return self.frame_of(np.stack(np.meshgrid(along, down), axis=-1))
+
+    def model(self, frames):
+        """Depth codes (frames, rows, columns) and the number of values clipped."""
+        if not frames:
+            return np.zeros((0, self.rows, self.columns), np.int64), 0
+        rgb = colours(frames).reshape(-1, self.rows, self.columns, 3)
+        monitor = Monitor()
+        slopes = gradient_lookup(rgb, self.table, self.config.bits_per_channel)
+        return solve(divergence(slopes, self.config.neumann), self.config, monitor), monitor.saturations.total()
+
+    async def send(self, *streams):
+        await self.source.send([word for stream in streams for word in stream])
+
+    async def idle(self):
+        """Wait until no frame is in flight."""
+        for _ in range(400 * self.pixels // 64):
+            if not STATUS.unpack(await self.read("STATUS"))["busy"]:
+                return
+        raise AssertionError("busy does not end")
+
+    async def check(self, counters=True):
+        """Let everything drain, then compare it with the models. The source must be idle.
+
+        Returns
+        -------
+        Codes of the frames that left, int64 (frames, rows, columns).
+        """
+        await RisingEdge(self.dut.clk)  # the monitor may see the last word after the test does
+        guarded = frame_guard(self.into.words, self.rows, self.columns, self.timeout)
+        assert not guarded.open, "not the stream it was meant to be: its last frame is not complete"
+        codes, clipped = self.model([frame.pixels for frame in guarded.frames])
+        good = [index for index, frame in enumerate(guarded.frames) if not frame.bad]
+        await self.idle()
+        waited = 0
+        while len(self.out.words) < len(good) * self.pixels and waited < 100 * SKID_WORDS * self.columns:
+            await RisingEdge(self.dut.clk)
+            waited += 1
+        await ClockCycles(self.dut.clk, 4 * self.columns)
+
+        beats = self.out.words
+        assert len(beats) == len(good) * self.pixels, f"{len(beats)} beats left, of {len(good)} good frames"
+        got = np.array([self.signed(beat.data) for beat in beats], np.int64).reshape(-1, self.rows, self.columns)
+        for index, (have, want) in enumerate(zip(got, codes[good], strict=True)):
+            np.testing.assert_array_equal(have, want, f"codes of frame {index} to leave")
+        for place, beat in enumerate(beats):
+            assert beat.user == (place % self.pixels == 0), f"tuser of beat {place}"
+            assert beat.last == (place % self.columns == self.columns - 1), f"tlast of beat {place}"
+
+        first_depths = self.out.offered[:: self.pixels]
+        for index, depth in zip(good, first_depths, strict=True):
+            frame = guarded.frames[index]
+            self.latency = depth - self.into.taken[frame.first]
+            if not self.stalled:
+                drained = depth - self.into.taken[frame.last]
+                assert drained == last_pixel_to_first_depth(self.config), f"last pixel to first depth: {drained}"
+        self.counters["FRAMES_IN"] += len(good)
+        self.counters["FRAMES_OUT"] += len(good)
+        self.counters["FRAMES_DROPPED"] += len(guarded.faults)
+        self.counters["SATURATIONS"] += clipped
+        self.sticky |= {STICKY.get(fault, fault) for fault in guarded.faults}
+        self.sticky |= {"saturation"} if clipped else set()
+        await self.check_registers(counters)
+        self.faults, self.first_depths = guarded.faults, first_depths
+        self.sent = [(self.into.taken[f.first], self.into.taken[f.last]) for f in guarded.frames]
+        self.forget()
+        return got
+
+    async def check_registers(self, counters=True):
+        """Counters, sticky bits, busy, contact and the latency that the hardware counted."""
+        if counters:
+            have = {name: await self.read(name) for name in self.counters}
+            assert have == self.counters, f"counters are {have}, should be {self.counters}"
+        status = STATUS.unpack(await self.read("STATUS"))
+        assert not status.pop("busy"), "busy after everything left"
+        assert status.pop("contact") == self.comparator.contact
+        bits = {name for name, value in status.items() if value}
+        assert bits == self.sticky, f"sticky bits {bits}, should be {self.sticky}"
+        latency = await self.read("FIRST_DEPTH_LATENCY")
+        assert latency == self.latency, f"FIRST_DEPTH_LATENCY is {latency}, on the pins it was {self.latency}"
+
+
+async def started(dut, **arguments):
+    pipeline = Pipeline(dut, **arguments)
+    await pipeline.start()
+    return pipeline
+
+
+TEST = cocotb.test(timeout_time=3, timeout_unit="ms")
+
+
+@TEST
+async def the_configuration_is_that_of_the_models(dut):
+    """Every parameter that the models derive is the device's."""
+    pipeline = await started(dut)
+    derived = top_parameters(pipeline.config)
+    device = {name: getattr(dut, name).value.to_signed() for name in derived}
+    assert device == derived
+    assert await pipeline.read("GRID") == REGISTERS["GRID"].pack(rows=pipeline.rows, columns=pipeline.columns)
+
+
+@TEST
+async def one_frame(dut):
+    """It drains by itself, nothing follows; latencies are those of models.latency."""
+    pipeline = await started(dut)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+    assert pipeline.latency == first_depth_latency(pipeline.config)
+    await pipeline.idle()
+
+
+@TEST
+async def nothing_unknown(dut):
+    """Handshakes, side-bands and contact are 0 or 1 from the second clock after reset on, valid or not."""
+    pipeline = await started(dut, accepts="random")
+    await RisingEdge(dut.clk)
+    sending = cocotb.start_soon(pipeline.send(pipeline.frame()))
+    names = "s_axis_tready m_axis_tvalid m_axis_tlast m_axis_tuser contact s_axil_awready s_axil_wready"
+    pins = [getattr(dut, pin) for pin in f"{names} s_axil_bvalid s_axil_arready s_axil_rvalid".split()]
+    for _ in range(first_depth_latency(pipeline.config) + pipeline.pixels):
+        await RisingEdge(dut.clk)
+        for pin in pins:
+            assert pin.value.is_resolvable, f"{pin._name} is {pin.value}"
+    await sending
+    await pipeline.check()
+
+
+@TEST
+async def back_to_back(dut):
+    """One frame every N^2 clocks exactly, and every latency the same."""
+    pipeline = await started(dut)
+    frames = 6
+    sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(frames))))
+    counted = set()
+    while len(pipeline.out.words) < (frames - 1) * pipeline.pixels:
+        counted.add(await pipeline.read("FIRST_DEPTH_LATENCY"))
+    assert counted == {0, first_depth_latency(pipeline.config)}, "counted by the hardware, over all frames"
+    await sending
+    await pipeline.check()
+    (first, _), *_, (_, last) = pipeline.sent
+    assert last - first == frames * pipeline.pixels - 1, "the input was not taken at one pixel a clock"
+    latencies = {d - first for d, (first, _) in zip(pipeline.first_depths, pipeline.sent, strict=True)}
+    assert latencies == {first_depth_latency(pipeline.config)}
+    intervals = {after - before for before, after in pairwise(pipeline.first_depths)}
+    assert intervals == {pipeline.pixels}
+
+
+@TEST
+@cocotb.parametrize(offers=["none", "random", "long"], accepts=list(PROFILES))
+async def gaps_and_stalls(dut, offers, accepts):
+    """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
+    pipeline = await started(dut, offers=offers, accepts=accepts)
+    await pipeline.send(*(pipeline.frame() for _ in range(2 if accepts == "none" else 5)))
+    await pipeline.check()
+
+
+@TEST
+async def a_sink_that_waits_for_long(dut):
+    """The input stops; then everything comes, and a frame sent after it is timed as ever."""
+    pipeline = await started(dut)
+    pipeline.stalled = True
+    pipeline.sink.stall(repeat(False))
+    frames = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(6))))
+    await ClockCycles(dut.clk, 5 * pipeline.pixels)
+    taken = len(pipeline.into.words)
+    await ClockCycles(dut.clk, 2 * pipeline.pixels)
+    assert len(pipeline.into.words) == taken < 6 * pipeline.pixels, "the input did not stop"
+    pipeline.sink.stall(repeat(True))
+    await frames
+    await pipeline.check()
+    pipeline.stalled = False
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+    assert pipeline.latency == first_depth_latency(pipeline.config)
+
+
+@TEST
+@cocotb.parametrize(accepts=["none", "random"])
+async def contact(dut, accepts):
+    """Raised by the deciding beat, cleared by the next frame's first, held by its bit."""
+    pipeline = await started(dut, accepts=accepts)
+    pressed, flat = pipeline.pressed(), video([pixel(135, 135, 135)] * pipeline.pixels, pipeline.columns)
+    codes, _ = pipeline.model([[word.data for word in words] for words in (pressed, flat)])
+    flat_peak, peak = int(codes[1].max()), int(codes[0].max())
+    assert flat_peak < peak, "a poor test: pressing is no deeper than not pressing"
+
+    await pipeline.send(pressed)
+    await pipeline.check()
+    assert not pipeline.comparator.contact, "raised by the threshold after reset"
+
+    await pipeline.write("THRESHOLD", peak)
+    await pipeline.send(pressed)
+    await pipeline.check()
+    assert not pipeline.comparator.contact, "raised by a depth equal to the threshold"
+
+    await pipeline.write("THRESHOLD", peak - 1)
+    await pipeline.send(pressed)
+    await pipeline.idle()
+    while len(pipeline.out.words) < pipeline.pixels:
+        await RisingEdge(dut.clk)
+    await ClockCycles(dut.clk, 2)
+    deciding = int(np.argmax(codes[0]))
+    assert pipeline.contacts == [pipeline.out.taken[deciding] + 1]
+    await pipeline.check()
+    assert dut.contact.value
+
+    await pipeline.send(flat)
+    await pipeline.check()
+    assert not dut.contact.value
+
+    await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
+    await pipeline.send(pressed, flat, flat)
+    await pipeline.check()
+    assert dut.contact.value, "not held"
+    await pipeline.write("CONTROL", 0)
+    await pipeline.send(flat)
+    await pipeline.check()
+    assert not dut.contact.value
+
+    await pipeline.send(pressed, flat, pressed)
+    await pipeline.check()
+    assert dut.contact.value
+
+
+def places(pipeline, fault):
+    """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
+    size, pixels = pipeline.columns, pipeline.pixels
+    return {
+        "row_short": [0, size - 2, 5 * size + 3, pixels - size, pixels - 2],
+        "row_long": [size - 1, 6 * size - 1, pixels - 1],
+        "start_missing": [0],
+        "start_early": [1, 2, size - 1, size, 7 * size + 5, pixels - 1],
+        "timed_out": [1, size, 9 * size + 1, pixels - 1],
+    }[fault]
+
+
+@TEST
+@cocotb.parametrize(fault=FAULTS, accepts=["none", "random"])
+async def malformed(dut, fault, accepts):
+    """A, B, A back to back, B broken: B never leaves nor raises contact, both A come out the same."""
+    timeout = 60 if fault == "timed_out" else 0
+    pipeline = await started(dut, accepts=accepts, timeout=timeout)
+    flat = video([pixel(135, 135, 135)] * pipeline.pixels, pipeline.columns)
+    pressed = pipeline.pressed()
+    codes, _ = pipeline.model([[word.data for word in words] for words in (pressed, flat)])
+    await pipeline.write("THRESHOLD", (int(codes[0].max()) + int(codes[1].max())) // 2)
+    a = video((word.data ^ pipeline.random.getrandbits(3) for word in flat), pipeline.columns)
+    for position in places(pipeline, fault)[: 2 if pipeline.stalled else None]:
+        b = broken(pressed, fault, position, pipeline.columns, timeout)
+        await pipeline.send(a, b, a)
+        left = await pipeline.check()
+        assert pipeline.faults == [fault], f"{fault} at {position}: {pipeline.faults}"
+        assert len(left) == 2
+        np.testing.assert_array_equal(left[0], left[1])
+        assert not pipeline.comparator.contact, f"{fault} at {position} raised contact"
+
+    bit = STATUS.pack(**{STICKY.get(fault, fault): 1})
+    await pipeline.write("STATUS", WORD ^ bit)
+    assert await pipeline.read("STATUS") == bit
+    await pipeline.write("STATUS", bit)
+    assert await pipeline.read("STATUS") == 0
+    pipeline.sticky.clear()
+    await pipeline.write("CONTROL", CONTROL.pack(clear_counters=1))
+    pipeline.counters = dict.fromkeys(pipeline.counters, 0)
+    await pipeline.send(a)
+    await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(accepts=["none", "random"])
+async def every_fault_in_a_row(dut, accepts):
+    """Broken frames between good ones and right after one another, all in flight together."""
+    pipeline = await started(dut, accepts=accepts)
+    faults = [fault for fault in FAULTS if fault != "timed_out"]
+    streams = []
+    for fault in (*faults, *reversed(faults)):
+        for position in places(pipeline, fault)[:2]:
+            streams.append(broken(pipeline.frame(), fault, position, pipeline.columns))
+        streams.append(pipeline.frame())
+    await pipeline.send(*streams)
+    await pipeline.check()
+    assert set(pipeline.faults) == set(faults)
+
+
+@TEST
+async def starts_one_after_another(dut):
+    """Each start of frame breaks the frame before it; the last of them is kept, its latency its own."""
+    pipeline = await started(dut)
+    for count in (1, 2, 3, 5):
+        starts = [word for _ in range(count) for word in pipeline.frame()[:1]]
+        await pipeline.send(pipeline.frame(), starts, pipeline.frame())
+        await pipeline.check()
+        assert pipeline.faults == ["start_early"] * count
+
+
+@TEST
+async def words_before_the_first_frame(dut):
+    """Dropped and counted as one; the frame after them is right."""
+    pipeline = await started(dut)
+    await pipeline.send([word._replace(user=0) for word in pipeline.frame()[:37]], pipeline.frame())
+    await pipeline.check()
+    assert pipeline.faults == ["start_missing"]
+
+
+@TEST
+async def silence(dut):
+    """Without the time-out register a frame is waited for; with it, for as many clocks as it says."""
+    pipeline = await started(dut)
+    frame = pipeline.frame()
+    await pipeline.send(frame[:100], [None] * 10 * pipeline.pixels, frame[100:])
+    assert len(await pipeline.check()) == 1
+    timeout = 50
+    pipeline.timeout = timeout
+    pipeline.into.silence = True
+    await pipeline.write("TIMEOUT", timeout)
+    for clocks, waited in ((timeout, True), (timeout + 1, False), (10 * timeout, False)):
+        await pipeline.send(frame[:100], [None] * clocks, frame[100:], [None] * 3 * timeout, frame)
+        assert len(await pipeline.check()) == 1 + waited, f"{clocks} silent clocks, TIMEOUT {timeout}"
+
+
+@TEST
+@cocotb.parametrize(offers=["none", "random"], accepts=["none", "alternating", "random"])
+async def random_streams(dut, offers, accepts):
+    """Good and broken frames, stray words and pauses at random."""
+    pipeline = await started(dut, offers=offers, accepts=accepts)
+    rng = pipeline.random
+    for _ in range(12):
+        words = pipeline.frame()
+        for _ in range(rng.choice((0, 0, 0, 1, 2))):
+            place = rng.randrange(len(words))
+            flip = rng.choice(("last", "user"))
+            match rng.randrange(4):
+                case 0:
+                    words[place] = words[place]._replace(**{flip: 1 - getattr(words[place], flip)})
+                case 1:
+                    del words[place : place + rng.randint(1, 40)]
+                case 2:
+                    words[place:place] = words[place : place + rng.randint(1, 40)]
+                case 3:
+                    words = words[: place + 1]
+        await pipeline.send(words, [None] * rng.choice((0, 0, 1, 30)))
+    await pipeline.send(pipeline.frame()[:1], pipeline.frame())  # ends what is still open
+    await pipeline.check()
+
+
+@TEST
+async def gradient_table(dut):
+    """Rewritten between frames it gives the codes of the new table."""
+    pipeline = await started(dut)
+    power_up = Pipeline.table
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    frame = pipeline.frame()
+    await pipeline.send(frame)
+    before = await pipeline.check()
+    limit = 1 << pipeline.config.gradient.width - 1
+    await pipeline.write_table(rng.integers(-limit // 4, limit // 4, power_up.shape))
+    await pipeline.send(frame)
+    assert (await pipeline.check() != before).any()
+    await pipeline.write_table(power_up)
+    await pipeline.send(frame)
+    np.testing.assert_array_equal(await pipeline.check(), before)
+
+
+@TEST
+async def gradient_table_refused(dut):
+    """While a frame is in flight: it has the codes of the old table, and one begun later those of the new."""
+    pipeline = await started(dut)
+    colour = pixel(200, 40, 90)
+    frame = video([colour] * pipeline.pixels, pipeline.columns)
+    bits = pipeline.config.bits_per_channel
+    index = int(sum(int(c) >> 8 - bits << shift * bits for shift, c in enumerate(colours([colour])[0][::-1])))
+    answers = []
+    # Of the write over the first pixel, in clocks; and clocks between that and the second.
+    for lead, gap in product(range(-6, 3), (0, 4)):
+        new = np.array(Pipeline.table)
+        new[index] = pipeline.random.randrange(1 << 8), -pipeline.random.randrange(1 << 8)
+        await pipeline.write("TABLE_INDEX", index)
+        await pipeline.write("TABLE_GX", int(new[index][0]))
+        stream = [None] * (8 + lead), frame[:1], [None] * gap, frame[1:]
+        sending = cocotb.start_soon(pipeline.send(*stream))
+        await ClockCycles(dut.clk, 8)
+        answer = cocotb.start_soon(pipeline.write("TABLE_GY", int(new[index][1])))
+        while not dut.s_axil_bvalid.value:
+            await RisingEdge(dut.clk)
+        decided = pipeline.into.clock_count - 1
+        answers.append(await answer)
+        if answers[-1] == Response.OKAY:
+            Pipeline.table = new
+        await sending
+        late = decided > pipeline.into.taken[0]
+        assert (answers[-1] == Response.SLVERR) == late, f"write {lead} clocks ahead of the first pixel"
+        assert await pipeline.write("TABLE_GY", 123) == Response.SLVERR, "taken while the frame was in flight"
+        await pipeline.check()  # with the table that the answer says there is
+    assert set(answers) == set(Response), "a poor test: all answers were alike"
+
+    await pipeline.send(frame, frame)  # busy from the first pixel to the last depth
+    refusals = 0
+    while len(pipeline.out.words) < 2 * pipeline.pixels - 40:
+        assert await pipeline.write("TABLE_GY", 5) == Response.SLVERR
+        assert STATUS.unpack(await pipeline.read("STATUS"))["busy"]
+        refusals += 1
+    assert refusals > 20
+    await pipeline.check()
+    power_up = gradient_codes(synthetic(bits), pipeline.config)
+    assert await pipeline.write_bin(index, power_up[index]) == Response.OKAY
+    Pipeline.table = power_up
+
+
+@TEST
+@cocotb.parametrize(accepts=["none", "random"])
+async def saturation(dut, accepts):
+    """A pyramid deeper than full scale: clipped where the model clips, counted, flagged; never wrapped."""
+    pipeline = await started(dut, accepts=accepts)
+    steep = pipeline.pressed(slope=1.0)
+    _, clipped = pipeline.model([[word.data for word in steep]])
+    assert clipped > 0, "a poor test: nothing clips"
+    await pipeline.send(steep, pipeline.frame(), steep)
+    codes = await pipeline.check()
+    limit = 1 << pipeline.config.data_width - 1
+    assert codes.max() == limit - 1 or codes.min() == -limit, "no depth at full scale"
+    await pipeline.write("STATUS", STATUS.pack(saturation=1))
+    pipeline.sticky.clear()
+    await pipeline.send(video([pixel(135, 135, 135)] * pipeline.pixels, pipeline.columns))
+    await pipeline.check()
+    assert not pipeline.sticky
+
+
+@TEST
+@cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "output", "stalled", "full"])
+async def resets(dut, clocks, phase):
+    """After it the next frame is right, and registers are as after power-up, but for the gradient table."""
+    pipeline = await started(dut)
+    await pipeline.write("THRESHOLD", -5)
+    await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
+    first = pipeline.pixels + pipeline.random.randrange(pipeline.pixels // 2)
+    streams = [pipeline.frame() for _ in range(5)]
+    wait = {
+        "mid_frame": first,
+        "filling": first + 50,
+        "output": first_depth_latency(pipeline.config) + pipeline.random.randrange(3 * pipeline.pixels),
+        "stalled": first_depth_latency(pipeline.config) + pipeline.pixels,
+        "full": first_depth_latency(pipeline.config) + 3 * pipeline.pixels,
+    }[phase]
+    if phase == "filling":
+        streams[1] = broken(streams[1], "row_short", pipeline.random.randrange(10), pipeline.columns)
+    if phase in ("stalled", "full"):
+        pipeline.sink.stall(repeat(False) if phase == "full" else profile("alternating"))
+    cocotb.start_soon(pipeline.send(*streams))
+    await ClockCycles(dut.clk, wait)
+    await pipeline.reset(clocks)
+    pipeline.sink.stall(repeat(True))
+    assert not dut.contact.value
+    for register in MAP:
+        if register.access != "wo" and register.reset is not None:
+            value = await pipeline.read(register.name)
+            assert value == register.reset, f"{register.name} is {value:#x} after a reset"
+    await ClockCycles(dut.clk, pipeline.pixels)
+    assert not pipeline.out.words, "something left that was sent before the reset"
+    await pipeline.send(pipeline.frame(), pipeline.frame())
+    await pipeline.check()
+    assert pipeline.latency == first_depth_latency(pipeline.config)
+
+
+@TEST
+@cocotb.parametrize(accepts=["none", "random"])
+async def registers_written_all_the_time(dut, accepts):
+    """They disturb no code and no latency."""
+    pipeline = await started(dut, offers="random", accepts=accepts)
+    running, refused = True, 0
+
+    async def writes():
+        nonlocal refused
+        rng = pipeline.random
+        while running:
+            word = rng.getrandbits(32)
+            name = rng.choice(("THRESHOLD", "TIMEOUT", "CONTROL", "TABLE_INDEX", "TABLE_GX", "TABLE_GY", "GRID"))
+            if name in ("TIMEOUT", "CONTROL"):
+                word = word | 1 << 20 if name == "TIMEOUT" else word & ~CONTROL.pack(clear_counters=1)
+            refused += await pipeline.write(name, word) == Response.SLVERR
+            await pipeline.read(rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX")))
+
+    sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(4))))
+    await ClockCycles(dut.clk, 12)
+    writing = cocotb.start_soon(writes())
+    await sending
+    while len(pipeline.out.words) < 4 * pipeline.pixels - 40:
+        await RisingEdge(dut.clk)
+    running = False
+    await writing
+    assert refused > 5
+    await pipeline.write("CONTROL", 0)
+    await pipeline.check()

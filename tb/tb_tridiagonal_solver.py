@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tridiagonal_solver against its model: codes, fixed latency, one frame every rows x columns clocks, saturations."""
+
+import cocotb
+import numpy as np
+from stream import Bench, StreamDriver, StreamMonitor, configuration, send_apart, uniform
+
+from models.latency import tridiagonal_solver_latency
+from models.round_saturate import Monitor
+from models.tridiagonal_solver import tridiagonal_solver
+
+
+async def check(dut, f, gap=0.0, pause=0.0, interrupt=0):
+    """Frames f (frames, rows, columns) through the device; with `interrupt` it is first reset that many words in."""
+    config = configuration()
+    pixels = config.rows * config.columns
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", ["data"])
+    source = StreamMonitor(dut, "in", "valid", ["data"])
+    sink = StreamMonitor(dut, "out", "start", ["data"], length=config.columns)
+    await bench.start()
+    words = f.reshape(-1, 1).tolist()
+    latency = tridiagonal_solver_latency(config.columns)
+    if interrupt:
+        await send_apart(bench, driver, words[:interrupt], gap)
+        await bench.reset()
+        source.forget()
+        sink.forget()
+    await send_apart(bench, driver, words, gap)
+    await bench.clocks(latency + pixels + config.columns)
+
+    monitor = Monitor()
+    z = tridiagonal_solver(np.array(source.words).reshape(f.shape), config, monitor)
+    np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)
+    assert bench.saturations == monitor.saturations.total()
+    last_pixels, first_depths = source.starts[pixels - 1 :: pixels], sink.starts[:: config.rows]
+    assert {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)} == {latency}
+    if not gap:
+        assert set(np.diff(first_depths)) == {pixels}
+    return monitor.saturations
+
+
+def codes(frames, amplitude):
+    """Random divergence; at 0.002 of full scale its depth fits."""
+    config = configuration()
+    return uniform((frames, config.rows, config.columns), config.divergence.width, amplitude)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)]))
+async def frames(dut, gap, pause):
+    assert not await check(dut, codes(4, 0.002), gap, pause)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def full_scale_saturates(dut):
+    assert await check(dut, codes(3, 1.0)), "full scale everywhere must clip somewhere"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def a_frame_does_not_know_the_one_before(dut):
+    f = codes(3, 0.002)
+    f[2] = f[0]
+    await check(dut, f)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def reset_in_mid_frame(dut):
+    config = configuration()
+    await check(dut, codes(2, 0.002), interrupt=3 * config.rows * config.columns // 2 + 3)

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The configuration: formats just hold what the bounds allow, bad choices are refused, no number drifts."""
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from commands.simulator import ROOT
+from models import tridiagonal_solver
+from models.configuration import DEPTH_HEADROOM, Configuration, Format, bounds
+from models.divergence import divergence
+from models.dst_forward import dst_forward
+from models.dst_inverse import dst_inverse
+from models.errors import InputError
+from models.orders import makhoul
+from models.round_saturate import Monitor
+from models.row_reorder import row_reorder
+from models.spectral_solver import solver_parameters, spectral_solver
+from models.tactile_depth import top_parameters
+from models.transpose import transpose
+
+# Inputs that attain the bounds. Everything is linear, so a node's value is the sum of its responses to single
+# words, and the input of the largest value has the signs of those responses.
+
+
+class Nodes(Monitor):
+    """Keeps what passes the nodes of a model fed with floats."""
+
+    def __init__(self):
+        super().__init__()
+        self.values = {}
+
+    def linear(self, node, response):
+        self.values[node] = response
+
+
+def responses(size):
+    """Of a row's transforms to each sample: nodes forward (N, nodes), inverse (N, nodes), modes (N, N)."""
+    wide = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    forward, inverse = Nodes(), Nodes()
+    modes = dst_forward(np.eye(size)[:, makhoul(size)], monitor=forward, **wide)
+    dst_inverse(modes, monitor=inverse, **wide)
+    return *(np.hstack(list(nodes.values.values())) for nodes in (forward, inverse)), modes
+
+
+def step(response):
+    """Response to a slope: it enters the divergence here with +, in the next word with -."""
+    return -np.diff(response, axis=0, append=0)
+
+
+def slope_patterns(size):
+    """Signs of slopes (2, N, N, 2) that attain the bounds of the row and of the column transform."""
+    forward, _, modes = responses(size)
+    worst = np.argmax(np.abs(step(forward)).sum(axis=0) + 2 * np.abs(forward).sum(axis=0))
+    along, down = np.sign(step(forward)[:, worst]), np.sign(forward[:, worst])
+    alternate = np.resize([1, -1], size)[:, None]  # each row takes gy of the row above away
+    row = np.stack((alternate * along, alternate * down), axis=-1)
+
+    length, steps = np.abs(forward).sum(axis=0), np.abs(step(forward)).sum(axis=0)
+    mode_length, mode_steps = np.abs(modes).sum(axis=0), np.abs(step(modes)).sum(axis=0)
+    reached = np.outer(mode_steps, length) + np.outer(mode_length, steps)
+    mode, node = np.unravel_index(np.argmax(reached), reached.shape)
+    m, c = modes[:, mode], forward[:, node]
+    column = np.stack((np.outer(c, step(m)), np.outer(step(c), m)), axis=-1)
+    return np.stack((row, np.sign(column)))
+
+
+def depth_patterns(size):
+    """Signs of depth fields (3, N, N) that attain the bounds of the inverse column and row transforms."""
+    _, inverse, modes = responses(size)
+    m = modes[:, np.argmax(np.abs(modes).sum(axis=0))]
+    c = inverse[:, np.argmax(np.abs(inverse).sum(axis=0))]
+    return np.sign(np.stack((np.outer(c, m), np.outer(m, m), np.resize(c, (size, size)))))
+
+
+def ideal(frames):
+    """What nodes see when the transforms work on floats: modes of both directions, then back again."""
+    wide = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    nodes = Nodes()
+    rows = dst_forward(row_reorder(frames, True), monitor=nodes, node="row_forward", **wide)
+    modes = dst_forward(transpose(rows, False, True), monitor=nodes, node="column_forward", **wide)
+    columns = dst_inverse(modes, monitor=nodes, node="column_inverse", **wide)
+    dst_inverse(transpose(columns, True, False), monitor=nodes, node="row_inverse", **wide)
+    nodes.values["column_inverse.modes"] = modes
+    return nodes
+
+
+def largest(nodes, core):
+    return max(np.abs(seen).max() for node, seen in nodes.values.items() if node.startswith(core))
+
+
+def laplacian(z):
+    """Five-point, zero half a pixel outside the frame: the neighbour out there is the mirrored negative."""
+    f = np.zeros_like(z)
+    for axis in (-1, -2):
+        first, last = np.take(z, [0], axis), np.take(z, [-1], axis)
+        f += np.diff(np.concatenate((-first, z, -last), axis), n=2, axis=axis)
+    return f
+
+
+def saturations(z, config):
+    """Of depth fields in pixels, by node, in the bit-accurate solver."""
+    monitor = Monitor()
+    f = np.rint(laplacian(z) / config.divergence.lsb).astype(np.int64)
+    limit = 2 ** (config.divergence.width - 1)
+    assert np.all((-limit <= f) & (f < limit)), "the field itself is steeper than the slope limit allows"
+    spectral_solver(f, config, monitor)
+    return monitor.saturations
+
+
+SIZES = (16, 32, 64, 128, 256)
+CHOICES = [
+    {"columns": 16},
+    {"columns": 32, "gradient_limit": 4.0},
+    {"columns": 64, "data_width": 16, "coefficient_width": 10},
+    {"columns": 64, "data_width": 32, "coefficient_width": 24, "gradient_limit": 0.5},
+    {"columns": 128},
+    {"columns": 128, "data_width": 20, "depth_range_px": 8.0},
+    {"columns": 256, "data_width": 27},
+]
+each_choice = pytest.mark.parametrize("choices", CHOICES, ids=lambda c: "-".join(map(str, c.values())))
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_slopes_attain_their_bounds(size):
+    nodes = ideal(divergence(slope_patterns(size)))
+    assert largest(nodes, "row_forward") == pytest.approx(bounds(size).row_forward, rel=1e-9)
+    assert largest(nodes, "column_forward") == pytest.approx(bounds(size).column_forward, rel=1e-9)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_depths_attain_their_bounds(size):
+    nodes = ideal(depth_patterns(size))
+    assert largest(nodes, "column_inverse") == pytest.approx(bounds(size).column_inverse, rel=1e-9)
+    assert largest(nodes, "row_inverse") == pytest.approx(bounds(size).row_inverse, rel=1e-9)
+
+
+@each_choice
+def test_slopes_at_their_bounds_saturate_no_forward_node(choices):
+    """Depth may leave its range on them, so what lies behind the divide is not meant."""
+    config = Configuration(**choices)
+    slopes = slope_patterns(config.columns).astype(np.int64) * (2 ** (config.gradient.width - 1) - 1)
+    monitor = Monitor()
+    spectral_solver(divergence(slopes), config, monitor)
+    forward = ("row_forward", "column_forward")
+    assert not {node: n for node, n in monitor.saturations.items() if node.startswith(forward)}
+
+
+@pytest.mark.parametrize(
+    "choices",
+    [
+        {"columns": 16, "data_width": 20},
+        {"columns": 32},
+        {"columns": 64, "data_width": 32, "coefficient_width": 24},
+        {"columns": 128, "data_width": 27, "depth_range_px": 12.0},
+    ],
+    ids=lambda c: "-".join(map(str, c.values())),
+)
+def test_depths_at_their_bounds_saturate_no_node(choices):
+    """From limit to limit within a pixel: only the widest slope limit lets such a field in."""
+    config = Configuration(gradient_limit=64.0, **choices)
+    assert not saturations(config.depth_range_px * depth_patterns(config.columns), config)
+
+
+def bump(config, share):
+    """The lowest mode, with a peak of this share of the depth range."""
+    wave = np.sin(np.pi * (2 * np.arange(config.columns) + 1) / (2 * config.columns))
+    return share * config.depth_range_px * np.outer(wave, wave) / wave.max() ** 2
+
+
+@each_choice
+def test_a_field_as_deep_as_the_range_saturates_nothing(choices):
+    config = Configuration(**choices)
+    assert not saturations(bump(config, 1.0), config)
+    assert not saturations(-bump(config, 0.99 * DEPTH_HEADROOM), config)
+
+
+@each_choice
+def test_a_field_deeper_than_the_code_saturates_the_output_alone(choices):
+    config = Configuration(**choices)
+    assert set(saturations(bump(config, 1.05 * DEPTH_HEADROOM), config)) == {"row_inverse.output"}
+
+
+@each_choice
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_field_of_over_twice_the_range_saturates(choices, sign):
+    config = Configuration(**choices)
+    assert saturations(sign * bump(config, 2.2), config)["row_inverse.output"] > 0
+
+
+@given(st.floats(1e-3, 1e6), st.integers(10, 36))
+def test_a_format_is_the_finest_that_holds_its_bound(bound, width):
+    form = Format.holding(bound, width)
+    assert bound <= form.limit - form.lsb
+    assert form.limit / 2 < bound * (1 + 2.0 ** (2 - width)) * (1 + 1e-12)
+
+
+@pytest.mark.parametrize(
+    ("choices", "message"),
+    [
+        ({"columns": 8}, "N=8 .* 16 to 512"),
+        ({"columns": 1024}, "N=1024 .* 16 to 512"),
+        ({"columns": 0}, "N=0 "),
+        ({"columns": 100}, "N=100 is not a power of two: try N=64 or N=128"),
+        ({"data_width": 11}, "DATA_WIDTH=11 .* 12 to 32"),
+        ({"data_width": 33}, "DATA_WIDTH=33 .* 12 to 32"),
+        ({"coefficient_width": 9}, "COEFF_WIDTH=9 .* 10 to 24"),
+        ({"coefficient_width": 25}, "COEFF_WIDTH=25 .* 10 to 24"),
+        ({"depth_range_px": 0.0}, "depth range of 0 pixels"),
+        ({"depth_range_px": -1.0}, "depth range of -1 pixels"),
+        ({"depth_range_px": float("nan")}, "depth range of nan pixels"),
+        ({"depth_range_px": float("inf")}, "depth range of inf pixels"),
+        ({"gradient_limit": 2.0**-7}, "largest slope"),
+        ({"gradient_limit": 2.0**7}, "largest slope"),
+        ({"gradient_limit": 0.0}, "largest slope"),
+        ({"gradient_limit": float("nan")}, "largest slope"),
+        (
+            {"columns": 32, "data_width": 12, "depth_range_px": 200.0},
+            "DATA_WIDTH=12 cannot hold .* try DATA_WIDTH=[0-9]+ or",
+        ),
+        ({"depth_range_px": 1e9}, "DATA_WIDTH=24 cannot hold .* a smaller DEPTH_RANGE"),
+    ],
+    ids=str,
+)
+def test_what_cannot_be_built_is_refused_in_one_line(choices, message):
+    with pytest.raises(InputError, match=message) as caught:
+        Configuration(**choices)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_width_that_an_error_asks_for_is_accepted():
+    with pytest.raises(InputError) as caught:
+        Configuration(columns=32, data_width=12, depth_range_px=200.0)
+    wanted = int(re.search(r"try DATA_WIDTH=(\d+)", str(caught.value))[1])
+    assert Configuration(columns=32, data_width=wanted, depth_range_px=200.0).data_width == wanted
+
+
+def defaults(path):
+    """Parameters of the module in a file, by name."""
+    head = re.search(r"#\((.*?)\n\)", (ROOT / path).read_text(), re.DOTALL)[1]
+    found = re.findall(r"^\s*parameter int (\w+)\s*=\s*(-?\d+)", head, re.MULTILINE)
+    return {name: int(value) for name, value in found}
+
+
+SPECTRAL, TRIDIAGONAL = Configuration(), Configuration(solver="tridiagonal")
+BOTH = {**top_parameters(TRIDIAGONAL), **top_parameters(SPECTRAL)}
+
+
+@pytest.mark.parametrize(
+    ("path", "derived"),
+    [
+        ("hdl/tactile_depth.sv", BOTH),
+        ("tb/frame_bench.sv", BOTH),
+        ("hdl/spectral_solver.sv", solver_parameters(SPECTRAL)),
+        ("hdl/tridiagonal_solver.sv", tridiagonal_solver.solver_parameters(TRIDIAGONAL)),
+    ],
+)
+def test_default_parameters_are_those_of_the_default_configuration(path, derived):
+    assert defaults(path) == derived

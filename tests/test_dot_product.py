@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""dot_product: RTL against the model, the model against Python's integers."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.dot_product import dot_product
+
+A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the widest that occur
+
+
+@pytest.mark.structures("a_width b_width", both=[(27, 18)], icarus=[(15, 10), (35, 24), (4, 3)])
+def test_rtl(run_tb, a_width, b_width):
+    run_tb("dot_product", ["dot_product.sv"], {"AWidth": a_width, "BWidth": b_width})
+
+
+@given(A, B, A, B)
+def test_model_is_exact(a0, b0, a1, b1):
+    assert dot_product(*map(np.array, (a0, b0, a1, b1))) == a0 * b0 + a1 * b1

@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_output: RTL against the model."""
+
+import pytest
+
+
+@pytest.mark.parametrize(("width", "rows", "columns"), [(24, 4, 8), (12, 16, 2)])
+def test_rtl(run_tb, width, rows, columns):
+    parameters = {"Width": width, "Rows": rows, "Columns": columns}
+    run_tb("frame_output", ["burst_counter.sv", "frame_output.sv"], parameters)

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""mode_pairs: RTL against the model, the model against the definition."""
+
+import numpy as np
+import pytest
+
+from models.mode_pairs import mode_pairs
+from models.orders import bit_reversed, mirror
+
+SOURCES = ["burst_counter.sv", "delay_line.sv", "mode_pairs.sv", "ram.sv"]
+
+
+@pytest.mark.structures("size width", both=[(32, 24)], icarus=[(8, 27), (16, 12), (64, 24)])
+def test_rtl(run_tb, size, width):
+    run_tb("mode_pairs", SOURCES, {"Size": size, "Width": width})
+
+
+@pytest.mark.parametrize("size", [8, 16, 128, 512])
+def test_mode_k_meets_mode_n_minus_k_and_mode_n_is_zero(size):
+    by_mode = np.append(np.arange(1, size + 1), 0)  # mode k holds k + 1, and mode N nothing
+    k = bit_reversed(size)
+    mode, mirrored = mode_pairs(by_mode[k])
+    np.testing.assert_array_equal(mode, by_mode[k])
+    np.testing.assert_array_equal(mirrored, by_mode[size - k])
+
+
+@pytest.mark.parametrize("size", [8, 64, 512])
+def test_orders_are_their_own_inverses(size):
+    for order in (bit_reversed(size), mirror(size)):
+        np.testing.assert_array_equal(order[order], np.arange(size))

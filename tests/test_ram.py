@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ram: RTL against the model in every style, with and without contents at power-up."""
+
+import random
+
+import pytest
+from cocotb_tools.runner import as_sv_literal
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.ram import ram
+from models.rom_files import write_words
+
+DISTRIBUTED, BLOCK, ULTRA = range(3)
+
+
+@pytest.mark.structures(
+    "width depth style file",
+    both=[(24, 64, BLOCK, "contents.hex")],
+    icarus=[(5, 16, DISTRIBUTED, None), (9, 24, DISTRIBUTED, "contents.hex"), (70, 32, ULTRA, None)],
+)
+def test_rtl(run_tb, width, depth, style, file):
+    def contents(folder):
+        if file:
+            chance = random.Random(depth)
+            write_words(folder / file, [chance.getrandbits(width) for _ in range(depth)], width)
+
+    parameters = {"Width": width, "Depth": depth, "Style": style}
+    environment = {"FILE": file} if file else {}
+    if file:
+        parameters["File"] = as_sv_literal(file)
+    run_tb("ram", ["ram.sv"], parameters, roms=contents, environment=environment)
+
+
+@given(st.lists(st.tuples(st.integers(0, 7), st.integers(0, 255)), max_size=40))
+def test_a_word_is_the_last_one_written_there(writes):
+    words, _ = ram([None] * 8, [(True, place, word, False, 0) for place, word in writes])
+    assert {place: word for place, word in enumerate(words) if word is not None} == dict(writes)
+
+
+def test_read_data_stays_between_reads():
+    clocks = [(True, 0, 5, False, 0), (False, 0, 0, True, 0), (True, 0, 6, False, 0), (False, 0, 0, True, 0)]
+    assert ram([None], clocks)[1] == [None, 5, 5, 6]

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""spectral_divide: RTL against the model, the model against the eigenvalues of the reference."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models import reference
+from models.configuration import Configuration
+from models.orders import bit_reversed
+from models.rom_files import write_solver
+from models.round_saturate import Monitor
+from models.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
+
+SOURCES = ["burst_counter.sv", "rom.sv", "round_saturate.sv", "spectral_divide.sv"]
+
+
+@pytest.mark.structures(
+    "choices",
+    both=[({"columns": 16},)],
+    icarus=[
+        ({"columns": 32, "data_width": 12, "coefficient_width": 10},),
+        ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0},),
+        # Here the largest reciprocals exceed 2^(CoeffWidth - 1): they shift further than Drop drops.
+        ({"columns": 16, "coefficient_width": 10, "depth_range_px": 0.1, "gradient_limit": 4.0},),
+    ],
+)
+def test_rtl(run_tb, choices):
+    config = Configuration(**choices)
+    table = reciprocals(config)
+    run_tb(
+        "spectral_divide",
+        SOURCES,
+        {
+            "Size": config.columns,
+            "Width": config.arithmetic_width,
+            "CoeffWidth": config.coefficient_width,
+            "ShiftWidth": table.shift_width,
+            "Drop": table.drop,
+        },
+        roms=lambda folder: write_solver(folder, config),
+        environment={"CONFIGURATION": json.dumps(choices)},
+    )
+
+
+def divided(modes, config):
+    """What the model should say, in codes, unrounded."""
+    k = config.columns - bit_reversed(config.columns)
+    eigenvalue = reference.eigenvalues(config.columns)[k - 1]
+    pixels = modes * config.column_forward.lsb / (eigenvalue[:, None] + eigenvalue)
+    return pixels / config.depth_limit_px / config.column_inverse.lsb / config.transform_gain
+
+
+CONFIGURATIONS = [
+    Configuration(columns=size, coefficient_width=coeff, depth_range_px=depth_range)
+    for size, coeff, depth_range in [
+        (16, 10, 0.1),
+        (16, 18, None),
+        (64, 18, 3),
+        (128, 24, None),
+        (256, 18, None),
+    ]
+]
+
+
+@pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda c: f"{c.columns}-{c.coefficient_width}")
+def test_model_divides_by_the_eigenvalues(config):
+    """Half a step for the rounding; a mantissa of w bits, at least 2^(w - 2), errs by half its last bit."""
+    shape = (config.columns, config.columns)
+    limit = 2.0 ** (config.arithmetic_width - 1)
+    full = np.abs(divided(np.ones(shape), config))
+    modes = np.random.default_rng(config.columns).uniform(-1, 1, shape) * 0.99 * limit / np.maximum(full, 1)
+    modes = np.rint(modes).astype(np.int64)
+    want, monitor = divided(modes, config), Monitor()
+    error = np.abs(spectral_divide(modes, config, monitor) - want)
+    assert np.all(error <= 0.5 + np.abs(want) * 2.0 ** (1 - config.coefficient_width) * (1 + 1e-9))
+    assert not monitor.saturations
+
+
+@pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda c: f"{c.columns}-{c.coefficient_width}")
+def test_mantissas_are_normalised_and_at_least_one_bit_is_dropped(config):
+    table = reciprocals(config)
+    top = 2 ** (config.coefficient_width - 1)
+    assert np.all((table.mantissa >= -top) & (table.mantissa <= -top // 2))
+    assert table.drop >= 1
+    assert table.shift.min() >= 0
+    assert table.shift.max() < 2**table.shift_width
+
+
+def test_rom_is_the_lower_triangle():
+    config = Configuration(columns=16)
+    table, rom = reciprocals(config), reciprocal_rom(config)
+    assert len(rom) == 16 * 17 // 2
+    np.testing.assert_array_equal(table.mantissa, table.mantissa.T)
+    np.testing.assert_array_equal(table.shift, table.shift.T)
+    for p in range(16):
+        for t in range(p + 1):
+            word = int(rom[p * (p + 1) // 2 + t])
+            assert word >> config.coefficient_width == table.shift[p, t]
+            mantissa = word & (1 << config.coefficient_width) - 1
+            assert mantissa - (1 << config.coefficient_width) == table.mantissa[p, t]
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_negation_and_transposition_go_through(seed):
+    config = Configuration(columns=16)
+    modes = np.random.default_rng(seed).integers(-(2**20), 2**20, (16, 16))
+    out = spectral_divide(modes, config)
+    np.testing.assert_array_equal(spectral_divide(-modes, config), -out)
+    np.testing.assert_array_equal(spectral_divide(modes.T, config), out.T)
+
+
+def test_zero_gives_zero():
+    assert not np.any(spectral_divide(np.zeros((16, 16), np.int64), Configuration(columns=16)))
