@@ -153,11 +153,9 @@ def load_frames(source: str, size: tuple[int, int], reference: str | None = None
 def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int) -> Frames:
     if reference is not None:
         raise InputError(f"reference {reference} with the scene {name}: scenes need none, leave it out")
-    if size[0] != size[1]:
-        raise InputError(f"a grid of {size[0]} x {size[1]} with the scene {name}: scenes are square")
-    pixels = render(name, size[1], seed).frames
+    pixels = render(name, *size, seed).frames
     labels = tuple(f"{name} {i}" for i in range(len(pixels)))
-    return Frames(pixels, scene_pixel_pitch_mm(size[1]) / SYNTHETIC_PIXEL_PITCH_MM, name, labels)
+    return Frames(pixels, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, labels)
 
 
 def _to_grid(

@@ -37,8 +37,8 @@ class Scene:
 
     Attributes
     ----------
-    frames : uint8 array (frames, N, N, 3), RGB
-    height : float64 array (frames, N, N), true depth in grid pixels, positive pressed in
+    frames : uint8 array (frames, rows, columns, 3), RGB
+    height : float64 array (frames, rows, columns), true depth in grid pixels, positive pressed in
     name : str
     """
 
@@ -52,8 +52,15 @@ def scene_pixel_pitch_mm(size: int) -> float:
     return SENSOR_WIDTH_MM / size
 
 
-def render(name: str, size: int, seed: int = 1) -> Scene:
-    """Render a scene of the registry on a grid of `size` by `size`; `seed` is that of the camera's noise.
+def render(name: str, rows: int, columns: int = 0, seed: int = 1) -> Scene:
+    """Render a scene of the registry on a grid of `rows` by `columns` (0: square).
+
+    The scene fills the largest square in the middle of the grid; around it the gel is untouched.
+
+    Parameters
+    ----------
+    seed : int
+        Of the camera's noise.
 
     Raises
     ------
@@ -62,7 +69,11 @@ def render(name: str, size: int, seed: int = 1) -> Scene:
     """
     if name not in SCENES:
         raise InputError(f"unknown scene {name}: accepted are {', '.join(SCENES)}")
-    height = SCENES[name](size)
+    columns = columns or rows
+    size = min(rows, columns)
+    top, left = (rows - size) // 2, (columns - size) // 2
+    margins = ((0, 0), (top, rows - size - top), (left, columns - size - left))
+    height = np.pad(SCENES[name](size), margins)
     return Scene(photograph(height, seed), height, name)
 
 

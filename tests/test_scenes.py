@@ -77,13 +77,13 @@ def test_heights_scale_with_the_grid(name):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_flat_gel_reads_exactly_zero(seed):
-    scene = render("flat", 128, seed)
+    scene = render("flat", 128, seed=seed)
     assert not scene.height.any()
     assert not reference.depth(scene.frames, synthetic()).any()
 
 
 def test_noise_is_that_of_the_seed():
-    first, again, other = (render("flat", 64, seed).frames.astype(float) for seed in (1, 1, 2))
+    first, again, other = (render("flat", 64, seed=seed).frames.astype(float) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, again)
     assert (first != other).any()
     assert first.mean() == pytest.approx(REST, abs=0.05)

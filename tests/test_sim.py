@@ -12,7 +12,6 @@ from commands import sim
 from models.calibration import load
 from models.configuration import COLUMNS, Configuration
 from models.latency import first_depth_latency, last_pixel_to_first_depth
-from models.scenes import render
 
 PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
 
@@ -49,13 +48,12 @@ def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
 @pytest.mark.parametrize("boundary", sim.BOUNDARIES)
 @pytest.mark.parametrize(("rows", "columns", "chosen"), [(8, 16, "icarus"), (240, 256, "verilator")])
 def test_rectangles(tmp_path, rows, columns, boundary, chosen):
-    np.save(tmp_path / "frames.npy", render("contacts", columns).frames)
-    given = [f"FRAMES={tmp_path / 'frames.npy'}", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
+    given = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
     report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
     assert report["grid"] == [rows, columns]
     assert only(report["frame_interval_cycles"][1:]) == rows * columns
     assert np.load(tmp_path / "out" / "depth.npy").shape == (8, rows, columns)
-    assert max(report["rms_percent_of_peak"]) <= 0.06
+    assert max(error for error in report["rms_percent_of_peak"] if error is not None) <= 0.06
 
 
 def test_rows_are_in_the_order_of_the_input(tmp_path):
