@@ -170,12 +170,30 @@ async def send_apart(bench, driver, words, gap):
         await driver.send([word])
 
 
-async def check_bursts(dut, bursts, model, latency, *, in_fields, out_fields, gap=0, pause=0.0, interrupt=0, settle=40):
+async def interrupt(bench, send, interrupts, monitors, quiet):
+    """For each count in `interrupts`: send so many words, reset; nothing of them may leave in `quiet` clocks.
+
+    After the last of them it does not wait, so that the next word comes right after a reset.
+    """
+    for index, count in enumerate(interrupts):
+        await send(count)
+        await bench.reset()
+        for monitor in monitors:
+            monitor.forget()
+        if index < len(interrupts) - 1:
+            await bench.clocks(quiet)
+            assert not any(monitor.starts for monitor in monitors), f"words left after a reset at {count}"
+            assert bench.saturations == 0, f"clipped words were counted after a reset at {count}"
+
+
+async def check_bursts(
+    dut, bursts, model, latency, *, in_fields, out_fields, gap=0, pause=0.0, interrupts=(), settle=40
+):
     """Send bursts (count, size, fields); compare what leaves with the model of what was seen going in.
 
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
     number of clocks from each start in to its start out, or None where the core regroups bursts. Up to `gap`
-    idle clocks lie between bursts. With `interrupt` the device is first reset when so many words are in.
+    idle clocks lie between bursts. `interrupts`: see there.
 
     Returns the monitors of both sides.
     """
@@ -185,12 +203,12 @@ async def check_bursts(dut, bursts, model, latency, *, in_fields, out_fields, ga
     source = StreamMonitor(dut, "in", "start", in_fields, length=size)
     sink = StreamMonitor(dut, "out", "start", out_fields, length=size)
     await bench.start()
-    if interrupt:
-        for sent in range(0, interrupt, size):
-            await driver.send(bursts[sent // size % len(bursts), : interrupt - sent].tolist())
-        await bench.reset()
-        source.forget()
-        sink.forget()
+
+    async def send(count):
+        for sent in range(0, count, size):
+            await driver.send(bursts[sent // size % len(bursts), : count - sent].tolist())
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=(latency or 0) + 4)
     for burst in bursts:
         if gap:
             await bench.clocks(bench.random.randint(0, gap))

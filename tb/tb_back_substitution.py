@@ -26,5 +26,7 @@ async def frames(dut, gap, pause, amplitude):
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 async def reset_in_mid_frame(dut):
+    """At each of the first words, and in the midst of the frame."""
     config = configuration()
-    await check(dut, 0.1, interrupt=config.columns * (config.rows // 2) + config.columns // 2)
+    inner = config.columns * (config.rows // 2) + config.columns // 2
+    await check(dut, 0.1, interrupts=[*range(1, 9), inner])

@@ -36,8 +36,9 @@ async def limits(dut):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(out=[False, True])
-async def reset_in_mid_burst(dut, out):
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_burst(dut, late):
+    """In each of the clocks in which a burst begins to enter, or to leave."""
     size, width = parameters(dut, "Size", "InWidth")
-    interrupt = size // 2 + 3 + out * dst_inverse_latency(size)
-    await check(dut, uniform((2, size, 1), width), interrupt=interrupt)
+    first = dst_inverse_latency(size) - 3 if late else 1
+    await check(dut, uniform((2, size, 1), width), interrupts=range(first, first + 8))

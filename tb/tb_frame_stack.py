@@ -37,4 +37,4 @@ async def frames(dut, gap, pause):
 @cocotb.parametrize(halves=[1, 3, 5])
 async def reset_in_mid_frame(dut, halves):
     size, rows = parameters(dut, "Size", "Rows")
-    await check(dut, frames=2, interrupt=halves * size * rows // 2 + size // 2)
+    await check(dut, frames=2, interrupts=[halves * size * rows // 2 + size // 2])

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
+from stream import Bench, StreamDriver, StreamMonitor, interrupt, parameters, send_apart
 
 from models.latency import ROW_REORDER
 from models.row_reorder import row_reorder
@@ -11,7 +11,7 @@ from models.row_reorder import row_reorder
 ROWS = 7
 
 
-async def check(dut, gap=0.0, pause=0.0, interrupt=0):
+async def check(dut, gap=0.0, pause=0.0, interrupts=()):
     size, to_burst = parameters(dut, "Size", "ToBurst")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
@@ -19,11 +19,11 @@ async def check(dut, gap=0.0, pause=0.0, interrupt=0):
     sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
     await bench.start()
     words = np.arange(1, ROWS * size + 1).reshape(-1, 1).tolist()  # each stands for its place
-    if interrupt:
-        await send_apart(bench, driver, words[-interrupt:], gap)
-        await bench.reset()
-        source.forget()
-        sink.forget()
+
+    async def send(count):
+        await send_apart(bench, driver, words[-count:], gap)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=ROW_REORDER + 2)
     await send_apart(bench, driver, words, gap)
     await bench.clocks(ROW_REORDER + size + 4)
 
@@ -41,7 +41,7 @@ async def rows(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(eighths=[3, 8, 13])  # half in, just complete, half out
-async def reset_in_mid_row(dut, eighths):
+async def reset_in_mid_row(dut):
+    """At each word of a row, and while it leaves."""
     (size,) = parameters(dut, "Size")
-    await check(dut, interrupt=eighths * size // 8)
+    await check(dut, interrupts=range(1, size + size // 2))

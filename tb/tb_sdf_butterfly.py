@@ -37,8 +37,9 @@ async def limits(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(bursts_before=[0, 1])
-async def reset_in_mid_burst(dut, bursts_before):
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_burst(dut, late):
+    """In each of the clocks in which a burst begins to enter, or to leave."""
     size, width, delay = parameters(dut, "Size", "Width", "Delay")
-    interrupt = bursts_before * size + delay + 1  # the first sum is on its way out
-    await check(dut, uniform((2, size, 2), width), interrupt=interrupt)
+    first = max(delay + BUTTERFLY, 4) - 3 if late else 1
+    await check(dut, uniform((2, size, 2), width), interrupts=range(first, first + 8))

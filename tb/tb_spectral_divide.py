@@ -34,7 +34,9 @@ async def limits(dut):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(halves=[1, 3])
-async def reset_in_mid_frame(dut, halves):
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_frame(dut, late):
+    """As the first words enter and leave; in the midst of a second frame."""
     size, width = parameters(dut, "Size", "Width")
-    await check(dut, uniform((size, size, 1), width, 0.01), interrupt=halves * size * size // 2 + 5)
+    first = 3 * size * size // 2 + size // 2 if late else 1
+    await check(dut, uniform((size, size, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, configuration, send_apart, uniform
+from stream import Bench, StreamDriver, StreamMonitor, configuration, interrupt, send_apart, uniform
 
 from models.latency import spectral_solver_latency
 from models.round_saturate import Monitor
@@ -16,7 +16,7 @@ def codes(frames, amplitude):
     return uniform((frames, config.columns, config.columns), config.divergence.width, amplitude)
 
 
-async def check(dut, f, gap=0.0, pause=0.0, interrupt=0):
+async def check(dut, f, gap=0.0, pause=0.0, interrupts=()):
     config = configuration()
     size = config.columns
     bench = Bench(dut, pause)
@@ -26,12 +26,11 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupt=0):
     await bench.start()
 
     words = f.reshape(-1, 1).tolist()
-    if interrupt:
-        lost = (words * (interrupt // len(words) + 1))[:interrupt]
-        await send_apart(bench, driver, lost, gap)
-        await bench.reset()
-        source.forget()
-        sink.forget()
+
+    async def send(count):
+        await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=0)
     await send_apart(bench, driver, words, gap)
     await bench.clocks(spectral_solver_latency(size) + size * size)
 
@@ -67,4 +66,4 @@ async def frames_that_saturate(dut):
 async def reset_in_mid_frame(dut):
     """The third frame arrives as the first one leaves: every core is at work."""
     size = configuration().columns
-    await check(dut, codes(1, 0.002), interrupt=2 * size * size + 10 * size + size // 2)
+    await check(dut, codes(1, 0.002), interrupts=[2 * size * size + 10 * size + size // 2])

@@ -34,8 +34,9 @@ async def frames(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(sent=[0.5, 1, 1.6, 2.5])
-async def reset_in_mid_frame(dut, sent):
-    """A row is half in; the last row has begun, so reading just begins; a second, a third frame are half in."""
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_frame(dut, late):
+    """As the first words enter, or as the last row does, when reading begins; with a third frame half in."""
     (size,) = parameters(dut, "Size")
-    await check(dut, frames=2, interrupt=int(sent * size) * size - (size - 1 if sent == 1 else size // 2))
+    first = (size - 1) * size if late else 1
+    await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])

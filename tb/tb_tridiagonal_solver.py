@@ -3,15 +3,15 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, configuration, send_apart, uniform
+from stream import Bench, StreamDriver, StreamMonitor, configuration, interrupt, send_apart, uniform
 
 from models.latency import tridiagonal_solver_latency
 from models.round_saturate import Monitor
 from models.tridiagonal_solver import tridiagonal_solver
 
 
-async def check(dut, f, gap=0.0, pause=0.0, interrupt=0):
-    """Frames f (frames, rows, columns) through the device; with `interrupt` it is first reset that many words in."""
+async def check(dut, f, gap=0.0, pause=0.0, interrupts=()):
+    """Frames f (frames, rows, columns) through the device; for `interrupts` see stream.interrupt."""
     config = configuration()
     pixels = config.rows * config.columns
     bench = Bench(dut, pause)
@@ -21,11 +21,11 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupt=0):
     await bench.start()
     words = f.reshape(-1, 1).tolist()
     latency = tridiagonal_solver_latency(config.columns)
-    if interrupt:
-        await send_apart(bench, driver, words[:interrupt], gap)
-        await bench.reset()
-        source.forget()
-        sink.forget()
+
+    async def send(count):
+        await send_apart(bench, driver, words[:count], gap)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=0)
     await send_apart(bench, driver, words, gap)
     await bench.clocks(latency + pixels + config.columns)
 
@@ -67,4 +67,4 @@ async def a_frame_does_not_know_the_one_before(dut):
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def reset_in_mid_frame(dut):
     config = configuration()
-    await check(dut, codes(2, 0.002), interrupt=3 * config.rows * config.columns // 2 + 3)
+    await check(dut, codes(2, 0.002), interrupts=[3 * config.rows * config.columns // 2 + 3])

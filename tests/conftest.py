@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds tb/tb_<core>.py on each simulator. SIM=icarus or SIM=verilator narrows the run to one."""
 
+import json
 import os
 import re
+import shutil
 
 import pytest
 
 from commands import simulator as simulation
 
 SEED = int(os.environ.get("SEED", "1"))
-
-
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
 
 
@@ -33,7 +33,12 @@ def pytest_generate_tests(metafunc):
     names, (both, icarus) = mark.args[0], (mark.kwargs["both"], mark.kwargs.get("icarus", []))
     cases = [(name, *case) for name in SIMULATORS for case in both]
     cases += [("icarus", *case) for case in icarus if "icarus" in SIMULATORS]
-    metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"])
+    ids = ["-".join(_label(value) for value in case) for case in cases]
+    metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"], ids=ids)
+
+
+def _label(value):
+    return "-".join(f"{key}={choice}" for key, choice in value.items()) if isinstance(value, dict) else str(value)
 
 
 @pytest.fixture
@@ -51,7 +56,12 @@ def run_tb(simulator, request):
     def run(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.ROOT / "build" / "tests" / f"{request.node.path.stem}-{name}"
+        stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
+        structure = json.dumps([toplevel, sorted(sources), parameters])
+        if not stamp.is_file() or stamp.read_text() != structure:
+            shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
+        stamp.write_text(structure)
         if roms:
             roms(folder)
         log = folder / "run.log"
