@@ -27,9 +27,9 @@ def dst_forward(
     coefficient_width: int,
     output_drop: int,
     output_width: int,
-    alternate: bool = True,
     monitor: Monitor | None = None,
     node: str = "dst_forward",
+    alternate: bool = True,
 ) -> np.ndarray:
     """DST-II along the last axis.
 

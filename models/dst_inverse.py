@@ -19,9 +19,9 @@ def dst_inverse(
     coefficient_width: int,
     output_drop: int,
     output_width: int,
-    alternate: bool = True,
     monitor: Monitor | None = None,
     node: str = "dst_inverse",
+    alternate: bool = True,
 ) -> np.ndarray:
     """Inverse DST-II along the last axis.
 

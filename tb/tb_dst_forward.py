@@ -10,12 +10,10 @@ from models.latency import dst_forward_latency
 
 
 async def check(dut, x, **behaviour):
-    input_drop, width, coeff, output_drop, out_width = parameters(
-        dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth"
-    )
+    *formats, alternate = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Alternate")
 
     def model(x, monitor):
-        return dst_forward(x[..., 0], input_drop, width, coeff, output_drop, out_width, monitor)
+        return dst_forward(x[..., 0], *formats, monitor, alternate=bool(alternate))
 
     latency = dst_forward_latency(x.shape[1])
     return await check_bursts(dut, x, model, latency, in_fields=["data"], out_fields=["data"], **behaviour)

@@ -18,16 +18,17 @@ SOURCES = [*FFT_SOURCES, "dst_forward.sv"]
 
 
 @pytest.mark.structures(
-    "size in_width input_drop width coeff output_drop out_width",
-    both=[(32, 24, 1, 27, 18, 0, 27)],
+    "size in_width input_drop width coeff output_drop out_width alternate",
+    both=[(32, 24, 1, 27, 18, 0, 27, 1)],
     icarus=[
-        (16, 23, 0, 27, 18, 3, 24),
-        (8, 12, -3, 15, 10, 3, 12),
-        (64, 32, 1, 35, 24, 0, 35),
-        (16, 16, -4, 15, 10, 1, 12),  # the input alone can clip
+        (16, 23, 0, 27, 18, 3, 24, 1),
+        (8, 12, -3, 15, 10, 3, 12, 1),
+        (64, 32, 1, 35, 24, 0, 35, 1),
+        (16, 16, -4, 15, 10, 1, 12, 1),  # the input alone can clip
+        (16, 23, 0, 27, 18, 3, 24, 0),
     ],
 )
-def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width):
+def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width, alternate):
     parameters = {
         "Size": size,
         "InWidth": in_width,
@@ -36,6 +37,7 @@ def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_
         "CoeffWidth": coeff,
         "OutputDrop": output_drop,
         "OutWidth": out_width,
+        "Alternate": alternate,
     }
     run_tb("dst_forward", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
 

@@ -19,16 +19,17 @@ SOURCES = [*FFT_SOURCES, "dst_inverse.sv", "mode_pairs.sv"]
 
 
 @pytest.mark.structures(
-    "size in_width input_drop width coeff output_drop out_width",
-    both=[(32, 24, -3, 27, 18, -1, 24)],
+    "size in_width input_drop width coeff output_drop out_width alternate",
+    both=[(32, 24, -3, 27, 18, -1, 24, 1)],
     icarus=[
-        (16, 27, 0, 27, 18, 1, 24),
-        (8, 12, -3, 15, 10, -1, 12),
-        (64, 35, 0, 35, 24, -1, 32),
-        (16, 15, 0, 15, 10, 2, 9),  # the output alone can clip
+        (16, 27, 0, 27, 18, 1, 24, 1),
+        (8, 12, -3, 15, 10, -1, 12, 1),
+        (64, 35, 0, 35, 24, -1, 32, 1),
+        (16, 15, 0, 15, 10, 2, 9, 1),  # the output alone can clip
+        (16, 27, 0, 27, 18, 1, 24, 0),
     ],
 )
-def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width):
+def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width, alternate):
     parameters = {
         "Size": size,
         "InWidth": in_width,
@@ -37,6 +38,7 @@ def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_
         "CoeffWidth": coeff,
         "OutputDrop": output_drop,
         "OutWidth": out_width,
+        "Alternate": alternate,
     }
     run_tb("dst_inverse", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
 
