@@ -22,7 +22,7 @@ module gradient_lookup #(
   input  logic signed [Width-1:0] write_gy,
   input  logic                    in_valid,
   input  logic [23:0]             in_pixel,
-  input  logic [3:0]              in_place,   // first and last row and column, passed along
+  input  logic [3:0]              in_place,   // in the first row, first column, last row, last column
   output logic                    out_valid,
   output logic [3:0]              out_place,
   output logic signed [Width-1:0] out_gx,
