@@ -57,7 +57,7 @@ def run_tb(simulator, request):
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.ROOT / "build" / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
-        structure = json.dumps([toplevel, sorted(sources), parameters])
+        structure = json.dumps([toplevel, [path.name for path in simulation.sources(sources)], parameters])
         if not stamp.is_file() or stamp.read_text() != structure:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
