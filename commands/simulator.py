@@ -10,6 +10,8 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -95,6 +97,15 @@ def build(
             arguments += ["-O3", "--x-assign", "fast", "--x-initial", "fast"]
     else:
         files = [file for file in files if file.suffix != ".vlt"]
+    if simulator == "verilator":
+        runtime = ROOT / "build" / "verilator-runtime" / f"{level[1:]}{'-waves' if waves else ''}"
+        folder.mkdir(parents=True, exist_ok=True)
+        for compiled in runtime.glob("*.o"):
+            shutil.copy(compiled, folder)
+            later = (
+                time.time() + 600
+            )  # younger than the makefile that Verilator is about to write: make leaves it alone
+            os.utime(folder / compiled.name, (later, later))
     runner.build(
         sources=files,
         hdl_toplevel=toplevel,
@@ -105,6 +116,20 @@ def build(
         waves=waves,
         log_file=log,
     )
+    if simulator == "verilator" and not runtime.exists():
+        _keep_runtime(folder, runtime)
+
+
+def _keep_runtime(folder: Path, runtime: Path) -> None:
+    """Keep the objects of Verilator's own runtime: they are the same for every model, and most of a small build."""
+    runtime.parent.mkdir(parents=True, exist_ok=True)
+    kept = Path(tempfile.mkdtemp(dir=runtime.parent))
+    for compiled in folder.glob("verilated*.o"):
+        shutil.copy(compiled, kept)
+    try:
+        kept.rename(runtime)
+    except OSError:  # another build was first
+        shutil.rmtree(kept)
 
 
 def versions() -> list[str]:
