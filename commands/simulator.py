@@ -98,7 +98,8 @@ def build(
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
-        runtime = ROOT / "build" / "verilator-runtime" / "-".join([*versions()[1].split(), level[1:], *["waves"] * waves])
+        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves])
+        runtime = ROOT / "build" / "verilator-runtime" / kind
         folder.mkdir(parents=True, exist_ok=True)
         for compiled in runtime.glob("*.o"):
             shutil.copy(compiled, folder)
