@@ -172,7 +172,7 @@ def depth_of_codes(frame: np.ndarray, calibration: Calibration, config: Configur
 def report(folder: Path, presses: list[Press], calibration: Calibration, size: int) -> None:
     """Print, press by press, how well slopes and cap heights come out on a grid of `size`."""
     config = Configuration(
-        size=size,
+        columns=size,
         gradient_limit=calibration.gradient_limit,
         bits_per_channel=calibration.bits_per_channel,
     )

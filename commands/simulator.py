@@ -8,7 +8,6 @@ import importlib.metadata
 import importlib.util
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -176,13 +175,3 @@ def run(
             log_file=log,
         )
     return get_results(results)
-
-
-def main() -> None:
-    """Print what Verilator says of itself: `python -m commands.simulator`."""
-    check("verilator")
-    sys.exit(subprocess.call(["verilator", "--version"]))
-
-
-if __name__ == "__main__":
-    main()

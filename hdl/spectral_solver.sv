@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // spectral_solver: Poisson solver for one frame after another, by sine transforms along both directions.
 //
-//   five-point Laplacian of z = f, z = 0 half a pixel outside the frame
+//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge and zero mean
 //
 //   row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
 //               -> dst_inverse -> transpose -> dst_inverse -> row_reorder

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from commands import fit_gelsight_mini
 from commands.fit_gelsight_mini import (
     data_folder,
     depth_of_codes,
@@ -218,3 +219,13 @@ def test_the_no_contact_frame_reads_flat(presses_folder):
     path = str(presses_folder / "background.png")
     found = depth(load_frames(path, (128, 128), path).pixels, load("gelsight-mini"))
     assert np.abs(found).max() < 0.001  # pixels; measured: 0.0007
+
+
+def test_the_calibration_command_reports_and_changes_nothing(presses_folder, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(fit_gelsight_mini, "FOLDER", tmp_path)
+    fit_gelsight_mini.main()
+    report = capsys.readouterr().out
+    assert "11 held out" in report
+    assert "mean" in report.splitlines()[-1]
+    fitted, shipped = (np.load(folder / "gelsight-mini.npz")["gradient"] for folder in (tmp_path, FOLDER))
+    np.testing.assert_array_equal(fitted, shipped)
