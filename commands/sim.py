@@ -149,7 +149,7 @@ def build(request: Request, config: Configuration) -> Path:
     key = hashlib.sha256(json.dumps([request.simulator, request.waves, parameters, simulation.versions()]).encode())
     for source in sources:
         key.update(source.read_bytes())
-    folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
+    folder = simulation.BUILD / "simulators" / key.hexdigest()[:16]
     complete = folder / "complete"
     folder.parent.mkdir(parents=True, exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:

