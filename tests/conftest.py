@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shutil
+import subprocess
 
 import pytest
 
@@ -88,5 +89,27 @@ def run_tb(simulator, request):
         if failed or not count:
             lines = [line for line in log.read_text().splitlines() if not line.startswith("make")]
             pytest.fail(f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False)
+
+    return run
+
+
+@pytest.fixture
+def refused(tmp_path):
+    """What is said to parameters that `toplevel` must refuse: by its own check, which ends a simulation at time 0."""
+
+    def run(toplevel, parameters):
+        if "icarus" not in SIMULATORS:
+            pytest.skip("SIM leaves Icarus out, which runs a module without a testbench")
+        simulation.check("icarus")
+        chosen = [f"-P{toplevel}.{name}={value}" for name, value in parameters.items()]
+        model = tmp_path / "model.vvp"
+        compiler = ["iverilog", "-g2012", "-s", toplevel, *chosen, "-o", model, *simulation.sources()]
+        said = ""
+        for command in (compiler, ["vvp", "-n", model]):
+            result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+            said += result.stdout + result.stderr
+            if result.returncode:
+                return said
+        pytest.fail(f"{toplevel} took {parameters}:\n{said}")
 
     return run
