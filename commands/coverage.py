@@ -124,6 +124,16 @@ def describe(point: Point, text: str) -> str:
     return f"{point.kind:6} {point.file}:{point.line}:{point.column} {point.name}   | {text.strip()}"
 
 
+def missed(points: Mapping[Point, int], sources: Mapping[str, Sequence[str]]) -> str:
+    """A line for each point missed; for the bits of a signal one line together."""
+    lines: Counter[str] = Counter()
+    for point, hits in points.items():
+        if not hits:
+            name = re.sub(r"\[\d+\]|:[01]->[01]$", "", point.name) if point.kind == "toggle" else point.name
+            lines["missed " + describe(point._replace(name=name), sources[point.file][point.line - 1])] += 1
+    return "\n".join(f"{line}   ({count} edges)" if count > 1 else line for line, count in lines.items())
+
+
 def share(points: Mapping[Point, int]) -> tuple[int, int]:
     """Points reached, points."""
     return sum(map(bool, points.values())), len(points)
@@ -216,9 +226,7 @@ def main() -> None:
             points.update(read(lines))
     sources = {path.name: path.read_text().splitlines() for path in simulation.sources()}
     judged = judge(points, load_waivers(WAIVERS), sources)
-    for point, hits in judged.counted.items():
-        if not hits:
-            print("missed", describe(point, sources[point.file][point.line - 1]))
+    print(missed(judged.counted, sources))
     print(table(judged.counted))
     print(f"{sum(judged.waived.values())} points by {len(judged.waived)} waivers")
     bins, wrong = functional()

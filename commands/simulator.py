@@ -27,8 +27,7 @@ SIMULATORS = ("verilator", "icarus")
 COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
 BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
 COVERAGE_ARGUMENTS = (
-    "--coverage",
-    "--coverage-expr",
+    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),  # --coverage is these and -fsm, which fails inside
     "--coverage-underscore",
     *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out without a word
     *("--coverage-max-width", "1024"),  # so would a wider signal

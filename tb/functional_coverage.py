@@ -17,8 +17,9 @@ import cocotb
 from axis import PROFILES
 from cocotb.triggers import RisingEdge
 
-from models.configuration import COLUMNS
+from models.configuration import COLUMNS, ROWS, Configuration
 from models.frame_guard import FAULTS
+from models.latency import frame_latency
 from models.register_map import MAP
 
 FILE = "functional_coverage.json"
@@ -31,7 +32,12 @@ RESETS = (1, 2, 16)  # clocks
 PAUSES = ("0", "1", "many")  # idle clocks between frames
 SILENCES = ("off", "waited for", "given up")
 WRITTEN = {register.offset: register.name for register in MAP if register.access != "ro"}
-DEEPEST_QUEUE = 3
+# Frames between their last pixel and their first depth, at the smallest grid.
+SMALLEST = [
+    Configuration(columns=least, rows=0 if name == "spectral" else ROWS[0], solver=name)
+    for name, (least, _) in COLUMNS.items()
+]
+MOST_WAIT = {config.solver: -(-frame_latency(config) // (config.rows * config.columns)) for config in SMALLEST}
 POINTS = {
     "fault, place": (FAULTS, PLACES),
     "fault, frame before, frame after": (FAULTS, ("good", "bad"), ("good", "bad")),
@@ -44,7 +50,7 @@ POINTS = {
     "clipped": (("no", "yes"),),
     "contact": (("rises", "is held", "is cleared"),),
     "start in a stall": (("between frames", "inside a frame"),),
-    "queue of tags": (tuple(range(1, DEEPEST_QUEUE + 1)),),
+    "frames that wait": (tuple(range(1, max(MOST_WAIT.values()) + 1)),),
 }
 
 
@@ -52,7 +58,7 @@ def label(point, *values) -> str:
     return f"{point}: {', '.join(map(str, values))}"
 
 
-def impossible(point: str, values: tuple) -> str | None:
+def impossible(point: str, solver: str, values: tuple) -> str | None:
     """Why a bin cannot be hit, or None."""
     if point == "fault, place":
         fault, place = values
@@ -69,13 +75,15 @@ def impossible(point: str, values: tuple) -> str | None:
         fault, before, _ = values
         if fault == "start_missing" and before == "bad":
             return "what follows a broken frame without a start is its rest"
+    if point == "frames that wait" and values[0] > MOST_WAIT[solver]:
+        return "the first depth is due earlier, on every grid"
     return None
 
 
 def bins() -> dict[str, str | None]:
     """Every bin, and why it is impossible, or None."""
     return {
-        label(point, solver, *values): impossible(point, values)
+        label(point, solver, *values): impossible(point, solver, values)
         for point, axes in POINTS.items()
         for solver, *values in product(SOLVERS, *axes)
     }
@@ -111,7 +119,7 @@ class FunctionalCoverage:
         elif taken:
             yield "putting out"
         elif not filling and not inside:
-            yield "waiting" if int(self.dut.in_flight.value) else "idle"
+            yield "waiting" if self.dut.busy.value else "idle"
 
     async def watch(self) -> None:
         try:
@@ -128,7 +136,7 @@ class FunctionalCoverage:
         while dut.rst.value:
             await edge
         frames: list[str] = []  # what became of them: "good", or the fault
-        since_start, pause, tags, offered = 0, 0, 0, False
+        since_start, pause, offered = 0, 0, False
         quiet, clipped, contact, answered = 0, False, False, False
         phases: list[str] = []
         while True:
@@ -178,9 +186,8 @@ class FunctionalCoverage:
                     before, broken, after = frames[-3:]
                     sides = ("good" if name == "good" else "bad" for name in (before, after))
                     self.hit("fault, frame before, frame after", broken, *sides)
-            tags += int(dut.u_tags.push.value) - int(dut.u_tags.pop.value)
-            if tags:
-                self.hit("queue of tags", tags)
+            if dut.tags_held.value:
+                self.hit("frames that wait", int(dut.u_tags.full.value).bit_count())
 
             # Output.
             clipped |= bool(int(dut.saturations.value))
