@@ -12,7 +12,7 @@ from itertools import pairwise, product, repeat
 import cocotb
 import functional_coverage
 import numpy as np
-from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, profile, video
+from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from stream import CLOCK_NS, configuration
@@ -312,7 +312,7 @@ async def back_to_back(dut):
 
 
 @TEST
-@cocotb.parametrize(offers=["none", "random", "long"], accepts=list(PROFILES))
+@cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
 async def gaps_and_stalls(dut, offers, accepts):
     """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
@@ -391,13 +391,9 @@ async def contact(dut, accepts):
 def places(pipeline, fault):
     """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
     size, pixels = pipeline.columns, pipeline.pixels
-    return {
-        "row_short": [0, size - 2, 5 * size + 3, pixels - size, pixels - 2],
-        "row_long": [size - 1, 6 * size - 1, pixels - 1],
-        "start_missing": [0],
-        "start_early": [1, 2, size - 1, size, 7 * size + 5, pixels - 1],
-        "timed_out": [1, size, 9 * size + 1, pixels - 1],
-    }[fault]
+    inner = pipeline.rows // 2 * size
+    chosen = (0, 1, size - 2, size - 1, size, inner + 3, inner + size - 1, pixels - size, pixels - 2, pixels - 1)
+    return [position for position in chosen if position in positions(fault, pipeline.rows, size)]
 
 
 @TEST
@@ -430,6 +426,23 @@ async def malformed(dut, fault, accepts):
     pipeline.counters = dict.fromkeys(pipeline.counters, 0)
     await pipeline.send(a)
     await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(fault=FAULTS)
+async def faults_side_by_side(dut, fault):
+    """A broken frame between whole and broken ones: each is counted by itself, and the whole ones are right."""
+    timeout = 60 if fault == "timed_out" else 0
+    pipeline = await started(dut, timeout=timeout)
+    silent = timeout + pipeline.pixels  # the guard may be filling up the frame before
+    for before, after in product(("good", "bad"), repeat=2):
+        sides = {"good": pipeline.frame(), "bad": broken(pipeline.frame(), "row_short", 3, pipeline.columns)}
+        middle = broken(pipeline.frame(), fault, places(pipeline, fault)[0], pipeline.columns, silent)
+        await pipeline.send(pipeline.frame(), sides[before], middle, sides[after], pipeline.frame())
+        left = await pipeline.check()
+        assert len(left) == 2 + (before == "good") + (after == "good")
+        own = [] if fault == "start_missing" and before == "bad" else [fault]  # rest of the one before
+        assert pipeline.faults == [*["row_short"] * (before == "bad"), *own, *["row_short"] * (after == "bad")]
 
 
 @TEST
@@ -592,7 +605,7 @@ async def saturation(dut, accepts):
 
 
 @TEST
-@cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "output", "stalled", "full"])
+@cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "waiting", "output", "stalled", "full", "idle"])
 async def resets(dut, clocks, phase):
     """After it the next frame is right, and registers are as after power-up, but for the gradient table."""
     pipeline = await started(dut)
@@ -603,10 +616,14 @@ async def resets(dut, clocks, phase):
     wait = {
         "mid_frame": first,
         "filling": first + 50,
+        "waiting": pipeline.pixels + 50,
         "output": first_depth_latency(pipeline.config) + pipeline.random.randrange(3 * pipeline.pixels),
         "stalled": first_depth_latency(pipeline.config) + pipeline.pixels,
         "full": first_depth_latency(pipeline.config) + 3 * pipeline.pixels,
+        "idle": first_depth_latency(pipeline.config) + pipeline.pixels + 10,
     }[phase]
+    if phase in ("waiting", "idle"):
+        del streams[1:]
     if phase == "filling":
         streams[1] = broken(streams[1], "row_short", pipeline.random.randrange(10), pipeline.columns)
     if phase in ("stalled", "full"):
@@ -655,4 +672,35 @@ async def registers_written_all_the_time(dut, accepts):
     await writing
     assert refused > 5
     await pipeline.write("CONTROL", 0)
+    await pipeline.check()
+
+
+@TEST
+async def registers_written_in_every_phase(dut):
+    """Each of them while nothing moves, while a frame comes, fills up, is waited for, leaves and is stalled."""
+    pipeline = await started(dut)
+    columns, first = pipeline.columns, Pipeline.table[0]
+
+    async def write_all(busy):
+        answers = [await pipeline.write(name, 0) for name in ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT")]
+        assert answers == [Response.OKAY] * len(answers)
+        assert await pipeline.write_bin(0, first) == (Response.SLVERR if busy else Response.OKAY)
+
+    await write_all(busy=False)
+    frame, silence = pipeline.frame(), [None] * 100
+    sending = cocotb.start_soon(pipeline.send(frame[:columns], silence, frame[columns:]))
+    await ClockCycles(dut.clk, columns + 10)
+    await write_all(busy=True)  # inside the frame
+    await sending
+    await write_all(busy=True)  # before its first depth
+    while not pipeline.out.words:
+        await RisingEdge(dut.clk)
+    await write_all(busy=True)  # while it leaves
+    pipeline.sink.stall(repeat(False))
+    await ClockCycles(dut.clk, 4)
+    await write_all(busy=True)
+    pipeline.sink.stall(repeat(True))
+    await pipeline.idle()
+    await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
+    await write_all(busy=True)  # while it fills up
     await pipeline.check()

@@ -2,8 +2,11 @@
 """`make coverage`: merging of Verilator's counts, waivers, gates, bins."""
 
 import pytest
+from axis import positions
+from functional_coverage import PLACES, bins, impossible, place_of
 
 from commands.coverage import GATES, Judged, Point, Waiver, gate, judge, judge_bins, load_waivers, read, table
+from models.frame_guard import FAULTS
 
 SOURCES = {"a.sv": ["assign x = y & z;", "if (bad) $fatal;", "logic [1:0] q;"]}
 
@@ -116,3 +119,16 @@ def test_bins_missed_unknown_and_impossible():
     missed, errors = judge_bins({"hit": 1, "impossible": 2, "unknown": 1}, bins)
     assert missed == ["missed"]
     assert errors == ["an unknown bin: unknown", "hit, though impossible (it cannot be): impossible"]
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_place_is_impossible_where_no_frame_can_be_broken_so(fault):
+    rows, columns = 4, 8
+    possible = {place_of(*divmod(position, columns), rows, columns) for position in positions(fault, rows, columns)}
+    assert possible == {place for place in PLACES if not impossible("fault, place", "spectral", (fault, place))}
+
+
+def test_bins_of_both_solvers_have_names_of_their_own():
+    assert (
+        sum("tridiagonal" in name for name in bins()) == sum("spectral" in name for name in bins()) == len(bins()) / 2
+    )
