@@ -59,8 +59,9 @@ def run_tb(simulator, request):
     def run(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
-        stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
-        structure = json.dumps([toplevel, [path.name for path in simulation.sources(sources)], parameters])
+        stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other arguments
+        names = [path.name for path in simulation.sources(sources)]
+        structure = json.dumps([toplevel, names, parameters, simulation.COVERAGE and simulation.COVERAGE_ARGUMENTS])
         if not stamp.is_file() or stamp.read_text() != structure:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
