@@ -312,6 +312,19 @@ async def back_to_back(dut):
 
 
 @TEST
+async def the_clock_comes_round(dut):
+    """Wherever the count of clocks returns to 0 while a frame is in flight, its latency is that of any other."""
+    pipeline = await started(dut)
+    for ahead in (5, pipeline.pixels // 2, pipeline.pixels + 5, first_depth_latency(pipeline.config)):
+        dut.now.value = (1 << 32) - ahead
+        await pipeline.send(pipeline.frame())
+        await pipeline.check()
+        assert pipeline.latency == first_depth_latency(pipeline.config)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+
+
+@TEST
 @cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
 async def gaps_and_stalls(dut, offers, accepts):
     """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
