@@ -180,8 +180,10 @@ class FunctionalCoverage:
                 if fault == "timed_out":
                     self.hit("silence inside a frame", "given up")
                     quiet = 0
-            if fault or dut.u_registers.event_frame_in.value:
-                frames.append(fault or "good")
+            # A whole frame is told a clock after its last pixel: with a fault of the next one's first.
+            ends = ["good"] * bool(dut.u_registers.event_frame_in.value) + [fault] * bool(fault)
+            for end in ends:
+                frames.append(end)
                 if len(frames) > 2 and frames[-2] != "good":
                     before, broken, after = frames[-3:]
                     sides = ("good" if name == "good" else "bad" for name in (before, after))
