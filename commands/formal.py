@@ -20,7 +20,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from commands.simulator import HDL, ROOT, sources
+from commands.simulator import ROOT, sources
 from models.rom_files import write_words
 
 BENCHES = ROOT / "formal"
@@ -28,6 +28,7 @@ BUILD = ROOT / "build" / "formal"
 JOBS = 2
 TIMEOUT = 900  # seconds, of one run of SymbiYosys
 MODES = ("prove", "cover")
+HELPERS = ("ram_check", "burst_source", "follow_word")
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,7 @@ def gradient_rom(folder: Path) -> None:
 
 
 FULL_WIDTH = "the widths in use"
+ONE_ORDER = "the order is one formula for every power of two"
 WORD_FREE = "no word is looked at, so one bit stands for any width"
 
 PROOFS: tuple[Proof, ...] = (
@@ -137,11 +139,42 @@ PROOFS: tuple[Proof, ...] = (
         Proof(
             "frame_guard",
             "only whole frames leave, every fault flagged once, good frames unchanged, early starts kept",
-            "rows and columns are compared with constants only; a count of rows that is no power of two, and one that is",
+            "rows and columns are only counted; a count that is no power of two, and one that is",
             {"Rows": rows, "Columns": columns},
             depth=60,
         )
         for rows, columns in ((3, 4), (4, 2))
+    ),
+    *(
+        Proof(
+            "row_reorder",
+            "an arbitrary word at its place in the burst; latency 2 from the last word of a row",
+            f"{ONE_ORDER}; {WORD_FREE}",
+            {"Size": size, "ToBurst": to_burst},
+            depth=2 * size + 12,
+        )
+        for size in (4, 8)
+        for to_burst in (0, 1)
+    ),
+    *(
+        Proof(
+            "transpose",
+            "an arbitrary word at its place in its column; latency 2 from the first word of the last row",
+            f"{ONE_ORDER}; {WORD_FREE}",
+            {"Size": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
+            depth=45,
+        )
+        for makhoul_in, makhoul_out in ((0, 1), (1, 0))
+    ),
+    *(
+        Proof(
+            "frame_stack",
+            "an arbitrary word at its place, last row first; latency 2 from the first word of the last row",
+            f"rows and positions are only counted; rows no power of two, and one; {WORD_FREE}",
+            {"Rows": rows, "Size": size},
+            depth=45,
+        )
+        for rows, size in ((3, 4), (4, 4))
     ),
 )
 
@@ -166,7 +199,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
     """The .sby file of one run."""
     bench = f"fv_{proof.core}"
     parameters = " ".join(f"-G{name}={value}" for name, value in proof.parameters.items())
-    files = [*sources(), BENCHES / "ram_check.sv", BENCHES / f"{bench}.sv"]
+    files = [*sources(), *(BENCHES / f"{name}.sv" for name in (*HELPERS, bench))]
     flavor = "assert" if mode == "prove" else "cover"
     lines = [
         "[options]",
