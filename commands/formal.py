@@ -24,7 +24,7 @@ from pathlib import Path
 from commands.simulator import ROOT, sources
 from models.calibration import load
 from models.configuration import Configuration
-from models.latency import sdf_fft_latency
+from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
 from models.rom_files import write_words
 from models.tactile_depth import top_parameters, write_roms
 
@@ -104,6 +104,13 @@ class Outcome:
 def gradient_rom(folder: Path) -> None:
     """Eight pairs of slopes of one bit, every pair twice."""
     write_words(folder / "gradient.hex", [bin * 5 % 4 for bin in range(8)], 2)
+
+
+def transform_roms(folder: Path) -> None:
+    """Factors of 2 bits for a transform of 8: arbitrary ones, that of no word like the next."""
+    for direction in ("forward", "inverse"):
+        for file in (f"twiddle_{direction}_0.hex", f"phase_{direction}.hex"):
+            write_words(folder / file, [(5 * n + 9) % 64 for n in range(8)], 6)
 
 
 def factor_rom(block: int) -> Callable[[Path], None]:
@@ -298,7 +305,7 @@ PROOFS: tuple[Proof, ...] = (
             "word t of burst p meets the reciprocal of the pair (p, t); latency 6",
             f"one recurrence for every size; {ROUNDING}",
             {"Size": size},
-            depth=90,
+            depth=40,
             roms=reciprocal_rom(size),
         )
         for size in (4, 8)
@@ -340,10 +347,11 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "sdf_fft",
-            "start and frame_start with their burst, at the latency of models/latency.py",
+            "start and frame_start with their burst, at the latency of models/latency.py; a burst's own words alone",
             "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
             {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
             depth=60,
+            roms=transform_roms,
         )
         for inverse in (0, 1)
     ),
@@ -372,12 +380,24 @@ PROOFS: tuple[Proof, ...] = (
         depth=60,
         roms=thomas_roms(3, 8, 16, 3, 2, 1),
     ),
+    *(
+        Proof(
+            core,
+            "start and frame_start with their burst, at the latency of models/latency.py; a burst's own words alone",
+            "the smallest transform, every core of a longer one is in it",
+            {"Size": 8, "Latency": latency(8)},
+            depth=60,
+            roms=transform_roms,
+        )
+        for core, latency in (("dst_forward", dst_forward_latency), ("dst_inverse", dst_inverse_latency))
+    ),
 )
 
+
 HANDSHAKES = (
-    "s_axis_tready m_axis_tvalid m_axis_tlast m_axis_tuser "
-    "s_axil_awready s_axil_wready s_axil_bvalid s_axil_bresp s_axil_arready s_axil_rvalid"
-).split()
+    *("s_axis_tready", "m_axis_tvalid", "m_axis_tlast", "m_axis_tuser"),
+    *("s_axil_awready", "s_axil_wready", "s_axil_bvalid", "s_axil_bresp", "s_axil_arready", "s_axil_rvalid"),
+)
 STRUCTURES = tuple(
     Structure(
         "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
@@ -389,7 +409,14 @@ STRUCTURES = tuple(
 )
 
 # Cores with nothing that a proof here would add to.
-WITHOUT_CONTROL: Mapping[str, str] = {}
+WITHOUT_CONTROL: Mapping[str, str] = {
+    "rom": "one read register and no other state; its contents and addresses are proven of those that use it",
+    **dict.fromkeys(
+        ("spectral_solver", "tridiagonal_solver"),
+        "a chain of proven cores, each of which takes what the one before it sends; no control of its own",
+    ),
+}
+DOCUMENT = ROOT / "docs" / "formal.md"
 
 
 def environment() -> dict[str, str]:
@@ -553,10 +580,58 @@ def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[st
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
 
 
+PREFACE = """<!-- SPDX-License-Identifier: Apache-2.0 -->
+<!-- Written by `python -m commands.formal --document` from commands/formal.py: change it there. -->
+# What is proven
+
+`make formal` proves each line below by SymbiYosys, or says that it does not: without a bound on time, from any state at
+power-up, with every input and en free, reset too. Each bench has cover statements, all of which must be reached, so that
+no proof holds for want of anything to check. A bench is `formal/fv_<core>.sv`; it sees the ports of the core, and
+(`ram_check`) those of its memory: no word is read in the clock that writes it, and none before it was written.
+
+Where a core reads its memory before it was written (the delay line in its first clocks, the lines of divergence,
+forward_elimination and back_substitution in a frame's first row), what it reads must not matter: there the memory
+begins with any contents, and the specification of the outputs has none.
+
+How the parts make the whole:
+
+- Each core of the stream sends its words, start and frame_start a fixed number of enabled clocks after they came, or
+  (row_reorder, transpose, frame_stack) after the event that completes them, for every legal stream of bursts; so what
+  it sends is such a stream for the next. The latencies add up, and models/latency.py adds them.
+- What a bench assumes of its inputs is proven of the core that drives them: frames are whole, so the first depth after
+  a reset begins one, and ends of frames lie a frame's pixels apart (frame_guard, frame_output); no table word is
+  written while busy (axil_registers).
+- The specifications have no state from before the reset and, for data, none from before the frame, so neither does what
+  leaves: codes and timing of a frame are a function of that frame. The transforms are compared with a copy of
+  themselves that starts from another state and gets other words before and after.
+- No pixel and no memory lies in the cone of a handshake or side-band of the whole `tactile_depth`: the clocks at which
+  words move are the same whatever a frame shows. `contact` and the counts of saturations may depend on data.
+"""
+
+
+def document() -> str:
+    """docs/formal.md: what is proven, at which sizes, why they suffice."""
+    lines = [PREFACE, "| core | proven | sizes | why they suffice |", "|---|---|---|---|"]
+    entries: dict[tuple[str, str, str], list[str]] = {}
+    for proof in sorted((*PROOFS, *STRUCTURES), key=lambda proof: proof.core):
+        sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
+        entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
+    for (core, claim, sufficient), sizes in entries.items():
+        lines.append(f"| {core} | {claim} | {'; '.join(sizes) or 'the defaults'} | {sufficient} |")
+    lines += ["", "Without a proof of their own:", "", "| core | why |", "|---|---|"]
+    lines += [f"| {core} | {reason} |" for core, reason in WITHOUT_CONTROL.items()]
+    return "\n".join(lines) + "\n"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--core", help="prove this core alone")
-    proofs = selected(parser.parse_args().core)
+    parser.add_argument("--document", action="store_true", help=f"write {DOCUMENT.relative_to(ROOT)}, prove nothing")
+    arguments = parser.parse_args()
+    if arguments.document:
+        DOCUMENT.write_text(document())
+        return
+    proofs = selected(arguments.core)
     begun = time.monotonic()
     outcomes = run_all(proofs)
     print("\n" + table(proofs, outcomes))

@@ -27,7 +27,7 @@ module fv_back_substitution #(
   localparam int Lift = 1;
   localparam int SettledWidth = 2;
   localparam int LastShiftWidth = 1;
-  localparam int ExactWidth = 12;
+  localparam int ExactWidth = (InWidth + Lift + CoeffWidth - 1 > Width + CoeffWidth ? InWidth + Lift + CoeffWidth - 1 : Width + CoeffWidth) + 1;
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
@@ -52,20 +52,21 @@ module fv_back_substitution #(
   // The last row comes first; there the coefficient meets zero, so its shift does not matter.
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
   initial $readmemh("square.hex", square);
-  logic [LastShiftWidth-1:0] unused_shift;
-  logic signed [CoeffWidth-1:0] coefficient;
-  assign {unused_shift, coefficient} = square[(Rows - 1 - 32'(burst)) * Size + 32'(column)];
 
-  logic signed [Width-1:0] below, below_or_zero, z, expected;
+  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier takes
+  // it. Bursts are longer than the way, so the next word of the column finds the last one done.
+  logic [Latency-1:0] start_q, frame_start_q, old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
+  logic signed [InWidth-1:0] d;
+  logic signed [CoeffWidth-1:0] c;
+  logic [LastShiftWidth-1:0] unused_shift;
+  logic signed [Width-1:0] below, below_q, z;  // below: z of the row below
+  logic signed [Width+CoeffWidth-1:0] product;
   logic signed [ExactWidth-1:0] exact;
-  logic unused_clipped;
-  assign below_or_zero = burst == '0 ? '0 : below;
-  assign exact = (ExactWidth'(in_data) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(coefficient) * ExactWidth'(below_or_zero);
+  logic unused_clipped, of_last_row, of_first_row;
   round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
     .in(exact), .out(z), .clipped(unused_clipped)
   );
 
-  logic [Latency-1:0] start_q, frame_start_q, due;
   logic held;
   logic [Width+1:0] out_q;
   always_ff @(posedge clk) begin
@@ -76,16 +77,22 @@ module fv_back_substitution #(
     if (en) begin
       start_q <= Latency'({start_q, in_start});
       frame_start_q <= Latency'({frame_start_q, in_frame_start});
-      due <= Latency'({due, active & (position == column)});
+      old <= Latency'({old, active & (position == column)});
       if (active && position == column) begin
-        below <= z;
-        expected <= z;
+        d <= in_data;
+        {unused_shift, c} <= square[(Rows - 1 - 32'(burst)) * Size + 32'(column)];
+        of_last_row <= burst == '0;
+        of_first_row <= last_burst;
       end
+      if (old[0]) below_q <= of_last_row ? '0 : below;
+      if (old[2]) product <= below_q * c;
+      if (old[3]) exact <= (ExactWidth'(d) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
+      if (old[4]) below <= z;
     end
     if (rst) begin
       start_q <= '0;
       frame_start_q <= '0;
-      due <= '0;
+      old <= '0;
     end
   end
 
@@ -93,9 +100,9 @@ module fv_back_substitution #(
     if (started) begin
       start_when_due: assert (out_start == start_q[Latency-1]);
       frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
-      if (due[Latency-1]) substituted: assert (out_data == expected);
+      if (old[Latency-1]) substituted: assert (out_data == below);
       if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
-      last_out: cover (due[Latency-1] && last_burst && expected != '0 && held);
+      last_out: cover (old[Latency-1] && of_first_row && below != '0 && held);
     end
   end
 

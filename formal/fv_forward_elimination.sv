@@ -31,6 +31,7 @@ module fv_forward_elimination #(
   localparam int MomentDrop = 1;
   localparam int MeanReciprocal = 2;
   localparam int MeanDrop = 1;
+  localparam int MeanLatency = 10;  // from f to the mean that it is in
   localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
 
   logic started = 1'b0;
@@ -56,44 +57,45 @@ module fv_forward_elimination #(
 
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
   initial $readmemh("square.hex", square);
-  logic [LastShiftWidth-1:0] shift;
-  logic signed [CoeffWidth-1:0] coefficient;
-  assign {shift, coefficient} = square[32'(row) * Size + 32'(column)];
 
-  // One row of the recursion in one clock.
-  logic signed [Width-1:0] above, above_or_zero, difference, product, d;
+  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier takes
+  // it. Bursts are longer than the way, so the next word of the column finds the last one done.
+  logic [Latency-1:0] start_q, frame_start_q;
+  logic [MeanLatency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
+  logic signed [Width-1:0] f, above, difference, difference_q, rounded, d;  // above: d of the row above
+  logic signed [CoeffWidth-1:0] c;
+  logic [LastShiftWidth-1:0] by;
+  logic [RowWidth-1:0] row_q;
+  logic singular;  // the mean replaces this d
+  logic signed [Width+CoeffWidth-1:0] product;
+  logic signed [Width+CoeffWidth:0] shifted;
   logic signed [OutWidth-1:0] stored, expected;
   logic [2:0] unused_clipped;
-  logic signed [2*Width+3:0] exact;
-  assign above_or_zero = row == '0 ? '0 : above;
   round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
-    .in((Width + 1)'(in_data) - (Width + 1)'(above_or_zero)), .out(difference), .clipped(unused_clipped[0])
+    .in((Width + 1)'(f) - (row_q == '0 ? '0 : (Width + 1)'(above))), .out(difference), .clipped(unused_clipped[0])
   );
-  assign exact = ((2 * Width + 4)'(difference) * (2 * Width + 4)'(coefficient)) <<< shift;
-  round_saturate #(.InWidth(2 * Width + 4), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_product (
-    .in(exact), .out(product), .clipped(unused_clipped[1])
+  round_saturate #(.InWidth(Width + CoeffWidth + 1), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_rounded (
+    .in(shifted), .out(rounded), .clipped(unused_clipped[1])
   );
   round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
-    .in(d), .out(stored), .clipped(unused_clipped[2])
+    .in(above), .out(stored), .clipped(unused_clipped[2])
   );
 
-  logic singular;
-  assign singular = Neumann != 0 && column == '0 && last_row;
-  logic signed [MomentWidth-1:0] moment, moment_next;
-  logic signed [Width-1:0] mean_sum, mean;
+  logic signed [MomentWidth-1:0] addend, moment;
+  logic signed [Width-1:0] sum, sum_q, mean, mean_q;
+  logic signed [Width+CoeffWidth-1:0] scaled;
   logic [1:0] unused_mean;
-  assign moment_next = (row == '0 ? '0 : moment) + MomentWidth'((32'(row) + 1) * 32'(d));
   round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
-    .in(moment), .out(mean_sum), .clipped(unused_mean[0])
+    .in(moment), .out(sum), .clipped(unused_mean[0])
   );
   round_saturate #(.InWidth(Width + CoeffWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
-    .in((Width + CoeffWidth)'(-MeanReciprocal * 32'(mean_sum))), .out(mean), .clipped(unused_mean[1])
+    .in(scaled), .out(mean), .clipped(unused_mean[1])
   );
-  assign d = singular ? mean : product;
+  assign d = singular ? mean_q : rounded;
 
-  logic [Latency-1:0] start_q, frame_start_q, due;
   logic held;
   logic [OutWidth+1:0] out_q;
+  logic [RowWidth-1:0] row_of_addend;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
@@ -102,17 +104,31 @@ module fv_forward_elimination #(
     if (en) begin
       start_q <= Latency'({start_q, in_start});
       frame_start_q <= Latency'({frame_start_q, in_frame_start});
-      due <= Latency'({due, active & (position == column)});
+      old <= MeanLatency'({old, active & (position == column)});
       if (active && position == column) begin
-        above <= d;
-        moment <= moment_next;
-        expected <= stored;
+        f <= in_data;
+        {by, c} <= square[32'(row) * Size + 32'(column)];
+        row_q <= row;
+        singular <= Neumann != 0 && column == '0 && last_row;
       end
+      if (old[0]) difference_q <= difference;
+      if (old[2]) product <= difference_q * c;
+      if (old[3]) shifted <= (Width + CoeffWidth + 1)'(product) <<< by;
+      if (old[4]) above <= d;
+      if (old[5]) begin
+        expected <= stored;
+        addend <= MomentWidth'(32'(above) * (32'(row_q) + 1));
+        row_of_addend <= row_q;
+      end
+      if (old[6]) moment <= (row_of_addend == '0 ? '0 : moment) + addend;
+      if (old[7]) sum_q <= sum;
+      if (old[8]) scaled <= (Width + CoeffWidth)'(-MeanReciprocal * 32'(sum_q));
+      if (old[9]) mean_q <= mean;
     end
     if (rst) begin
       start_q <= '0;
       frame_start_q <= '0;
-      due <= '0;
+      old <= '0;
     end
   end
 
@@ -120,10 +136,10 @@ module fv_forward_elimination #(
     if (started) begin
       start_when_due: assert (out_start == start_q[Latency-1]);
       frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
-      if (due[Latency-1]) eliminated: assert (out_data == expected);
+      if (old[Latency-1]) eliminated: assert (out_data == expected);
       if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
-      last_row_out: cover (due[Latency-1] && last_row && expected != '0 && expected != '1);
-      if (Neumann != 0) mean_out: cover (due[Latency-1] && last_row && column == '0 && expected != '0);
+      last_row_out: cover (old[Latency-1] && row_q == RowWidth'(Rows - 1) && expected != '0 && expected != '1);
+      if (Neumann != 0) mean_out: cover (old[Latency-1] && singular && expected != '0);
     end
   end
 

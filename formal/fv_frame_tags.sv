@@ -54,12 +54,18 @@ module fv_frame_tags #(
     end
   end
 
+  int tags;  // on their way
+  always_comb begin
+    tags = 0;
+    for (int i = 0; i < Latency; i++) tags += 32'(pushed[i]);
+  end
+
   always_comb begin
     if (started) begin
       due_just_then: assert (due == pushed[Latency-1]);
       if (following && age == AgeWidth'(Latency)) own_tag: assert (due && due_tag == value);
       held_meanwhile: assert (held == (pushed != '0));
-      if (Latency > Pixels) most_tags: cover (due && push && pushed[Pixels-1]);
+      most_tags: cover (tags == (Latency + Pixels - 1) / Pixels && due);
       alone: cover (due && en && pushed[Latency-2:0] == '0);
     end
   end
