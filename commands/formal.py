@@ -585,8 +585,8 @@ PREFACE = """<!-- SPDX-License-Identifier: Apache-2.0 -->
 # What is proven
 
 `make formal` proves each line below by SymbiYosys, or says that it does not: without a bound on time, from any state at
-power-up, with every input and en free, reset too. Each bench has cover statements, all of which must be reached, so that
-no proof holds for want of anything to check. A bench is `formal/fv_<core>.sv`; it sees the ports of the core, and
+power-up, with every input free, en and reset too. Each bench has cover statements, all of which must be reached, so
+that no proof holds for want of anything to check. A bench is `formal/fv_<core>.sv`; it sees the ports of the core, and
 (`ram_check`) those of its memory: no word is read in the clock that writes it, and none before it was written.
 
 Where a core reads its memory before it was written (the delay line in its first clocks, the lines of divergence,
