@@ -15,6 +15,7 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -33,6 +34,7 @@ BUILD = ROOT / "build" / "formal"
 JOBS = 2
 TIMEOUT = 900  # seconds, of one run of SymbiYosys
 MODES = ("prove", "cover")
+COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
 HELPERS = ("ram_check", "burst_source", "follow_word")
 
 
@@ -420,8 +422,16 @@ DOCUMENT = ROOT / "docs" / "formal.md"
 
 
 def environment() -> dict[str, str]:
-    """With the tools of this Python environment on PATH."""
-    return os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}"}
+    """With the tools of this Python environment on PATH, and a program bitwuzla, which its wheel has not."""
+    folder = BUILD / "bin"
+    folder.mkdir(parents=True, exist_ok=True)
+    program = folder / "bitwuzla"
+    if not program.exists():
+        fresh = folder / f"bitwuzla.{threading.get_ident()}"
+        fresh.write_text(f'#!/bin/sh\nPYTHONPATH={ROOT} exec {sys.executable} -m commands.bitwuzla "$@"\n')
+        fresh.chmod(0o755)
+        fresh.rename(program)
+    return os.environ | {"PATH": os.pathsep.join([str(folder), str(Path(sys.executable).parent), os.environ["PATH"]])}
 
 
 def yosys_abc() -> Path:
@@ -444,7 +454,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         f"timeout {TIMEOUT}",
         *(["aigsmt z3"] if mode == "prove" else [f"depth {proof.depth}"]),
         "[engines]",
-        proof.engine if mode == "prove" else "smtbmc z3",
+        proof.engine if mode == "prove" else COVER_ENGINE,
         "[script]",
         f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)}",
         f"prep -flatten -top {bench}",
