@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | upsets | frontends | fuzz | calibration | setup | clean, see README.md
+# make sim | test | lint | upsets | frontends | fuzz | formal | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +10,7 @@ TOOLS := $(VENV)/verification
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
   STALLS WAVES OUT
 
-.PHONY: sim test lint upsets frontends fuzz calibration setup clean
+.PHONY: sim test lint upsets frontends fuzz formal calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -33,6 +33,10 @@ upsets: $(STAMP)
 # Two Verilog front ends read every core as the same circuit: a few minutes.
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
+
+# Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
+formal: $(TOOLS)
+	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)
