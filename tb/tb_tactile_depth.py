@@ -409,7 +409,7 @@ async def malformed(dut, fault, accepts):
     await pipeline.write("THRESHOLD", (int(codes[0].max()) + int(codes[1].max())) // 2)
     a = video((word.data ^ pipeline.random.getrandbits(3) for word in flat), pipeline.columns)
     for position in places(pipeline, fault)[: 2 if pipeline.stalled else None]:
-        b = broken(pressed, fault, position, pipeline.columns, timeout)
+        b = broken(pressed, fault, position, pipeline.columns, timeout + 1)
         await pipeline.send(a, b, a)
         left = await pipeline.check()
         assert pipeline.faults == [fault], f"{fault} at {position}: {pipeline.faults}"
