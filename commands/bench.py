@@ -74,7 +74,7 @@ def build(simulator: str, config: Configuration, waves: bool = False) -> Path:
     sources = [*simulation.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
     parameters = top_parameters(config)
     key = hashlib.sha256(json.dumps([simulator, waves, parameters, simulation.versions()]).encode())
-    for source in sources:
+    for source in (*sources, Path(simulation.__file__)):
         key.update(source.read_bytes())
     folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
     complete = folder / "complete"

@@ -11,6 +11,7 @@ import pytest
 from commands import simulator as simulation
 
 SEED = int(os.environ.get("SEED", "1"))
+REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
 
 
