@@ -132,18 +132,12 @@ class Attack:
             else:
                 note = bench.NOTE * (place in noted)
                 entries.append(note | item.user * bench.USER | item.last * bench.LAST | item.data)
-        clocks = 20 * (len(words) + self.drain())
-        played = bench.play(
-            self.simulator,
-            self.config,
-            self.calibration,
-            entries,
-            self.folder,
-            clocks=clocks,
-            seed=self.seed,
-            **arguments,
+        return self.bench(entries, clocks=20 * (len(words) + self.drain()), **arguments), guarded
+
+    def bench(self, entries: Sequence[int], **arguments) -> bench.Played:
+        return bench.play(
+            self.simulator, self.config, self.calibration, entries, self.folder, seed=self.seed, **arguments
         )
-        return played, guarded
 
 
 @dataclass(frozen=True)
@@ -233,6 +227,77 @@ def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: i
     levels = {"contact"} if want[-1].max() > threshold else set()
     assert {name for name, value in status.items() if value} == sticky | levels
     return len(good)
+
+
+@dataclass(frozen=True)
+class Reset:
+    """A reset of `clocks`, `phase` clocks after the stream began, with the sink as its profile says."""
+
+    phase: int
+    clocks: int
+    sink: str
+
+
+def phases(config: Configuration) -> range:
+    """Clocks after the first pixel until every stage holds a frame, and a frame more."""
+    return range(1, first_depth_latency(config) + 2 * config.rows * config.columns)
+
+
+def resets(device: Attack, chosen: Sequence[Reset]) -> Outcome:
+    """Reset a stream of whole and broken frames in the given phases; after each, whole frames are right to the end."""
+    a, b = device.frame(128, 127), device.frame(128, 127)
+    columns = device.columns
+    busy = [
+        *a,
+        *broken(b, "row_short", device.random.randrange(columns), columns),  # to be filled up
+        *broken(b, "start_early", device.random.randrange(1, columns), columns),  # the next start waits for that
+        *(word for _ in range(len(phases(device.config)) // device.pixels + 1) for word in b + a),
+    ]
+    after = [*a, *b, *[None] * device.drain()]
+
+    def entries_of(stream: Sequence[Word | None], noted: bool) -> list[int]:
+        out = [
+            bench.entry("idle", 1) if item is None else item.user * bench.USER | item.last * bench.LAST | item.data
+            for item in stream
+        ]
+        if noted:
+            for place in range(0, 2 * device.pixels, device.pixels):
+                out[place] |= bench.NOTE
+                out[place + device.pixels - 1] |= bench.NOTE
+        return out
+
+    busy_entries, after_entries = entries_of(busy, False), entries_of(after, True)
+    entries: list[int] = []
+    for reset in chosen:
+        entries += [
+            bench.entry("sink", PROFILES.get(reset.sink, bench.turns(0, 4095))),
+            bench.entry("arm", reset.phase),
+        ]
+        entries += [len(entries) + 1 + len(busy_entries), *busy_entries]
+        entries += [bench.entry("reset", reset.clocks), bench.entry("sink"), *after_entries, bench.entry("reset", 1)]
+    played = device.bench(entries, clocks=40 * len(entries))
+
+    busy_codes, _ = device.model([f.pixels for f in frame_guard(busy, device.rows, columns).frames if not f.bad])
+    codes, _ = device.model([[word.data for word in words] for words in (a, b)])
+    marks = [numbers for letter, numbers in played.events if letter == "r"]
+    assert len(marks) == 2 * len(chosen), "resets"
+    begin, latency = 0, last_pixel_to_first_depth(device.config)
+    for reset, (_, interrupted), (_, end) in zip(chosen, marks[::2], marks[1::2], strict=True):
+        early, late = played.codes[begin:interrupted], played.codes[interrupted:end]
+        assert (early == busy_codes.reshape(-1)[: len(early)]).all(), f"codes before {reset}"
+        assert len(late) == codes.size, f"{len(late)} codes left after {reset}"
+        assert (late == codes.reshape(-1)).all(), f"codes after {reset}"
+        begin = end
+    segment, taken, depths = -1, [], []
+    for letter, numbers in (*played.events, ("r", (0, 0))):
+        if letter == "r":
+            if segment % 2 == 0:
+                drained = [depth - last for depth, last in zip(depths, taken[1::2], strict=True)]
+                assert drained == [latency] * 2, f"last pixel to first depth after {chosen[segment // 2]}: {drained}"
+            segment, taken, depths = segment + 1, [], []
+        elif letter in "td":
+            (taken if letter == "t" else depths).append(numbers[0])
+    return Outcome(len(chosen), 0, 2 * len(chosen), len(played.codes))
 
 
 def record(**figures) -> None:
