@@ -204,7 +204,7 @@ module frame_bench
 
     if (s_axis_tvalid && s_axis_tready && note && !resetting) $fwrite(events_file, "t %0d\n", clock);
     if (resetting) begin
-      if (!was_resetting) $fwrite(events_file, "r %0d %0d\n", clock, codes);
+      if (!rst && !was_resetting) $fwrite(events_file, "r %0d %0d\n", clock, codes);
       reset_left <= reset_left - 32'd1;
       if (reset_left == 32'd1) resetting <= 1'b0;
     end else if (withdraw) begin
