@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import json
-import os
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -298,10 +296,3 @@ def resets(device: Attack, chosen: Sequence[Reset]) -> Outcome:
         elif letter in "td":
             (taken if letter == "t" else depths).append(numbers[0])
     return Outcome(len(chosen), 0, 2 * len(chosen), len(played.codes))
-
-
-def record(**figures) -> None:
-    """A line for the table of `make regress`, in the file that RECORDS names."""
-    if "RECORDS" in os.environ:
-        with Path(os.environ["RECORDS"]).open("a") as file:
-            file.write(json.dumps(figures) + "\n")

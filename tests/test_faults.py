@@ -15,8 +15,9 @@ import time
 from itertools import groupby
 
 import pytest
-from attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, record, resets
+from attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
 from conftest import REGRESS, SEED
+from records import record
 
 from models.configuration import COLUMNS, Configuration
 
