@@ -48,6 +48,18 @@ def pytest_generate_tests(metafunc):
     metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"], ids=ids)
 
 
+def begins_at_random(item):
+    """Whether a test goes on to run from several random power-up states; see `run_tb`."""
+    callspec = getattr(item, "callspec", None)
+    first = callspec is not None and all(index == 0 for index in callspec.indices.values())
+    return first and "run_tb" in item.fixturenames and callspec.params["simulator"] == "verilator"
+
+
+def pytest_collection_modifyitems(items):
+    if os.environ.get("ONLY") == "power_ups":
+        items[:] = [item for item in items if begins_at_random(item)]
+
+
 def _label(value):
     return "-".join(f"{key}={choice}" for key, choice in value.items()) if isinstance(value, dict) else str(value)
 
@@ -118,9 +130,7 @@ def run_tb(simulator, request):
 
         began = time.monotonic()
         play(folder / "run.log", environment)
-        chosen = request.node.callspec.indices
-        first = all(index == 0 for index in chosen.values())
-        if simulator != "verilator" or not first or "rst" not in (simulation.HDL / f"{toplevel}.sv").read_text():
+        if not begins_at_random(request.node) or "rst" not in (simulation.HDL / f"{toplevel}.sv").read_text():
             return
         quick = {**(environment or {}), "COCOTB_TEST_FILTER": shortest(folder / "results.xml", QUICK_CLOCKS)}
         for power_up in range(1, POWER_UPS):  # the run above was the first
