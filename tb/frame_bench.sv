@@ -4,7 +4,7 @@
 // entries.bin holds entries of 32 bits, highest byte first; its kind is in bits 31:28.
 //   0  a pixel: 27 note the clock in which it is taken, 25 tuser, 24 tlast, 23:0 tdata. Offered until it is taken
 //   1  23:0 clocks without a pixel
-//   2  the sink: by turns ready for 23:12 clocks and not for 11:0; with 23:12 zero it refuses with probability 11:0 / 4096
+//   2  the sink: ready for 23:12 clocks, then 11:0 not, and so on; if 23:12 is zero not with probability 11:0 / 4096
 //   3  the source: pixels are offered so
 //   4  23:0 clocks of reset, one clock to come out of it
 //   5  23:0 clocks from here on, whatever stands on the pins then is withdrawn and the file goes on at the entry whose
@@ -118,6 +118,7 @@ module frame_bench
   logic [31:0] depths, codes;
   logic fresh, open;  // a depth that was not there before; the frame's first depth has left
   logic refused;
+  logic [4:0] flagged;
   logic [DepthWidth+1:0] leaving, held;
   integer entries_file, depth_file, events_file, bytes;
 
@@ -174,7 +175,7 @@ module frame_bench
               target <= word;
               at_once = 1'b1;
             end
-            default: $fatal(1, "%m: no such entry: %h", word);
+            default: $fatal(1, "%m: no such entry: 0x%h", word);
           endcase
         end
       end
@@ -189,6 +190,7 @@ module frame_bench
 
   assign offers = accepts(source, source_place, random_gap);
   assign withdraw = deadline == 32'd1;
+  assign flagged = {dut.timed_out, dut.start_early, dut.start_missing, dut.row_long, dut.row_short};
   assign leaving = {m_axis_tuser, m_axis_tlast, m_axis_tdata};
 
   always @(posedge clk) begin
@@ -227,11 +229,9 @@ module frame_bench
       if (^{s_axis_tready, m_axis_tvalid, contact} === 1'bx) $fatal(1, "%m: an unknown handshake");
       if (m_axis_tvalid && ^leaving === 1'bx) $fatal(1, "%m: an unknown word");
       if (refused && (!m_axis_tvalid || leaving != held)) $fatal(1, "%m: a word changed before it was taken");
-      if (dut.row_short) $fwrite(events_file, "f 0 %0d\n", clock);
-      if (dut.row_long) $fwrite(events_file, "f 1 %0d\n", clock);
-      if (dut.start_missing) $fwrite(events_file, "f 2 %0d\n", clock);
-      if (dut.start_early) $fwrite(events_file, "f 3 %0d\n", clock);
-      if (dut.timed_out) $fwrite(events_file, "f 4 %0d\n", clock);
+      for (int i = 0; i < 5; i++) begin
+        if (flagged[i]) $fwrite(events_file, "f %0d %0d\n", i, clock);
+      end
       if (m_axis_tvalid) begin
         if (fresh && m_axis_tuser) $fwrite(events_file, "d %0d\n", clock);
         if (fresh && depths == 32'(Pixels - 1)) $fwrite(events_file, "e %0d\n", clock);
