@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, field
@@ -203,7 +204,7 @@ def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str],
     """Run tests; what they recorded becomes the part's lines."""
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records.jsonl"
-        command = [sys.executable, "-m", "pytest", "-v", "-n", str(jobs), "--dist", "worksteal", *arguments]
+        command = [sys.executable, "-m", "pytest", "-vv", "-n", str(jobs), "--dist", "worksteal", *arguments]
         process = subprocess.Popen(
             command,
             cwd=ROOT,
@@ -293,6 +294,19 @@ def table(parts: list[Part]) -> str:
     return "\n".join(rows)
 
 
+def matrix(part: Part) -> str:
+    """How often each kind of fault was played on each device."""
+    counts: dict[str, Counter[str]] = {}
+    for line in part.lines:
+        for kind, number in line.get("kinds", {}).items():
+            counts.setdefault(kind, Counter())[f"{line['grid']} {line['simulator']}"] += number
+    devices = sorted({device for row in counts.values() for device in row})
+    lines = [f"{chr(ord('a') + index)}: {device}" for index, device in enumerate(devices)]
+    lines.append(f"{'':14}" + "".join(f"{chr(ord('a') + index):>8}" for index in range(len(devices))))
+    lines += [f"{kind:14}" + "".join(f"{row[device]:8,}" for device in devices) for kind, row in counts.items()]
+    return "\n".join(lines)
+
+
 def main() -> None:
     wanted = os.environ.get("PARTS") or ",".join(PARTS)
     jobs = int(os.environ.get("JOBS") or 2)
@@ -311,6 +325,9 @@ def main() -> None:
     report.parent.mkdir(exist_ok=True)
     report.write_text(json.dumps([asdict(part) for part in parts], indent=1) + "\n")
     print(f"\n{table(parts)}")
+    for part in parts:
+        if part.name == "faults":
+            print(f"\n{matrix(part)}")
     compared = sum(line.get("codes", 0) for part in parts for line in part.lines)
     used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     failed = sum(len(part.failures) for part in parts)

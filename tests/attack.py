@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -143,6 +144,7 @@ class Outcome:
     """What was compared, and nothing differed."""
 
     cases: int
+    kinds: dict[str, int]
     faults: int
     frames: int
     codes: int
@@ -160,6 +162,7 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
     threshold = (int(codes[0].max()) + int(codes[1].max())) // 2
     stream: Stream = [*a]
     faults: list[str] = []
+    kinds: Counter[str] = Counter()
 
     def append(case: Case, source: str, sink: str, after_broken: bool = False) -> None:
         if case.kind == "waited":
@@ -170,6 +173,7 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
             silent = 4 * (timeout + after_broken * pixels) + 2 * LONGEST[sink]
         stream.extend(broken(pressed, case.kind, case.position, columns, silent))
         faults.extend(faults_of(case.kind, case.position, columns))
+        kinds[case.kind] += 1
 
     with_start = [c for c in chosen if c.kind not in (*WITHOUT_START, "whole")]
     for source, sink, batch in batches(chosen, stalled, timeout):
@@ -189,7 +193,7 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
     played, guarded = device.play(stream, registers=registers)
     assert guarded.faults == faults, "not the stream it was meant to be"
     outcome = compare(device, played, guarded, threshold, stalled)
-    return Outcome(len(chosen), len(faults), outcome, len(played.codes))
+    return Outcome(len(chosen), dict(kinds), len(faults), outcome, len(played.codes))
 
 
 def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: int, stalled: bool) -> int:
@@ -295,4 +299,4 @@ def resets(device: Attack, chosen: Sequence[Reset]) -> Outcome:
             segment, taken, depths = segment + 1, [], []
         elif letter in "td":
             (taken if letter == "t" else depths).append(numbers[0])
-    return Outcome(len(chosen), 0, 2 * len(chosen), len(played.codes))
+    return Outcome(len(chosen), {"reset": len(chosen)}, 0, 2 * len(chosen), len(played.codes))

@@ -19,7 +19,7 @@ from commands import simulator as simulation
 SEED = int(os.environ.get("SEED", "1"))
 REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
 POWER_UPS = int(os.environ.get("POWER_UPS", "8"))  # random states to begin from
-QUICK_CLOCKS = 8000
+QUICK_CLOCKS = 5000
 CLOCK_NS = 6  # of the testbenches
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
 

@@ -56,7 +56,14 @@ def chosen(simulator, grid, stalled, silent):
 
 
 def note(what, simulator, grid, out: Outcome, began):
-    record(part="faults", what=f"{what}, {grid}", simulator=simulator, **out.__dict__, seconds=time.monotonic() - began)
+    record(
+        part="faults",
+        grid=grid,
+        what=f"{what}, {grid}",
+        simulator=simulator,
+        **out.__dict__,
+        seconds=time.monotonic() - began,
+    )
 
 
 @pytest.mark.structures("grid", both=BOTH, icarus=[(grid,) for grid in GRIDS][len(BOTH) :])
