@@ -30,6 +30,10 @@ lint: $(TOOLS)
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
 
+# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER=all
+fuzz: $(TOOLS)
+	@$(PY) -m commands.fuzz $(foreach v,MINUTES SEED READER,$(if $($(v)),'$(v)=$($(v))'))
+
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)
 	@$(PY) -m commands.fit_gelsight_mini
