@@ -7,11 +7,15 @@ import re
 import shutil
 
 import pytest
+from hypothesis import settings
 
 from commands import simulator as simulation
 
 SEED = int(os.environ.get("SEED", "1"))
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
+
+settings.register_profile("no deadline", deadline=None)  # a busy machine is no failure of a model
+settings.load_profile("no deadline")
 
 
 def pytest_configure(config):
