@@ -138,7 +138,7 @@ def test_the_singular_mode_has_no_mean(seed):
     f[:, 0] = noise(seed, config.rows, limit=1 << 12)
     f[-1, 0] -= f[:, 0].sum()  # the sum of a divergence is zero
     z = down_and_up(f, config)[:, 0]
-    # The mean is taken before the rows are stored: each then errs by up to half a stored word, and counts (i + 1) / rows.
+    # The mean is taken before the rows are stored: each then errs by up to half a word, and counts (i + 1) / rows.
     stored = 1 << (config.elimination.fraction - config.elimination_store.fraction)
     assert abs(z.mean()) <= RELATIVE * np.abs(z).max() + stored / 2 * (config.rows + 1) / 2 + stored
 
