@@ -39,6 +39,10 @@ upsets: $(STAMP)
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
 
+# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER=all
+fuzz: $(TOOLS)
+	@$(PY) -m commands.fuzz $(foreach v,MINUTES SEED READER,$(if $($(v)),'$(v)=$($(v))'))
+
 # Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
 formal: $(TOOLS)
 	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')

@@ -12,6 +12,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from hypothesis import settings
 from records import record
 
 from commands import simulator as simulation
@@ -22,6 +23,9 @@ POWER_UPS = int(os.environ.get("POWER_UPS", "8"))  # random states to begin from
 QUICK_CLOCKS = 5000
 CLOCK_NS = 6  # of the testbenches
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
+
+settings.register_profile("no deadline", deadline=None)  # a busy machine is no failure of a model
+settings.load_profile("no deadline")
 
 
 def pytest_configure(config):
