@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | coverage | upsets | frontends | fuzz | calibration | setup | clean, see README.md
+# make sim | test | lint | coverage | upsets | frontends | fuzz | formal | regress | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +10,7 @@ TOOLS := $(VENV)/verification
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
   STALLS WAVES OUT
 
-.PHONY: sim test lint coverage upsets frontends fuzz calibration setup clean
+.PHONY: sim test lint coverage upsets frontends fuzz formal regress calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -20,6 +20,11 @@ sim: $(STAMP)
 # The whole suite: lint, models, every core on every simulator.
 test: lint
 	@$(PY) -m pytest -n auto --dist worksteal
+
+# What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
+regress: $(TOOLS)
+	@sh commands/icarus.sh
+	@PARTS='$(PARTS)' JOBS='$(JOBS)' $(PY) -m commands.regress
 
 # Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
 lint: $(TOOLS)
@@ -37,6 +42,14 @@ upsets: $(STAMP)
 # Two Verilog front ends read every core as the same circuit: a few minutes.
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
+
+# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER=all
+fuzz: $(TOOLS)
+	@$(PY) -m commands.fuzz $(foreach v,MINUTES SEED READER,$(if $($(v)),'$(v)=$($(v))'))
+
+# Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
+formal: $(TOOLS)
+	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

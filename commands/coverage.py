@@ -195,7 +195,7 @@ def run_tests() -> int:
     modules = sorted((path.stem for path in simulation.sources()), key=lambda name: name != TOP)  # the longest first
     tests = [f"tests/test_{name}.py" for name in modules if (simulation.ROOT / "tests" / f"test_{name}.py").is_file()]
     command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-k", "verilator", *tests]
-    environment = {**os.environ, "HDL_COVERAGE": "1", "SIM": "verilator"}
+    environment = {**os.environ, "HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1"}
     return subprocess.run(command, cwd=simulation.ROOT, env=environment, check=False).returncode
 
 

@@ -32,19 +32,3 @@ EXTREMES = {
 @pytest.mark.parametrize("parameters", [built(Configuration(columns=128)), EXTREMES], ids=["128", "extremes"])
 def test_axil_registers(run_tb, parameters):
     run_tb("axil_registers", SOURCES, parameters=parameters)
-
-
-@pytest.mark.parametrize(
-    ("parameter", "value", "message"),
-    [
-        ("Rows", 0, "Rows does not fit GRID"),
-        ("Rows", 65536, "Rows does not fit GRID"),
-        ("Columns", 0, "Columns does not fit GRID"),
-        ("Columns", 65536, "Columns does not fit GRID"),
-        ("GradientWidth", 1, "GradientWidth must be 2 to 32"),
-        ("GradientWidth", 33, "GradientWidth must be 2 to 32"),
-        ("BitsPerChannel", 11, "TABLE_INDEX holds at most 32 bits"),
-    ],
-)
-def test_refused_parameters(refused, parameter, value, message):
-    assert message in refused("axil_registers", {parameter: value})

@@ -41,8 +41,3 @@ def test_a_word_is_the_last_one_written_there(writes):
 def test_read_data_stays_between_reads():
     clocks = [(True, 0, 5, False, 0), (False, 0, 0, True, 0), (True, 0, 6, False, 0), (False, 0, 0, True, 0)]
     assert ram([None], clocks)[1] == [None, 5, 5, 6]
-
-
-def test_refused_parameters(refused):
-    said = refused("ram", {"Style": ULTRA, "File": as_sv_literal("contents.hex")})
-    assert "an ultra memory has no contents at power-up" in said

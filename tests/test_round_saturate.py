@@ -78,14 +78,3 @@ def test_floats_pass_unrounded_and_leave_their_l1_norm(x, drop):
     response = np.array(x)[:, None]
     np.testing.assert_array_equal(round_saturate(response, drop, 2, monitor, "node"), response / 2.0**drop)
     assert monitor.peak["node"] == pytest.approx(np.abs(response / 2.0**drop).sum())
-
-
-@pytest.mark.parametrize(
-    ("parameter", "value", "message"),
-    [
-        ("Drop", 46, "out of order"),  # Icarus itself, before the module's check
-        ("OutWidth", 1, "OutWidth must be at least 2"),
-    ],
-)
-def test_refused_parameters(refused, parameter, value, message):
-    assert message in refused("round_saturate", {"InWidth": 46, parameter: value})

@@ -83,8 +83,3 @@ def test_full_scale_sums_saturate_and_halved_ones_do_not():
 def test_zero_gives_zero():
     zero = np.zeros(16, np.int64)
     assert not np.any(sdf_butterfly(zero, zero, Stage(16, 8, rotate=True, halve=True), True, 8))
-
-
-@pytest.mark.parametrize("delay", [0, 65])
-def test_refused_parameters(refused, delay):
-    assert "Delay must be 1 to Size / 2" in refused("sdf_butterfly", {"Size": 128, "Delay": delay})

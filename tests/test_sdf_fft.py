@@ -131,8 +131,3 @@ def test_a_real_row_has_a_conjugate_symmetric_spectrum(seed, size):
 @pytest.mark.parametrize("inverse", [False, True])
 def test_zero_gives_zero(inverse):
     assert not np.any(transform(np.zeros(16, complex), inverse, 18))
-
-
-@pytest.mark.parametrize("size", [4, 24])
-def test_refused_parameters(refused, size):
-    assert "Size must be a power of two, at least 8" in refused("sdf_fft", {"Size": size})
