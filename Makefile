@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | upsets | frontends | fuzz | formal | regress | calibration | setup | clean, see README.md
+# make sim | test | lint | coverage | upsets | frontends | fuzz | formal | regress | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +10,7 @@ TOOLS := $(VENV)/verification
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
   STALLS WAVES OUT
 
-.PHONY: sim test lint upsets frontends fuzz formal regress calibration setup clean
+.PHONY: sim test lint coverage upsets frontends fuzz formal regress calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -30,6 +30,10 @@ regress: $(TOOLS)
 lint: $(TOOLS)
 	@sh commands/icarus.sh
 	@$(PY) -m commands.lint
+
+# The suite on Verilator with every line, branch, term and toggle of hdl/ counted, and the fault list's bins.
+coverage: $(STAMP)
+	@$(PY) -m commands.coverage
 
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)

@@ -76,7 +76,7 @@ def build(simulator: str, config: Configuration, waves: bool = False) -> Path:
     key = hashlib.sha256(json.dumps([simulator, waves, parameters, simulation.versions()]).encode())
     for source in (*sources, Path(simulation.__file__)):
         key.update(source.read_bytes())
-    folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
+    folder = simulation.BUILD / "simulators" / key.hexdigest()[:16]
     complete = folder / "complete"
     folder.parent.mkdir(parents=True, exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:

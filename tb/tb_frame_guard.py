@@ -204,6 +204,23 @@ async def silence_without_movement(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
+async def long_time_outs(dut):
+    """Every bit of the register counts. Most of the silence is written into its counter, not waited for."""
+    bench = Bench(dut)
+    await bench.start()
+    left = 5
+    for timeout in (*(1 << bit for bit in range(4, 32)), (1 << 32) - 1):
+        await bench.reset(1, timeout)
+        await bench.source.send(bench.frame()[:3])
+        await ClockCycles(dut.clk, 2)
+        dut.silence.value = timeout - left
+        await ClockCycles(dut.clk, left)
+        assert not bench.collector.faults, f"timeout {timeout}: too early"
+        await ClockCycles(dut.clk, 2)
+        assert bench.collector.faults == ["timed_out"], f"timeout {timeout}"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(clocks=[1, 2, 16])
 async def resets(dut, clocks):
     """At every position of a good frame and of the filler of a broken one; the next frame is right."""

@@ -10,8 +10,9 @@ import random
 from itertools import pairwise, product, repeat
 
 import cocotb
+import functional_coverage
 import numpy as np
-from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, profile, video
+from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from second_client import SecondMaster, SecondSink, SecondSource
@@ -62,6 +63,7 @@ class Pipeline:
         if Pipeline.table is None:
             Pipeline.table = gradient_codes(synthetic(bits), self.config)
         self.timeout, self.stalled = timeout, accepts != "none"
+        self.profiles = offers, accepts
         dut.rst.value = 1
         if SECOND_CLIENT:
             self.source = SecondSource(dut, profile(offers, 1))
@@ -80,6 +82,7 @@ class Pipeline:
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
         cocotb.start_soon(self.watch_contact())
+        functional_coverage.start(self.dut, self.config, *self.profiles)
         await self.reset(3)
         if self.timeout:
             await self.write("TIMEOUT", self.timeout)
@@ -321,7 +324,20 @@ async def back_to_back(dut):
 
 
 @TEST
-@cocotb.parametrize(offers=["none", "random", "long"], accepts=list(PROFILES))
+async def the_clock_comes_round(dut):
+    """Wherever the count of clocks returns to 0 while a frame is in flight, its latency is that of any other."""
+    pipeline = await started(dut)
+    for ahead in (5, pipeline.pixels // 2, pipeline.pixels + 5, first_depth_latency(pipeline.config)):
+        dut.now.value = (1 << 32) - ahead
+        await pipeline.send(pipeline.frame())
+        await pipeline.check()
+        assert pipeline.latency == first_depth_latency(pipeline.config)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
 async def gaps_and_stalls(dut, offers, accepts):
     """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
@@ -400,13 +416,9 @@ async def contact(dut, accepts):
 def places(pipeline, fault):
     """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
     size, pixels = pipeline.columns, pipeline.pixels
-    return {
-        "row_short": [0, size - 2, 5 * size + 3, pixels - size, pixels - 2],
-        "row_long": [size - 1, 6 * size - 1, pixels - 1],
-        "start_missing": [0],
-        "start_early": [1, 2, size - 1, size, 7 * size + 5, pixels - 1],
-        "timed_out": [1, size, pixels // 2 + 1, pixels - 1],
-    }[fault]
+    inner = pipeline.rows // 2 * size
+    chosen = (0, 1, size - 2, size - 1, size, inner + 3, inner + size - 1, pixels - size, pixels - 2, pixels - 1)
+    return [position for position in chosen if position in positions(fault, pipeline.rows, size)]
 
 
 @TEST
@@ -439,6 +451,23 @@ async def malformed(dut, fault, accepts):
     pipeline.counters = dict.fromkeys(pipeline.counters, 0)
     await pipeline.send(a)
     await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(fault=FAULTS)
+async def faults_side_by_side(dut, fault):
+    """A broken frame between whole and broken ones: each is counted by itself, and the whole ones are right."""
+    timeout = 60 if fault == "timed_out" else 0
+    pipeline = await started(dut, timeout=timeout)
+    silent = timeout + pipeline.pixels  # the guard may be filling up the frame before
+    for before, after in product(("good", "bad"), repeat=2):
+        sides = {"good": pipeline.frame(), "bad": broken(pipeline.frame(), "row_short", 3, pipeline.columns)}
+        middle = broken(pipeline.frame(), fault, places(pipeline, fault)[0], pipeline.columns, silent)
+        await pipeline.send(pipeline.frame(), sides[before], middle, sides[after], pipeline.frame())
+        left = await pipeline.check()
+        assert len(left) == 2 + (before == "good") + (after == "good")
+        own = [] if fault == "start_missing" and before == "bad" else [fault]  # rest of the one before
+        assert pipeline.faults == [*["row_short"] * (before == "bad"), *own, *["row_short"] * (after == "bad")]
 
 
 @TEST
@@ -601,25 +630,32 @@ async def saturation(dut, accepts):
 
 
 @TEST
-@cocotb.parametrize(clocks=[1, 2, 16], phase=["filling", "output", "full"])
+@cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "waiting", "output", "stalled", "full", "idle"])
 async def resets(dut, clocks, phase):
     """Registers are as after power-up, but for the gradient table; the next frame is right.
 
-    tests/test_faults.py resets in every phase.
+    tests/test_faults.py resets in every clock of these phases.
     """
     pipeline = await started(dut)
     await pipeline.write("THRESHOLD", -5)
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
+    first = pipeline.pixels + pipeline.random.randrange(pipeline.pixels // 2)
     streams = [pipeline.frame() for _ in range(5)]
     wait = {
-        "filling": pipeline.pixels + 50 + pipeline.random.randrange(pipeline.pixels // 2),
+        "mid_frame": first,
+        "filling": first + 50,
+        "waiting": pipeline.pixels + 50,
         "output": first_depth_latency(pipeline.config) + pipeline.random.randrange(3 * pipeline.pixels),
+        "stalled": first_depth_latency(pipeline.config) + pipeline.pixels,
         "full": first_depth_latency(pipeline.config) + 3 * pipeline.pixels,
+        "idle": first_depth_latency(pipeline.config) + pipeline.pixels + 10,
     }[phase]
+    if phase in ("waiting", "idle"):
+        del streams[1:]
     if phase == "filling":
         streams[1] = broken(streams[1], "row_short", pipeline.random.randrange(10), pipeline.columns)
-    if phase == "full":
-        pipeline.sink.stall(repeat(False))
+    if phase in ("stalled", "full"):
+        pipeline.sink.stall(repeat(False) if phase == "full" else profile("alternating"))
     cocotb.start_soon(pipeline.send(*streams))
     await ClockCycles(dut.clk, wait)
     await pipeline.reset(clocks)
@@ -664,6 +700,37 @@ async def registers_written_all_the_time(dut, accepts):
     await writing
     assert refused > 5
     await pipeline.write("CONTROL", 0)
+    await pipeline.check()
+
+
+@TEST
+async def registers_written_phase_by_phase(dut):
+    """Each of them while nothing moves, while a frame comes, fills up, is waited for, leaves and is stalled."""
+    pipeline = await started(dut)
+    columns, first = pipeline.columns, Pipeline.table[0]
+
+    async def write_all(busy):
+        answers = [await pipeline.write(name, 0) for name in ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT")]
+        assert answers == [Response.OKAY] * len(answers)
+        assert await pipeline.write_bin(0, first) == (Response.SLVERR if busy else Response.OKAY)
+
+    await write_all(busy=False)
+    frame, silence = pipeline.frame(), [None] * 100
+    sending = cocotb.start_soon(pipeline.send(frame[:columns], silence, frame[columns:]))
+    await ClockCycles(dut.clk, columns + 10)
+    await write_all(busy=True)  # inside the frame
+    await sending
+    await write_all(busy=True)  # before its first depth
+    while not pipeline.out.words:
+        await RisingEdge(dut.clk)
+    await write_all(busy=True)  # while it leaves
+    pipeline.sink.stall(repeat(False))
+    await ClockCycles(dut.clk, 4)
+    await write_all(busy=True)
+    pipeline.sink.stall(repeat(True))
+    await pipeline.idle()
+    await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
+    await write_all(busy=True)  # while it fills up
     await pipeline.check()
 
 

@@ -32,7 +32,8 @@ def pytest_configure(config):
     config.addinivalue_line(
         "markers",
         "structures(names, both=[..], icarus=[..]): the parameter sets of a test of RTL, as in parametrize; "
-        "those under `icarus` are built there alone, in 0.1 s each, where Verilator takes 5 s.",
+        "those under `icarus` are built there alone, in 0.1 s each, where Verilator takes 5 s; with HDL_COVERAGE=1, "
+        "which only Verilator counts, there in place.",
     )
 
 
@@ -47,7 +48,8 @@ def pytest_generate_tests(metafunc):
         return
     names, (both, icarus) = mark.args[0], (mark.kwargs["both"], mark.kwargs.get("icarus", []))
     cases = [(name, *case) for name in SIMULATORS for case in both]
-    cases += [("icarus", *case) for case in icarus if "icarus" in SIMULATORS]
+    alone = "verilator" if simulation.COVERAGE else "icarus"
+    cases += [(alone, *case) for case in icarus if alone in SIMULATORS]
     ids = ["-".join(_label(value) for value in case) for case in cases]
     metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"], ids=ids)
 
@@ -97,7 +99,7 @@ def run_tb(simulator, request):
 
     def run(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
-        folder = simulation.ROOT / "build" / "tests" / f"{request.node.path.stem}-{name}"
+        folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
         flags = zlib.crc32(Path(simulation.__file__).read_bytes())
         structure = json.dumps([toplevel, [path.name for path in simulation.sources(sources)], parameters, flags])

@@ -18,7 +18,13 @@ INVALID = {
     "frame_output": ["Columns=12", "Rows=1"],
     "divergence": ["Columns=1"],
     "threshold_comparator": ["Width=33"],
-    "ram": ["Depth=1"],
+    "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
+    "rom": ["Depth=1"],
+    "gradient_lookup": ["BitsPerChannel=0", "BitsPerChannel=9"],
+    "spectral_divide": ["Size=12", "Size=2"],
+    "thomas_table": ["Size=12", "Rows=1"],
+    "twiddle_multiply": ["Size=12", "Size=2", "Block=12", "Block=1", "Block=256"],
+    "tactile_depth": ["Rows=64", "DataWidth=33"],
     "round_saturate": ["Drop=46", "OutWidth=1"],
     "sdf_butterfly": [
         "Size=12",
@@ -29,17 +35,21 @@ INVALID = {
         "RotateBlock=6",
         "RotateBlock=256",
     ],
-    "axil_registers": ["Rows=0", "Columns=65536", "GradientWidth=33"],
+    "sdf_fft": ["Size=4", "Size=24"],
+    "axil_registers": [
+        *("Rows=0", "Rows=65536", "Columns=0", "Columns=65536"),
+        *("GradientWidth=1", "GradientWidth=33", "BitsPerChannel=11"),
+    ],
 }
 CASES = [(core, change) for core, changes in INVALID.items() for change in changes]
 
 
 def refused(core, change, folder) -> str:
     """What Icarus says: it does not elaborate, or the simulation ends with $fatal at time 0."""
-    name, value = change.split("=")
+    changes = [f"-P{core}.{parameter}" for parameter in change.split()]
     sources = [str(path) for path in simulator.sources()]
     built = folder / "built"
-    command = ["iverilog", "-g2012", "-o", built, "-s", core, f"-P{core}.{name}={value}", *sources]
+    command = ["iverilog", "-g2012", "-o", built, "-s", core, *changes, *sources]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode:
         return result.stderr
