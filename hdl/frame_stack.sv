@@ -88,7 +88,7 @@ module frame_stack #(
 
 `ifndef SYNTHESIS
   initial begin
-    if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
+    if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
     if (Rows < 2) $fatal(1, "%m: Rows must be at least 2");
   end
 `endif

@@ -104,7 +104,7 @@ module spectral_divide #(
   end
 
 `ifndef SYNTHESIS
-  initial if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
+  initial if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
 `endif
 
 endmodule
