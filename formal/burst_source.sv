@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// burst_source: every legal stream of bursts, for a bench: Size words in successive enabled clocks, Rows bursts a frame, any
-// gaps between bursts. It takes its choices from free inputs, so a bench needs no assumptions about its stream.
+// burst_source: every legal stream of bursts, for a bench: Size words in successive enabled clocks, Rows bursts a
+// frame, any gaps between bursts. It takes its choices from free inputs, so a bench needs no assumptions about its
+// stream.
 //
-// `restart` lets a frame begin before the last one is whole, as behind an upset. A frame is whole once its last burst begins.
+// `restart` lets a frame begin before the last one is whole, as behind an upset. A frame is whole once its last burst
+// begins.
 
 module burst_source #(
   parameter int Size = 8,

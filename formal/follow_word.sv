@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// follow_word: says when a group of words (a row, a burst, a frame) is due behind a core, and holds an arbitrary word of it
-// to its place. `close` is the event in which the latency is counted: the group's first word is due Latency enabled
-// clocks later, and its Words words follow each other. Groups close in the order in which they leave.
+// follow_word: says when a group of words (a row, a burst, a frame) is due behind a core, and holds an arbitrary word
+// of it to its place. `close` is the event in which the latency is counted: the group's first word is due Latency
+// enabled clocks later, and its Words words follow each other. Groups close in the order in which they leave.
 
 module follow_word #(
   parameter int Width   = 1,

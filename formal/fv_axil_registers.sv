@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
 //
-// Nothing is assumed of the master, the pipeline or reset. The registers of the specification change by what was seen on the
-// ports alone.
+// Nothing is assumed of the master, the pipeline or reset. The registers of the specification change by what was seen
+// on the ports alone.
 
 module fv_axil_registers
   import register_map_pkg::*;
@@ -80,8 +80,8 @@ module fv_axil_registers
   assign offset = 32'(address) / 4 * 4;
   always_comb begin
     for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
-    refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset || offset == TimeoutOffset
-        || offset == TableIndexOffset || offset == TableGxOffset
+    refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
+        || offset == TimeoutOffset || offset == TableIndexOffset || offset == TableGxOffset
         || (offset == TableGyOffset && !busy && strobes == 4'b1111));
   end
   logic writes_control, writes_status, writes_threshold, writes_timeout, writes_index, writes_gx, writes_gy;
@@ -198,19 +198,26 @@ module fv_axil_registers
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
       one_read_in_flight: assert (s_axil_arready == !asked);
-      answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == asked);  // once each, never without request
+      // Once each, never without a request.
+      answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == asked);
       if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
       if (b_stalled) write_response_stable: assert (s_axil_bvalid && s_axil_bresp == bresp_q);
-      if (read_due) read_response: assert (s_axil_rvalid && s_axil_rdata == word_q && s_axil_rresp == (known_q ? Okay : SlaveError));
+      if (read_due) begin
+        read_response: assert (s_axil_rvalid && s_axil_rdata == word_q
+            && s_axil_rresp == (known_q ? Okay : SlaveError));
+      end
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
       // What leaves for the pipeline.
       outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
       table_written: assert (table_write == writes_gy);
       never_while_busy: assert (!(table_write && busy));
-      if (table_write) table_word: assert (32'(table_index) == index && 32'(table_gx) == gx && table_gy == data[GradientWidth-1:0]);
+      if (table_write) begin
+        table_word: assert (32'(table_index) == index && 32'(table_gx) == gx && table_gy == data[GradientWidth-1:0]);
+      end
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
-      set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && event_row_long && sticky[StatusRowLongBit]);
+      set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && event_row_long
+          && sticky[StatusRowLongBit]);
       refused_while_busy: cover (effective && offset == TableGyOffset && strobes == 4'b1111 && refused);
       second_bin: cover (table_write && table_index == IndexWidth'(1));
       data_first: cover (has_data && !has_address && aw);

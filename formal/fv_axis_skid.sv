@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_axis_skid: nothing lost, repeated, reordered or changed; outputs stable under stall; a word offered one clock after it
-// was taken; ready whenever there is room.
+// fv_axis_skid: nothing lost, repeated, reordered or changed; outputs stable under stall; a word offered one clock
+// after it was taken; ready whenever there is room.
 //
 // One arbitrary word is followed: `pick` is free, so it may be any. Nothing is assumed of the source, which may even
 // withdraw a word that it offered.

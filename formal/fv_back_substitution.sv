@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 6 enabled clocks behind
-// d[i], with the coefficient of its own row and column; start and frame_start with their burst. No word of the frame
-// before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
+// fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 6 enabled clocks
+// behind d[i], with the coefficient of its own row and column; start and frame_start with their burst. No word of the
+// frame before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
 // Rounding is proven of round_saturate.
 
 module fv_back_substitution #(
@@ -27,7 +27,8 @@ module fv_back_substitution #(
   localparam int Lift = 1;
   localparam int SettledWidth = 2;
   localparam int LastShiftWidth = 1;
-  localparam int ExactWidth = (InWidth + Lift + CoeffWidth - 1 > Width + CoeffWidth ? InWidth + Lift + CoeffWidth - 1 : Width + CoeffWidth) + 1;
+  localparam int Aligned = InWidth + Lift + CoeffWidth - 1;
+  localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
@@ -53,8 +54,8 @@ module fv_back_substitution #(
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
   initial $readmemh("square.hex", square);
 
-  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier takes
-  // it. Bursts are longer than the way, so the next word of the column finds the last one done.
+  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier
+  // takes it. Bursts are longer than the way, so the next word of the column finds the last one done.
   logic [Latency-1:0] start_q, frame_start_q, old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
   logic signed [InWidth-1:0] d;
   logic signed [CoeffWidth-1:0] c;

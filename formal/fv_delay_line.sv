@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_delay_line: out is in, Delay enabled clocks later, for an arbitrary word; out holds while en is low.
 //
-// What leaves in the first Delay enabled clocks after a reset is no one's word: a memory that has not been written is read
-// there. Those who use the line look only later, which their own proofs show.
+// What leaves in the first Delay enabled clocks after a reset is no one's word: a memory that has not been written is
+// read there. Those who use the line look only later, which their own proofs show.
 
 module fv_delay_line #(
   parameter int Width = 1,

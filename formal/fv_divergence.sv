@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_divergence: f = gx - gx of the pixel to the left + gy - gy of the pixel above, nothing beyond the edge, for every pixel of
-// an arbitrary column; valid and frame_start with it, 2 enabled clocks later. Any gaps, any en, frames one behind another.
+// fv_divergence: f = gx - gx of the pixel to the left + gy - gy of the pixel above, nothing beyond the edge, for every
+// pixel of an arbitrary column; valid and frame_start with it, 2 enabled clocks later. Any gaps, any en, frames one
+// behind another.
 //
 // In the first row the line is read before it has been written; that what is read there changes nothing is shown by f
 // itself, with a memory of any contents.

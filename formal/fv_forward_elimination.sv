@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_forward_elimination: d[i] = c[i] (f[i] - d[i-1]) for every row of an arbitrary column, of any frame, 7 enabled clocks
-// behind f[i], with the coefficient of its own row and column; start and frame_start with their burst. Neumann: the last
-// row of column 0 is minus the mean. No word of the frame before, and none from power-up, enters: the specification has
-// none, and the memories begin with any contents. Rounding is proven of round_saturate.
+// fv_forward_elimination: d[i] = c[i] (f[i] - d[i-1]) for every row of an arbitrary column, of any frame, 7 enabled
+// clocks behind f[i], with the coefficient of its own row and column; start and frame_start with their burst. Neumann:
+// the last row of column 0 is minus the mean. No word of the frame before, and none from power-up, enters: the
+// specification has none, and the memories begin with any contents. Rounding is proven of round_saturate.
 
 module fv_forward_elimination #(
   parameter int Rows    = 3,
@@ -58,8 +58,8 @@ module fv_forward_elimination #(
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
   initial $readmemh("square.hex", square);
 
-  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier takes
-  // it. Bursts are longer than the way, so the next word of the column finds the last one done.
+  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier
+  // takes it. Bursts are longer than the way, so the next word of the column finds the last one done.
   logic [Latency-1:0] start_q, frame_start_q;
   logic [MeanLatency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
   logic signed [Width-1:0] f, above, difference, difference_q, rounded, d;  // above: d of the row above

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_frame_guard: whatever arrives, only whole frames leave; every fault is flagged once; a whole frame passes unchanged,
-// behind a fault too; an early start is kept. Nothing is assumed of the source, nor of en and the time-out.
+// fv_frame_guard: whatever arrives, only whole frames leave; every fault is flagged once; a whole frame passes
+// unchanged, behind a fault too; an early start is kept. Nothing is assumed of the source, nor of en and the time-out.
 //
 // The specification is an automaton on frames that counts pixels, not rows and columns:
 //   Idle    between frames                      Open    `count` pixels of a frame taken, nothing wrong
@@ -25,8 +25,8 @@ module fv_frame_guard #(
   localparam logic [CountWidth-1:0] One = 1;
   localparam logic [CountWidth-1:0] Whole = Pixels;
 
-  logic s_ready, out_valid, out_first_row, out_first_column, out_last_row, out_last_column, out_frame_start, out_frame_end;
-  logic out_bad, row_short, row_long, start_missing, start_early, timed_out;
+  logic s_ready, out_valid, out_first_row, out_first_column, out_last_row, out_last_column, out_frame_start;
+  logic out_frame_end, out_bad, row_short, row_long, start_missing, start_early, timed_out;
   logic [23:0] out_data;
   frame_guard #(.Rows(Rows), .Columns(Columns)) dut (
     .clk, .rst, .en, .timeout, .s_valid, .s_ready, .s_data, .s_last, .s_user, .out_valid, .out_data,

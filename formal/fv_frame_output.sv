@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_frame_output: a frame that is due and good leaves whole, with user on its first word, last on the last of each row and
-// frame_end on its last; a bad one, or one that does not begin when due, does not leave at all; out_of_step is high exactly
-// where bursts and frames do not begin as they should. Whatever bursts come; frames are due at least Rows * Columns
-// enabled clocks apart (frame_tags).
+// fv_frame_output: a frame that is due and good leaves whole, with user on its first word, last on the last of each row
+// and frame_end on its last; a bad one, or one that does not begin when due, does not leave at all; out_of_step is high
+// exactly where bursts and frames do not begin as they should. Whatever bursts come; frames are due at least Rows *
+// Columns enabled clocks apart (frame_tags).
 
 module fv_frame_output #(
   parameter int Width   = 1,
@@ -56,7 +56,9 @@ module fv_frame_output #(
   always_comb begin
     if (started) begin
       whole: assert (active == present && out_valid == (present && good));
-      if (frame_end) all_or_none: assert ((in_due ? '0 : sent) + CountWidth'(out_valid) == (good ? CountWidth'(Pixels) : '0));
+      if (frame_end) begin
+        all_or_none: assert ((in_due ? '0 : sent) + CountWidth'(out_valid) == (good ? CountWidth'(Pixels) : '0));
+      end
       if (out_valid) begin
         user_on_first: assert (out_user == (word == '0));
         last_of_row: assert (out_last == ((word + CountWidth'(1)) % CountWidth'(Columns) == '0));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_frame_stack: an arbitrary word leaves at its place of its row, last row first, unchanged; the last row 2 enabled clocks
-// behind its own first word, the others behind it without a pause; frame_start with the first.
-// Any gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
+// fv_frame_stack: an arbitrary word leaves at its place of its row, last row first, unchanged; the last row 2 enabled
+// clocks behind its own first word, the others behind it without a pause; frame_start with the first. Any gaps between
+// bursts, any en, any frame number, and frames that begin before the last one is whole.
 
 module fv_frame_stack #(
   parameter int Width = 1,

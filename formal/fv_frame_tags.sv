@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_frame_tags: an arbitrary tag is due exactly Latency enabled clocks after it was pushed, unchanged, and nothing else is ever
-// due; held is high just while there are tags. Pushes come at least Pixels enabled clocks apart, else at any time.
+// fv_frame_tags: an arbitrary tag is due exactly Latency enabled clocks after it was pushed, unchanged, and nothing
+// else is ever due; held is high just while there are tags. Pushes come at least Pixels enabled clocks apart, else at
+// any time.
 
 module fv_frame_tags #(
   parameter int Width   = 1,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_gradient_lookup: the slopes of a pixel are those that stand in the table at the index of its colour, from power-up or
-// as last written; valid and place travel with it, 2 enabled clocks; while en is low all outputs hold.
+// fv_gradient_lookup: the slopes of a pixel are those that stand in the table at the index of its colour, from power-up
+// or as last written; valid and place travel with it, 2 enabled clocks; while en is low all outputs hold.
 //
 // Assumed: nothing is written while a pixel is present or between the table and its register (axil_registers: never
 // while busy).
@@ -41,7 +41,8 @@ module fv_gradient_lookup #(
   assign blue = in_pixel[15:8] >> (8 - BitsPerChannel);
   assign green = in_pixel[7:0] >> (8 - BitsPerChannel);
   logic [IndexWidth-1:0] index;
-  assign index = (IndexWidth'(red) << (2 * BitsPerChannel)) + (IndexWidth'(green) << BitsPerChannel) + IndexWidth'(blue);
+  assign index = (IndexWidth'(red) << (2 * BitsPerChannel)) + (IndexWidth'(green) << BitsPerChannel)
+      + IndexWidth'(blue);
 
   logic [1:0] valid;   // of the pixels 1 and 2 enabled clocks ago
   logic [7:0] place;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_mode_pairs: an arbitrary word leaves Size / 2 + 1 enabled clocks later as out_mode, and once as out_mirrored, beside the
-// mode whose number adds up to Size with its own; mode 0 has 0 beside it. start and frame_start with the first of a burst.
+// fv_mode_pairs: an arbitrary word leaves Size / 2 + 1 enabled clocks later as out_mode, and once as out_mirrored,
+// beside the mode whose number adds up to Size with its own; mode 0 has 0 beside it. start and frame_start with the
+// first of a burst.
 
 module fv_mode_pairs #(
   parameter int Width = 1,
@@ -32,7 +33,7 @@ module fv_mode_pairs #(
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_mode, out_mirrored;
   mode_pairs #(.Width(Width), .Size(Size)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_mode(in_mode), .out_start, .out_frame_start, .out_mode, .out_mirrored
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_mode, .out_start, .out_frame_start, .out_mode, .out_mirrored
   );
 
   // Position of a mode: its number with the bits reversed; its mirror is Size minus its number.

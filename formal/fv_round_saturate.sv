@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_round_saturate: rounding and saturation over every input.
 //
-// The specification knows no bit of the implementation. An integer is the rounded value of in / 2^Drop if it lies nearer
-// than half a step, or at half a step and is even. There is exactly one such integer for every input, so what holds of an
-// arbitrary integer, should it be the one, holds of all inputs.
+// The specification knows no bit of the implementation. An integer is the rounded value of in / 2^Drop if it lies
+// nearer than half a step, or at half a step and is even. There is exactly one such integer for every input, so what
+// holds of an arbitrary integer, should it be the one, holds of all inputs.
 
 module fv_round_saturate #(
   parameter int InWidth  = 48,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_row_reorder: an arbitrary word leaves at its place, unchanged; a burst 2 enabled clocks behind the last word of its row;
-// frame_start with the burst of a frame's first row. Any gaps, any en, and frames that begin inside a row.
+// fv_row_reorder: an arbitrary word leaves at its place, unchanged; a burst 2 enabled clocks behind the last word of
+// its row; frame_start with the burst of a frame's first row. Any gaps, any en, and frames that begin inside a row.
 
 module fv_row_reorder #(
   parameter int Width   = 1,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_sdf_butterfly: of an arbitrary pair a, b of a block the sum leaves at the place of a and the difference at that of b,
-// Delay + 1 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the count
-// of clipped values with it. Rounding itself is proven of round_saturate.
+// fv_sdf_butterfly: of an arbitrary pair a, b of a block the sum leaves at the place of a and the difference at that of
+// b, Delay + 1 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the
+// count of clipped values with it. Rounding itself is proven of round_saturate.
 
 module fv_sdf_butterfly #(
   parameter int Width       = 2,
@@ -40,7 +40,8 @@ module fv_sdf_butterfly #(
   sdf_butterfly #(
     .Width(Width), .Size(Size), .Delay(Delay), .RotateBlock(RotateBlock), .Inverse(Inverse), .Halve(Halve)
   ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_re, .in_im, .out_start, .out_frame_start, .out_re, .out_im, .saturations
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_re, .in_im,
+    .out_start, .out_frame_start, .out_re, .out_im, .saturations
   );
 
   // A word as it enters the sum: turned by -j or +j in the last quarter of its block.
@@ -122,7 +123,10 @@ module fv_sdf_butterfly #(
       if (following && age == AgeWidth'(2 * Delay + 1)) begin
         difference: assert (out_re == difference_re_q && out_im == difference_im_q);
       end
-      if (b_taken) counted: assert (32'(saturations) == 32'(clipped_q[0]) + 32'(clipped_q[1]) + 32'(clipped_q[2]) + 32'(clipped_q[3]));
+      if (b_taken) begin
+        counted: assert (32'(saturations)
+            == 32'(clipped_q[0]) + 32'(clipped_q[1]) + 32'(clipped_q[2]) + 32'(clipped_q[3]));
+      end
       if (none_clipped) not_counted: assert (saturations == '0);
       if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
       clips: cover (b_taken && saturations > 3'd1);

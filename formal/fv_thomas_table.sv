@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_thomas_table: the coefficient of an arbitrary position and row, 3 enabled clocks later, is that of square.hex, which says
-// for every row and position which word that is: base + min(row, settled), in the last row one of its own with its shift.
+// fv_thomas_table: the coefficient of an arbitrary position and row, 3 enabled clocks later, is that of square.hex,
+// which says for every row and position which word that is: base + min(row, settled), in the last row one of its own
+// with its shift.
 
 module fv_thomas_table #(
   parameter int Rows           = 6,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_threshold_comparator: contact rises in the clock after a depth above the threshold leaves, and at no other time; it falls
-// in the clock after the first depth of a frame, if that is not above and hold is low, and at no other time.
+// fv_threshold_comparator: contact rises in the clock after a depth above the threshold leaves, and at no other time;
+// it falls in the clock after the first depth of a frame, if that is not above and hold is low, and at no other time.
 //
 // Assumed: what leaves first after a reset is the first depth of a frame (frame_output sends whole frames).
 

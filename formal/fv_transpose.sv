@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_transpose: an arbitrary word leaves in its column at the place of its row, unchanged; the first column 2 enabled clocks
-// behind the first word of the last row, the others behind it without a pause; frame_start with the first.
-// Any gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
+// fv_transpose: an arbitrary word leaves in its column at the place of its row, unchanged; the first column 2 enabled
+// clocks behind the first word of the last row, the others behind it without a pause; frame_start with the first. Any
+// gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
 
 module fv_transpose #(
   parameter int Width      = 1,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_twiddle_multiply: an arbitrary word meets the ROM word of its own position modulo Block and leaves 6 enabled clocks
-// later; start and frame_start likewise. The words are 1 or j, so that what leaves is the factor itself, and every field of
-// it is seen; the exact product is proven of dot_product, rounding of round_saturate.
+// fv_twiddle_multiply: an arbitrary word meets the ROM word of its own position modulo Block and leaves 6 enabled
+// clocks later; start and frame_start likewise. The words are 1 or j, so that what leaves is the factor itself, and
+// every field of it is seen; the exact product is proven of dot_product, rounding of round_saturate.
 
 module fv_twiddle_multiply #(
   parameter int Size     = 8,
@@ -83,7 +83,8 @@ module fv_twiddle_multiply #(
       if (following && age == 3'(Latency)) own_factor: assert (out_re == re && out_im == im);
       if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
       none_clipped: assert (saturations == '0);
-      last_word: cover (following && age == 3'(Latency) && re == OutWidth'($signed(factors[Block-1][CoeffWidth-1:0])) && held);
+      last_word: cover (following && age == 3'(Latency) && held
+          && re == OutWidth'($signed(factors[Block-1][CoeffWidth-1:0])));
     end
   end
 
