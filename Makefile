@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | calibration | setup | clean, see README.md
+# make sim | test | lint | upsets | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +10,7 @@ TOOLS := $(VENV)/verification
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
   STALLS WAVES OUT
 
-.PHONY: sim test lint calibration setup clean
+.PHONY: sim test lint upsets calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -25,6 +25,10 @@ test: lint
 # Verilator -Wall on every module, ruff, mypy.
 lint: $(TOOLS)
 	@$(PY) -m commands.lint
+
+# Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
+upsets: $(STAMP)
+	@UPSETS='$(UPSETS)' SEED='$(SEED)' $(PY) -m commands.upsets
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

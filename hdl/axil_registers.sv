@@ -48,6 +48,7 @@ module axil_registers
   input  logic                            event_start_missing,
   input  logic                            event_start_early,
   input  logic                            event_timeout,
+  input  logic                            event_out_of_step,
   input  logic                            event_frame_in,
   input  logic                            event_frame_out,
   input  logic                            event_frame_dropped,
@@ -140,6 +141,7 @@ module axil_registers
     | (32'(event_start_missing) << StatusStartMissingBit)
     | (32'(event_start_early) << StatusStartEarlyBit)
     | (32'(event_timeout) << StatusTimeoutBit)
+    | (32'(event_out_of_step) << StatusOutOfStepBit)
     | (32'(saturations != 8'd0) << StatusSaturationBit);
   assign status_cleared = (write_taken && write_offset == StatusOffset) ? write_ones : 32'd0;
   assign counters_cleared =

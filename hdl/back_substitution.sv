@@ -21,8 +21,10 @@ module back_substitution #(
   input  logic                      rst,
   input  logic                      en,
   input  logic                      in_start,
+  input  logic                      in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [InWidth-1:0] in_data,
   output logic                      out_start,
+  output logic                      out_frame_start,
   output logic signed [Width-1:0]   out_data,
   output logic                      saturations  // values clipped in a cycle
 );
@@ -35,8 +37,9 @@ module back_substitution #(
   localparam int ToSum = 5;
 
   logic [PositionWidth-1:0] position;
-  logic [RowWidth-1:0] row;
+  logic [RowWidth-1:0] row, row_q;
   logic active;
+  assign row = in_frame_start ? RowWidth'(Rows - 1) : row_q;
   burst_counter #(.Size(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
@@ -51,7 +54,7 @@ module back_substitution #(
   );
 
   logic [ToSum:0] active_q;
-  logic [ToSum-1:0] start_q;
+  logic [ToSum-1:0] start_q, frame_start_q;
   logic [(ToSum+1)*PositionWidth-1:0] position_q;
   logic signed [InWidth-1:0] data_q, data_q2, data_q3, data_q4;
   logic signed [Width-1:0] below, below_q2, below_q3, rounded;
@@ -65,11 +68,11 @@ module back_substitution #(
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[ToSum-2:0], in_start};
+      frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start};
       active_q <= {active_q[ToSum-1:0], active};
       position_q <= {position_q[ToSum*PositionWidth-1:0], position};
       first_q <= row == RowWidth'(Rows - 1);
-      if (active && position == PositionWidth'(Size - 1))
-        row <= row == '0 ? RowWidth'(Rows - 1) : row - RowWidth'(1);
+      row_q <= row - RowWidth'(active & (position == PositionWidth'(Size - 1)));
       data_q <= in_data;
       data_q2 <= data_q;
       data_q3 <= data_q2;
@@ -80,13 +83,15 @@ module back_substitution #(
       sum <= (SumWidth'(data_q4) <<< Align) - SumWidth'(product);
       out_data <= rounded;
       out_start <= start_q[ToSum-1];
+      out_frame_start <= frame_start_q[ToSum-1];
     end
     saturations <= en & active_q[ToSum-1] & clipped;
     if (rst) begin
       start_q <= '0;
+      frame_start_q <= '0;
       active_q <= '0;
-      row <= RowWidth'(Rows - 1);
       out_start <= 1'b0;
+      out_frame_start <= 1'b0;
       saturations <= 1'b0;
     end
   end

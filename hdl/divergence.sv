@@ -24,6 +24,7 @@ module divergence #(
   input  logic signed [Width-1:0]    in_gx,
   input  logic signed [Width-1:0]    in_gy,
   output logic                       out_valid,
+  output logic                       out_frame_start,  // the first pixel of a frame
   output logic signed [OutWidth-1:0] out_data
 );
 
@@ -65,11 +66,13 @@ module divergence #(
       if (valid_q) left_stored <= gx_q;
       valid_q <= in_valid;
       out_valid <= valid_q;
+      out_frame_start <= valid_q & first_row_q & first_column_q;
       out_data <= (OutWidth'(gx_q) - OutWidth'(left)) + (OutWidth'(gy_q) - OutWidth'(above));
     end
     if (rst) begin
       valid_q <= 1'b0;
       out_valid <= 1'b0;
+      out_frame_start <= 1'b0;
     end
   end
 

@@ -25,8 +25,10 @@ module dst_forward #(
   input  logic                       rst,
   input  logic                       en,
   input  logic                       in_start,
+  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [InWidth-1:0]  in_data,
   output logic                       out_start,
+  output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,
   output logic [7:0]                 saturations  // values clipped in a cycle, a little ago
 );
@@ -41,29 +43,31 @@ module dst_forward #(
   assign signed_in = Alternate != 0 && position[$clog2(Size)-1] ? -(InWidth + 1)'(in_data) : (InWidth + 1)'(in_data);
 
   logic signed [Width-1:0] x, x_q;
-  logic clipped, clipped_q, start_q;
+  logic clipped, clipped_q, start_q, frame_start_q;
   round_saturate #(.InWidth(InWidth + 1), .Drop(InputDrop), .OutWidth(Width)) u_input (
     .in(signed_in), .out(x), .clipped
   );
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= in_start;
+      frame_start_q <= in_frame_start;
       x_q <= x;
     end
     clipped_q <= en & active & clipped;
     if (rst) begin
       start_q <= 1'b0;
+      frame_start_q <= 1'b0;
       clipped_q <= 1'b0;
     end
   end
 
-  logic fft_start;
+  logic fft_start, fft_frame_start;
   logic signed [Width-1:0] fft_re, fft_im;
   logic [6:0] clipped_fft;
   sdf_fft #(.Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(0)) u_fft (
     .clk, .rst, .en,
-    .in_start(start_q), .in_re(x_q), .in_im(Width'(0)),
-    .out_start(fft_start), .out_re(fft_re), .out_im(fft_im),
+    .in_start(start_q), .in_frame_start(frame_start_q), .in_re(x_q), .in_im(Width'(0)),
+    .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(fft_re), .out_im(fft_im),
     .saturations(clipped_fft)
   );
 
@@ -74,8 +78,8 @@ module dst_forward #(
     .Size(Size), .Block(Size), .RealOnly(1), .File("phase_forward.hex")
   ) u_phase (
     .clk, .rst, .en,
-    .in_start(fft_start), .in_re(fft_re), .in_im(fft_im),
-    .out_start, .out_re(out_data), .out_im(unused_im),
+    .in_start(fft_start), .in_frame_start(fft_frame_start), .in_re(fft_re), .in_im(fft_im),
+    .out_start, .out_frame_start, .out_re(out_data), .out_im(unused_im),
     .saturations(clipped_phase)
   );
 

@@ -24,20 +24,22 @@ module dst_inverse #(
   input  logic                       rst,
   input  logic                       en,
   input  logic                       in_start,
+  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [InWidth-1:0]  in_data,
   output logic                       out_start,
+  output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,
   output logic [7:0]                 saturations  // values clipped in a cycle, a little ago
 );
 
-  logic pair_start;
+  logic pair_start, pair_frame_start;
   logic signed [InWidth-1:0] mode, mirrored;
   mode_pairs #(.Width(InWidth), .Size(Size)) u_pairs (
-    .clk, .rst, .en, .in_start, .in_mode(in_data),
-    .out_start(pair_start), .out_mode(mode), .out_mirrored(mirrored)
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_mode(in_data),
+    .out_start(pair_start), .out_frame_start(pair_frame_start), .out_mode(mode), .out_mirrored(mirrored)
   );
 
-  logic turned_start;
+  logic turned_start, turned_frame_start;
   logic signed [Width-1:0] turned_re, turned_im;
   logic [1:0] clipped_phase;
   twiddle_multiply #(
@@ -45,18 +47,18 @@ module dst_inverse #(
     .Size(Size), .Block(Size), .File("phase_inverse.hex")
   ) u_phase (
     .clk, .rst, .en,
-    .in_start(pair_start), .in_re(mirrored), .in_im(mode),
-    .out_start(turned_start), .out_re(turned_re), .out_im(turned_im),
+    .in_start(pair_start), .in_frame_start(pair_frame_start), .in_re(mirrored), .in_im(mode),
+    .out_start(turned_start), .out_frame_start(turned_frame_start), .out_re(turned_re), .out_im(turned_im),
     .saturations(clipped_phase)
   );
 
-  logic fft_start;
+  logic fft_start, fft_frame_start;
   logic signed [Width-1:0] x, unused_im;
   logic [6:0] clipped_fft;
   sdf_fft #(.Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(1)) u_fft (
     .clk, .rst, .en,
-    .in_start(turned_start), .in_re(turned_re), .in_im(turned_im),
-    .out_start(fft_start), .out_re(x), .out_im(unused_im),
+    .in_start(turned_start), .in_frame_start(turned_frame_start), .in_re(turned_re), .in_im(turned_im),
+    .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(x), .out_im(unused_im),
     .saturations(clipped_fft)
   );
 
@@ -77,12 +79,14 @@ module dst_inverse #(
   always_ff @(posedge clk) begin
     if (en) begin
       out_start <= fft_start;
+      out_frame_start <= fft_frame_start;
       out_data <= rounded;
     end
     clipped_q <= en & active & clipped;
     saturations <= 8'(clipped_q) + 8'(clipped_fft) + 8'(clipped_phase);
     if (rst) begin
       out_start <= 1'b0;
+      out_frame_start <= 1'b0;
       clipped_q <= 1'b0;
       saturations <= '0;
     end

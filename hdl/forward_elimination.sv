@@ -28,8 +28,10 @@ module forward_elimination #(
   input  logic                       rst,
   input  logic                       en,
   input  logic                       in_start,
+  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [Width-1:0]    in_data,
   output logic                       out_start,
+  output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,
   output logic [2:0]                 saturations  // values clipped in a cycle, a little ago
 );
@@ -41,8 +43,9 @@ module forward_elimination #(
   localparam int ToState = 6;
 
   logic [PositionWidth-1:0] position;
-  logic [RowWidth-1:0] row;
+  logic [RowWidth-1:0] row, row_q;
   logic active;
+  assign row = in_frame_start ? '0 : row_q;
   burst_counter #(.Size(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
@@ -57,25 +60,25 @@ module forward_elimination #(
   );
 
   // What follows a word down the pipeline.
-  logic [ToState-1:0] start_q, active_q, singular_q;  // singular: position 0 of the last row
+  logic [ToState-1:0] start_q, frame_start_q, active_q, singular_q;  // singular: position 0 of the last row
   logic [ToState*PositionWidth-1:0] position_q;
   logic first_row_q;
   logic signed [Width-1:0] data_q, state, state_or_zero;
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[ToState-2:0], in_start};
+      frame_start_q <= {frame_start_q[ToState-2:0], in_frame_start};
       active_q <= {active_q[ToState-2:0], active};
       singular_q <= {singular_q[ToState-2:0], in_start & (row == RowWidth'(Rows - 1))};
       position_q <= {position_q[(ToState-1)*PositionWidth-1:0], position};
       first_row_q <= row == '0;
       data_q <= in_data;
-      if (active && position == PositionWidth'(Size - 1))
-        row <= row == RowWidth'(Rows - 1) ? '0 : row + RowWidth'(1);
+      row_q <= row + RowWidth'(active & (position == PositionWidth'(Size - 1)));
     end
     if (rst) begin
       start_q <= '0;
+      frame_start_q <= '0;
       active_q <= '0;
-      row <= '0;
     end
   end
 
@@ -105,12 +108,14 @@ module forward_elimination #(
       d <= chosen;
       out_data <= stored;
       out_start <= start_q[ToState-1];
+      out_frame_start <= frame_start_q[ToState-1];
     end
     clipped_q <= {
       en & active_q[ToState-1] & clipped[2], en & active_q[ToState-2] & clipped[1], en & active_q[0] & clipped[0]
     };
     if (rst) begin
       out_start <= 1'b0;
+      out_frame_start <= 1'b0;
       clipped_q <= '0;
     end
   end
@@ -133,7 +138,8 @@ module forward_elimination #(
   if (Neumann != 0) begin : g_mean
     // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its use.
     localparam int MomentWidth = Width + 2 * RowWidth + 2;
-    logic [RowWidth:0] weight;
+    logic [RowWidth:0] weight, weight_q;  // of d, row + 1
+    assign weight = frame_start_q[ToState-1] ? (RowWidth + 1)'(1) : weight_q;
     logic signed [Width+RowWidth+1:0] addend;
     logic signed [MomentWidth-1:0] moment;
     logic signed [Width-1:0] sum, sum_q, mean;
@@ -147,17 +153,16 @@ module forward_elimination #(
       .in(scaled), .out(mean), .clipped(clipped_now[1])
     );
     logic ends;  // the mean is used when the last row begins, so the last addend is that of the row before
-    assign ends = weight == (RowWidth + 1)'(Rows);
+    assign ends = weight_q == (RowWidth + 1)'(Rows);
     logic signed [Width-1:0] mean_q;
     always_ff @(posedge clk) begin
       if (en) begin
         after <= {after[2:0], start_q[ToState-1]};
         if (start_q[ToState-1]) begin
           addend <= d * $signed({1'b0, weight});
-          weight <= ends ? (RowWidth + 1)'(1) : weight + (RowWidth + 1)'(1);
+          weight_q <= weight + (RowWidth + 1)'(1);
         end
-        if (after[0]) moment <= weight == (RowWidth + 1)'(1) ? '0
-            : (weight == (RowWidth + 1)'(2) ? '0 : moment) + MomentWidth'(addend);
+        if (after[0]) moment <= (weight_q == (RowWidth + 1)'(2) ? '0 : moment) + MomentWidth'(addend);
         if (after[1]) sum_q <= sum;
         if (after[2]) scaled <= sum_q * CoeffWidth'(-MeanReciprocal);
         if (after[3]) mean_q <= mean;
@@ -166,7 +171,6 @@ module forward_elimination #(
       clipped_mean[1] <= en & after[3] & clipped_now[1] & ends;
       if (rst) begin
         after <= '0;
-        weight <= (RowWidth + 1)'(1);
         clipped_mean <= '0;
       end
     end

@@ -17,8 +17,10 @@ module mode_pairs #(
   input  logic                    rst,
   input  logic                    en,
   input  logic                    in_start,
+  input  logic                    in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [Width-1:0] in_mode,
   output logic                    out_start,
+  output logic                    out_frame_start,
   output logic signed [Width-1:0] out_mode,
   output logic signed [Width-1:0] out_mirrored
 );
@@ -62,9 +64,17 @@ module mode_pairs #(
     .read_data    (mirrored)
   );
 
+  logic frame_start_q;  // of the burst that is being written
   always_ff @(posedge clk) begin
-    if (en) out_start <= read_start;
-    if (rst) out_start <= 1'b0;
+    if (en) begin
+      if (in_start) frame_start_q <= in_frame_start;
+      out_start <= read_start;
+      out_frame_start <= read_start & frame_start_q;
+    end
+    if (rst) begin
+      out_start <= 1'b0;
+      out_frame_start <= 1'b0;
+    end
   end
   assign out_mirrored = out_start ? '0 : mirrored;
 

@@ -42,6 +42,7 @@ package register_map_pkg;
   parameter int StatusStartEarlyBit = 3;
   parameter int StatusTimeoutBit = 4;
   parameter int StatusSaturationBit = 5;
+  parameter int StatusOutOfStepBit = 6;
   parameter int StatusBusyBit = 8;
   parameter int StatusContactBit = 9;
 

@@ -20,9 +20,11 @@ module sdf_butterfly #(
   input  logic                    rst,
   input  logic                    en,
   input  logic                    in_start,
+  input  logic                    in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [Width-1:0] in_re,
   input  logic signed [Width-1:0] in_im,
   output logic                    out_start,
+  output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
   output logic signed [Width-1:0] out_im,
   output logic [2:0]              saturations  // values clipped in this cycle
@@ -82,15 +84,20 @@ module sdf_butterfly #(
   assign held_re = second ? difference_re : in_re;
   assign held_im = second ? difference_im : in_im;
 
+  logic out_begins, frame_start_q;  // of the burst that enters
+  assign out_begins = active & (position == PositionWidth'(Delay));
   always_ff @(posedge clk) begin
     if (en) begin
-      out_start <= active & (position == PositionWidth'(Delay));
+      if (in_start) frame_start_q <= in_frame_start;
+      out_start <= out_begins;
+      out_frame_start <= out_begins & frame_start_q;
       out_re <= second ? sum_re : a_re;
       out_im <= second ? sum_im : a_im;
     end
     saturations <= (en && second) ? 3'(clipped[0]) + 3'(clipped[1]) + 3'(clipped[2]) + 3'(clipped[3]) : '0;
     if (rst) begin
       out_start <= 1'b0;
+      out_frame_start <= 1'b0;
       saturations <= '0;
     end
   end

@@ -21,8 +21,10 @@ module spectral_divide #(
   input  logic                    rst,
   input  logic                    en,
   input  logic                    in_start,
+  input  logic                    in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [Width-1:0] in_data,
   output logic                    out_start,
+  output logic                    out_frame_start,
   output logic signed [Width-1:0] out_data,
   output logic                    saturations  // values clipped in this cycle
 );
@@ -35,28 +37,25 @@ module spectral_divide #(
   localparam int ToShifted = 5;  // cycles to the shifted product: address, ROM, operands, product, shift
 
   // p: burst in the frame, t: word in the burst; tri_p = p (p + 1) / 2, tri_t likewise.
-  logic [PositionWidth-1:0] p, t;
-  logic [AddressWidth-1:0] tri_p, tri_t_q, tri_t, address;
+  logic [PositionWidth-1:0] p_q, p, t;
+  logic [AddressWidth-1:0] tri_p_q, tri_p, tri_t_q, tri_t, address;
   logic active;
   burst_counter #(.Size(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position(t), .active
   );
   assign tri_t = in_start ? '0 : tri_t_q;
+  assign p = in_frame_start ? '0 : p_q;
+  assign tri_p = in_frame_start ? '0 : tri_p_q;
+
+  logic burst_ends;
+  assign burst_ends = active & (t == PositionWidth'(Size - 1));
 
   always_ff @(posedge clk) begin
     if (en) begin
       address <= t <= p ? tri_p + AddressWidth'(t) : tri_t + AddressWidth'(p);
-      if (active) begin
-        tri_t_q <= tri_t + AddressWidth'(t) + AddressWidth'(1);
-        if (t == PositionWidth'(Size - 1)) begin
-          p <= p + PositionWidth'(1);
-          tri_p <= p == PositionWidth'(Size - 1) ? '0 : tri_p + AddressWidth'(p) + AddressWidth'(1);
-        end
-      end
-    end
-    if (rst) begin
-      p <= '0;
-      tri_p <= '0;
+      tri_t_q <= tri_t + AddressWidth'(t) + AddressWidth'(1);
+      p_q <= burst_ends ? p + PositionWidth'(1) : p;
+      tri_p_q <= burst_ends ? tri_p + AddressWidth'(p) + AddressWidth'(1) : tri_p;
     end
   end
 
@@ -69,7 +68,7 @@ module spectral_divide #(
   logic signed [Width-1:0] data_q, data_q2, data_q3;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
-  logic [ToShifted-1:0] start_q, active_q;
+  logic [ToShifted-1:0] start_q, frame_start_q, active_q;
   logic signed [Width-1:0] rounded;
   logic clipped;
   round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
@@ -88,14 +87,18 @@ module spectral_divide #(
       shifted <= ShiftedWidth'(product) <<< shift_q2;
       out_data <= rounded;
       start_q <= {start_q[ToShifted-2:0], in_start};
+      frame_start_q <= {frame_start_q[ToShifted-2:0], in_frame_start};
       active_q <= {active_q[ToShifted-2:0], active};
       out_start <= start_q[ToShifted-1];
+      out_frame_start <= frame_start_q[ToShifted-1];
     end
     saturations <= en & active_q[ToShifted-1] & clipped;
     if (rst) begin
       start_q <= '0;
+      frame_start_q <= '0;
       active_q <= '0;
       out_start <= 1'b0;
+      out_frame_start <= 1'b0;
       saturations <= 1'b0;
     end
   end

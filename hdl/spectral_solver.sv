@@ -29,8 +29,10 @@ module spectral_solver #(
   input  logic                        rst,
   input  logic                        en,
   input  logic                        in_valid,
+  input  logic                        in_frame_start,   // the first word of a frame
   input  logic signed [InWidth-1:0]   in_data,
   output logic                        out_start,
+  output logic                        out_frame_start,  // the first burst of a frame
   output logic signed [DataWidth-1:0] out_data,
   output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
 );
@@ -39,6 +41,8 @@ module spectral_solver #(
 
   logic row_start, row_modes_start, column_start, modes_start, divided_start;
   logic column_out_start, depth_row_start, depth_start, depth_valid;
+  logic row_frame_start, row_modes_frame_start, column_frame_start, modes_frame_start, divided_frame_start;
+  logic column_out_frame_start, depth_row_frame_start, depth_frame_start;
   logic [InWidth-1:0] row_data;
   logic [DataWidth-1:0] column_data, depth_row_data, depth_reordered;
   logic signed [DataWidth-1:0] row_modes, column_out, depth;
@@ -47,57 +51,59 @@ module spectral_solver #(
   logic clipped_divide;
 
   row_reorder #(.Width(InWidth), .Size(Size), .ToBurst(1)) u_row_in (
-    .clk, .rst, .en, .in_valid, .in_data(in_data), .out_start(row_start), .out_data(row_data)
+    .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
+    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
   );
 
   dst_forward #(
     .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
   ) u_row_forward (
-    .clk, .rst, .en, .in_start(row_start), .in_data(row_data),
-    .out_start(row_modes_start), .out_data(row_modes), .saturations(clipped_a)
+    .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
+    .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes), .saturations(clipped_a)
   );
 
   transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(0), .MakhoulOut(1)) u_to_columns (
-    .clk, .rst, .en, .in_start(row_modes_start), .in_data(row_modes),
-    .out_start(column_start), .out_data(column_data)
+    .clk, .rst, .en, .in_start(row_modes_start), .in_frame_start(row_modes_frame_start), .in_data(row_modes),
+    .out_start(column_start), .out_frame_start(column_frame_start), .out_data(column_data)
   );
 
   dst_forward #(
     .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
   ) u_column_forward (
-    .clk, .rst, .en, .in_start(column_start), .in_data(column_data),
-    .out_start(modes_start), .out_data(modes), .saturations(clipped_b)
+    .clk, .rst, .en, .in_start(column_start), .in_frame_start(column_frame_start), .in_data(column_data),
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_b)
   );
 
   spectral_divide #(
     .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size),
     .ShiftWidth(DivideShiftWidth), .Drop(DivideDrop)
   ) u_divide (
-    .clk, .rst, .en, .in_start(modes_start), .in_data(modes),
-    .out_start(divided_start), .out_data(divided), .saturations(clipped_divide)
+    .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
+    .out_start(divided_start), .out_frame_start(divided_frame_start), .out_data(divided), .saturations(clipped_divide)
   );
 
   dst_inverse #(
     .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
   ) u_column_inverse (
-    .clk, .rst, .en, .in_start(divided_start), .in_data(divided),
-    .out_start(column_out_start), .out_data(column_out), .saturations(clipped_c)
+    .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_data(divided),
+    .out_start(column_out_start), .out_frame_start(column_out_frame_start), .out_data(column_out),
+    .saturations(clipped_c)
   );
 
   transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(1), .MakhoulOut(0)) u_to_rows (
-    .clk, .rst, .en, .in_start(column_out_start), .in_data(column_out),
-    .out_start(depth_row_start), .out_data(depth_row_data)
+    .clk, .rst, .en, .in_start(column_out_start), .in_frame_start(column_out_frame_start), .in_data(column_out),
+    .out_start(depth_row_start), .out_frame_start(depth_row_frame_start), .out_data(depth_row_data)
   );
 
   dst_inverse #(
     .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
-    .clk, .rst, .en, .in_start(depth_row_start), .in_data(depth_row_data),
-    .out_start(depth_start), .out_data(depth), .saturations(clipped_d)
+    .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_data(depth_row_data),
+    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_d)
   );
 
   logic [$clog2(Size)-1:0] unused_position;
@@ -105,7 +111,8 @@ module spectral_solver #(
     .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
   );
   row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
-    .clk, .rst, .en, .in_valid(depth_valid), .in_data(depth), .out_start, .out_data(depth_reordered)
+    .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
+    .out_start, .out_frame_start, .out_data(depth_reordered)
   );
   assign out_data = depth_reordered;
 

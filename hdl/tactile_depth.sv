@@ -39,6 +39,7 @@ module tactile_depth
   parameter int MomentDrop       = 7,
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
+  parameter int FrameLatency     = 17167,  // last pixel out of the guard to first depth out of the solver
   localparam int DepthBytes = (DataWidth + 7) / 8
 ) (
   input  logic                    clk,
@@ -120,16 +121,17 @@ module tactile_depth
     .out_gx(gx), .out_gy(gy)
   );
 
-  logic divergence_valid;
+  logic divergence_valid, divergence_frame_start;
   logic signed [GradientWidth+1:0] divergence_data;
   divergence #(.Width(GradientWidth), .Columns(Size), .Neumann(Neumann)) u_divergence (
     .clk, .rst, .en,
     .in_valid(slope_valid), .in_first_row(slope_place[0]), .in_first_column(slope_place[1]),
     .in_last_row(slope_place[2]), .in_last_column(slope_place[3]),
-    .in_gx(gx), .in_gy(gy), .out_valid(divergence_valid), .out_data(divergence_data)
+    .in_gx(gx), .in_gy(gy),
+    .out_valid(divergence_valid), .out_frame_start(divergence_frame_start), .out_data(divergence_data)
   );
 
-  logic solved_start;
+  logic solved_start, solved_frame_start;
   logic signed [DataWidth-1:0] solved_data;
   logic [7:0] saturations;
   if (Tridiagonal != 0) begin : g_tridiagonal
@@ -140,8 +142,9 @@ module tactile_depth
       .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
       .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
     ) u_solver (
-      .clk, .rst, .en, .in_valid(divergence_valid), .in_data(divergence_data),
-      .out_start(solved_start), .out_data(solved_data), .saturations
+      .clk, .rst, .en, .in_valid(divergence_valid), .in_frame_start(divergence_frame_start),
+      .in_data(divergence_data),
+      .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved_data), .saturations
     );
   end else begin : g_spectral
     spectral_solver #(
@@ -150,27 +153,27 @@ module tactile_depth
       .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
       .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann)
     ) u_solver (
-      .clk, .rst, .en, .in_valid(divergence_valid), .in_data(divergence_data),
-      .out_start(solved_start), .out_data(solved_data), .saturations
+      .clk, .rst, .en, .in_valid(divergence_valid), .in_frame_start(divergence_frame_start),
+      .in_data(divergence_data),
+      .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved_data), .saturations
     );
   end
 
   // Frames. A tag is the mark of a broken frame and the clock that took the first pixel.
 
   logic [31:0] now, arrived, begun;
-  logic tag_bad, solved_first, solved_last;
+  logic frame_due, tags_held, tag_bad, depth_active, solved_last, out_of_step;
   logic [31:0] tag_begun;
-  frame_tags #(.Width(33)) u_tags (
-    .clk, .rst,
-    .push(en & guarded_end), .tag({guarded_bad, begun}),
-    .pop(en & solved_first), .head({tag_bad, tag_begun})
+  frame_tags #(.Width(33), .Latency(FrameLatency), .Pixels(Rows * Size)) u_tags (
+    .clk, .rst, .en, .push(guarded_end), .tag({guarded_bad, begun}),
+    .due(frame_due), .due_tag({tag_bad, tag_begun}), .held(tags_held)
   );
 
   logic depth_valid, depth_last, depth_user;
   logic [DataWidth-1:0] depth_data;
   frame_output #(.Width(DataWidth), .Rows(Rows), .Columns(Size)) u_output (
-    .clk, .rst, .en, .in_start(solved_start), .in_data(solved_data), .in_bad(tag_bad),
-    .frame_start(solved_first), .frame_end(solved_last),
+    .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_data(solved_data),
+    .in_due(frame_due), .in_bad(tag_bad), .active(depth_active), .frame_end(solved_last), .out_of_step,
     .out_valid(depth_valid), .out_data(depth_data), .out_last(depth_last), .out_user(depth_user)
   );
 
@@ -192,11 +195,11 @@ module tactile_depth
     .threshold, .hold(hold_contact), .contact
   );
 
-  // Counters: clocks from the first pixel taken to the first depth on the output; frames in flight.
+  // Clocks from the first pixel taken to the first depth on the output. Whether a frame is in flight.
 
   logic [31:0] depth_begun;
-  logic depth_awaited, latency_valid;
-  logic [3:0] in_flight;
+  logic depth_awaited, latency_valid, taking, busy;
+  assign busy = pixel_valid | guarded_start | taking | tags_held | depth_active;
   assign latency_valid = depth_awaited & m_axis_tvalid & m_axis_tuser;
   always_ff @(posedge clk) begin
     now <= now + 32'd1;
@@ -208,11 +211,11 @@ module tactile_depth
     end else if (latency_valid) begin
       depth_awaited <= 1'b0;
     end
-    if (en) in_flight <= in_flight + 4'(guarded_start) - 4'(solved_last);
+    if (en) taking <= (guarded_start | taking) & ~guarded_end;
     if (rst) begin
       now <= '0;
       depth_awaited <= 1'b0;
-      in_flight <= '0;
+      taking <= 1'b0;
     end
   end
 
@@ -225,13 +228,13 @@ module tactile_depth
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid,
     .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .event_row_short(row_short), .event_row_long(row_long), .event_start_missing(start_missing),
-    .event_start_early(start_early), .event_timeout(timed_out),
+    .event_start_early(start_early), .event_timeout(timed_out), .event_out_of_step(en & out_of_step),
     .event_frame_in(en & guarded_end & ~guarded_bad),
     .event_frame_out(leaves & leaving_last_of_frame),
     .event_frame_dropped(row_short | row_long | start_missing | start_early | timed_out),
     .saturations,
     .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
-    .busy(in_flight != '0 | guarded_start | pixel_valid), .contact,
+    .busy, .contact,
     .threshold, .timeout, .hold_contact, .table_write, .table_index, .table_gx, .table_gy
   );
 

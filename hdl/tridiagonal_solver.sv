@@ -32,8 +32,10 @@ module tridiagonal_solver #(
   input  logic                        rst,
   input  logic                        en,
   input  logic                        in_valid,
+  input  logic                        in_frame_start,   // the first word of a frame
   input  logic signed [InWidth-1:0]   in_data,
   output logic                        out_start,
+  output logic                        out_frame_start,  // the first burst of a frame
   output logic signed [DataWidth-1:0] out_data,
   output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
 );
@@ -41,6 +43,8 @@ module tridiagonal_solver #(
   localparam int Alternate = Neumann != 0 ? 0 : 1;
 
   logic row_start, modes_start, eliminated_start, stacked_start, solved_start, depth_start, depth_valid;
+  logic row_frame_start, modes_frame_start, eliminated_frame_start, stacked_frame_start, solved_frame_start;
+  logic depth_frame_start;
   logic [InWidth-1:0] row_data;
   logic signed [Width-1:0] modes, solved;
   logic signed [DataWidth-1:0] eliminated, depth;
@@ -50,15 +54,16 @@ module tridiagonal_solver #(
   logic clipped_up;
 
   row_reorder #(.Width(InWidth), .Size(Size), .ToBurst(1)) u_row_in (
-    .clk, .rst, .en, .in_valid, .in_data(in_data), .out_start(row_start), .out_data(row_data)
+    .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
+    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
   );
 
   dst_forward #(
     .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(Width), .OutputDrop(RowForwardOut)
   ) u_row_forward (
-    .clk, .rst, .en, .in_start(row_start), .in_data(row_data),
-    .out_start(modes_start), .out_data(modes), .saturations(clipped_forward)
+    .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_forward)
   );
 
   forward_elimination #(
@@ -67,29 +72,30 @@ module tridiagonal_solver #(
     .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
     .MeanDrop(MeanDrop)
   ) u_down (
-    .clk, .rst, .en, .in_start(modes_start), .in_data(modes),
-    .out_start(eliminated_start), .out_data(eliminated), .saturations(clipped_down)
+    .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
+    .out_start(eliminated_start), .out_frame_start(eliminated_frame_start), .out_data(eliminated),
+    .saturations(clipped_down)
   );
 
   frame_stack #(.Width(DataWidth), .Rows(Rows), .Size(Size)) u_stack (
-    .clk, .rst, .en, .in_start(eliminated_start), .in_data(eliminated),
-    .out_start(stacked_start), .out_data(stacked)
+    .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_data(eliminated),
+    .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_data(stacked)
   );
 
   back_substitution #(
     .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .InWidth(DataWidth), .Lift(StoreDrop),
     .TableWords(TableWords), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
   ) u_up (
-    .clk, .rst, .en, .in_start(stacked_start), .in_data(stacked),
-    .out_start(solved_start), .out_data(solved), .saturations(clipped_up)
+    .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
+    .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved), .saturations(clipped_up)
   );
 
   dst_inverse #(
     .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
-    .clk, .rst, .en, .in_start(solved_start), .in_data(solved),
-    .out_start(depth_start), .out_data(depth), .saturations(clipped_inverse)
+    .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_data(solved),
+    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_inverse)
   );
 
   logic [$clog2(Size)-1:0] unused_position;
@@ -97,7 +103,8 @@ module tridiagonal_solver #(
     .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
   );
   row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
-    .clk, .rst, .en, .in_valid(depth_valid), .in_data(depth), .out_start, .out_data(depth_reordered)
+    .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
+    .out_start, .out_frame_start, .out_data(depth_reordered)
   );
   assign out_data = depth_reordered;
 

@@ -21,9 +21,11 @@ module twiddle_multiply #(
   input  logic                       rst,
   input  logic                       en,
   input  logic                       in_start,
+  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
   input  logic signed [InWidth-1:0]  in_re,
   input  logic signed [InWidth-1:0]  in_im,
   output logic                       out_start,
+  output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_re,
   output logic signed [OutWidth-1:0] out_im,
   output logic [1:0]                 saturations  // values clipped in this cycle
@@ -52,16 +54,18 @@ module twiddle_multiply #(
   end
 
   logic signed [InWidth-1:0] re_q, im_q;
-  logic [ToSum-1:0] start_q, active_q;
+  logic [ToSum-1:0] start_q, frame_start_q, active_q;
   always_ff @(posedge clk) begin
     if (en) begin
       re_q <= in_re;
       im_q <= in_im;
       start_q <= {start_q[ToSum-2:0], in_start};
+      frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start};
       active_q <= {active_q[ToSum-2:0], active};
     end
     if (rst) begin
       start_q <= '0;
+      frame_start_q <= '0;
       active_q <= '0;
     end
   end
@@ -95,12 +99,14 @@ module twiddle_multiply #(
   always_ff @(posedge clk) begin
     if (en) begin
       out_start <= start_q[ToSum-1];
+      out_frame_start <= frame_start_q[ToSum-1];
       out_re <= rounded_re;
       out_im <= rounded_im;
     end
     saturations <= (en && active_q[ToSum-1]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
     if (rst) begin
       out_start <= 1'b0;
+      out_frame_start <= 1'b0;
       saturations <= '0;
     end
   end

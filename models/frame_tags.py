@@ -1,40 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cycle-accurate model of hdl/frame_tags.sv: a queue of four tags."""
+"""Cycle-accurate model of hdl/frame_tags.sv: tags come back a fixed number of clocks after they were pushed."""
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass, field
-
-CAPACITY = 4
 
 
 @dataclass
 class FrameTags:
-    """The tags held between two clock edges, oldest first."""
+    """The tags held between two clock edges, by the enabled clock in which each is due."""
 
-    tags: deque[int] = field(default_factory=deque)
+    latency: int
+    now: int = 0
+    due_clock: dict[int, int] = field(default_factory=dict)
 
     @property
-    def head(self) -> int | None:
-        """The oldest tag; None: there is none, and the output says nothing."""
-        return self.tags[0] if self.tags else None
+    def due(self) -> int | None:
+        """The tag that is due in this clock; None: there is none."""
+        return self.due_clock.get(self.now)
 
-    def clock(self, pushed: int | None, pop: bool) -> None:
-        """One edge; None: nothing is pushed.
+    @property
+    def held(self) -> bool:
+        return bool(self.due_clock)
 
-        Raises
-        ------
-        IndexError
-            Popped while empty, or pushed while full.
-        """
-        if pop:
-            self.tags.popleft()
+    def clock(self, pushed: int | None) -> None:
+        """One edge with en; None: nothing is pushed."""
+        self.due_clock.pop(self.now, None)
         if pushed is not None:
-            if len(self.tags) == CAPACITY:
-                raise IndexError(f"a fifth tag: it holds {CAPACITY}")
-            self.tags.append(pushed)
+            self.due_clock[self.now + self.latency] = pushed
+        self.now += 1
 
     def reset(self) -> None:
         """One edge in reset."""
-        self.tags.clear()
+        self.due_clock.clear()

@@ -60,12 +60,16 @@ def tridiagonal_solver_latency(size: int) -> int:
     return down + up
 
 
-def last_pixel_to_first_depth(config: Configuration) -> int:
-    """Of the whole pipeline, from the edge that takes the last pixel of a frame; the same whatever the gaps."""
-    ahead = AXIS_SKID + FRAME_GUARD + GRADIENT_LOOKUP + DIVERGENCE
+def frame_latency(config: Configuration) -> int:
+    """From the last pixel of a frame out of the guard to its first depth out of the solver: when that is due."""
     tridiagonal = config.solver == "tridiagonal"
     solver = (tridiagonal_solver_latency if tridiagonal else spectral_solver_latency)(config.columns)
-    return ahead + solver + AXIS_SKID
+    return GRADIENT_LOOKUP + DIVERGENCE + solver
+
+
+def last_pixel_to_first_depth(config: Configuration) -> int:
+    """Of the whole pipeline, from the edge that takes the last pixel of a frame; the same whatever the gaps."""
+    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + AXIS_SKID
 
 
 def first_depth_latency(config: Configuration) -> int:

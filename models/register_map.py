@@ -174,6 +174,11 @@ MAP = (
             _sticky("start_early", 3, "A frame started inside another, which was dropped."),
             _sticky("timeout", 4, "A frame was given up after TIMEOUT clocks without a pixel."),
             _sticky("saturation", 5, "A value was clipped: SATURATIONS says how many."),
+            _sticky(
+                "out_of_step",
+                6,
+                "Depth was not where it was due, as after an upset: a frame was dropped, or has wrong codes.",
+            ),
             Field("busy", 8, 8, "ro", "A frame is in flight."),
             Field("contact", 9, 9, "ro", "The output `contact`."),
         ),

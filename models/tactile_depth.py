@@ -12,6 +12,7 @@ from models.calibration import Calibration
 from models.configuration import Configuration
 from models.divergence import divergence
 from models.gradient_lookup import gradient_codes, gradient_lookup
+from models.latency import frame_latency
 from models.rom_files import write_gradient, write_solver
 from models.round_saturate import Monitor
 
@@ -53,6 +54,7 @@ def top_parameters(config: Configuration) -> dict[str, int]:
         "BitsPerChannel": config.bits_per_channel,
         "GradientWidth": config.gradient.width,
         "GradientFraction": config.gradient.fraction,
+        "FrameLatency": frame_latency(config),
     }
 
 

@@ -33,7 +33,8 @@ module frame_bench
   parameter int LastShiftWidth   = 1,
   parameter int MomentDrop       = 7,
   parameter int MeanReciprocal   = 65536,
-  parameter int MeanDrop         = 16
+  parameter int MeanDrop         = 16,
+  parameter int FrameLatency     = 17167
 ) (
   input  logic                    clk,
   input  logic                    rst,
@@ -82,7 +83,7 @@ module frame_bench
     .RowInverseOut(RowInverseOut), .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop),
     .StoreDrop(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth),
     .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
-    .MeanDrop(MeanDrop)
+    .MeanDrop(MeanDrop), .FrameLatency(FrameLatency)
   ) dut (
     .clk, .rst,
     .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,

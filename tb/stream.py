@@ -54,22 +54,29 @@ class StreamDriver(BusDriver):
     """Sends words under a qualifier: `start` (with the first word of a burst) or `valid` (with each word).
 
     A transaction is a list of tuples, one word each, in the order of `fields`. A word counts in a clock with
-    `en`.
+    `en`. Where the device has a pin `frame_start`, it is high with the first word of a transaction sent while
+    `frame_start` is true.
     """
 
     def __init__(self, dut, name, qualifier, fields):
         self._signals = [qualifier, *fields]
         super().__init__(dut, name, dut.clk)
         self.qualifier, self.fields = qualifier, fields
+        self.frame_start = False
+        self.frame_pin = getattr(dut, f"{name}_frame_start", None)
         self.idle()
 
     def idle(self):
         getattr(self.bus, self.qualifier).value = 0
+        if self.frame_pin is not None:
+            self.frame_pin.value = 0
 
     async def _driver_send(self, transaction, sync=True):
         qualifier = getattr(self.bus, self.qualifier)
         for index, word in enumerate(transaction):
             qualifier.value = int(index == 0 or self.qualifier == "valid")
+            if self.frame_pin is not None:
+                self.frame_pin.value = int(index == 0 and self.frame_start)
             for field, value in zip(self.fields, word, strict=True):
                 getattr(self.bus, field).value = int(value)
             await RisingEdge(self.clock)
@@ -81,13 +88,15 @@ class StreamDriver(BusDriver):
 class StreamMonitor(BusMonitor):
     """Keeps (clock, word) of every word, one tuple of signed values in the order of `fields`.
 
-    With `start` a burst lasts `length` clocks; a burst cut short by another start is an error.
+    With `start` a burst lasts `length` clocks; a burst cut short by another start is an error. `starts` are the
+    clocks of the qualifier, `frame_starts` says of each whether it begins a frame; elsewhere none may begin.
     """
 
     def __init__(self, dut, name, qualifier, fields, length=1, unsigned=()):
         self._signals = [qualifier, *fields]
         self.qualifier, self.fields, self.length, self.unsigned = qualifier, fields, length, unsigned
-        self.words, self.starts = [], []
+        self.words, self.starts, self.frame_starts = [], [], []
+        self.frame_pin = getattr(dut, f"{name}_frame_start", None)
         super().__init__(dut, name, dut.clk)
 
     async def _monitor_recv(self):
@@ -102,10 +111,14 @@ class StreamMonitor(BusMonitor):
             if not self.entity.en.value:
                 continue
             clock += 1
+            frame_start = self.frame_pin is not None and bool(self.frame_pin.value)
             if qualifier.value:
                 assert left == 0, f"burst cut short at clock {clock}"
                 self.starts.append(clock)
+                self.frame_starts.append(frame_start)
                 left = self.length
+            else:
+                assert not frame_start, f"a frame begins in clock {clock}, but no word"
             if left:
                 left -= 1
                 self.words.append(tuple(int(h.value) if unsigned else h.value.to_signed() for h, unsigned in handles))
@@ -114,6 +127,12 @@ class StreamMonitor(BusMonitor):
     def forget(self):
         self.words.clear()
         self.starts.clear()
+        self.frame_starts.clear()
+
+    def forget_but(self, starts):
+        """Keep the last `starts` bursts or words."""
+        self.words = self.words[-starts * self.length :]
+        self.starts, self.frame_starts = self.starts[-starts:], self.frame_starts[-starts:]
 
     @property
     def in_reset(self):
@@ -162,12 +181,24 @@ class Bench:
             await RisingEdge(self.dut.clk)
 
 
-async def send_apart(bench, driver, words, gap):
-    """Send words (tuples) one by one, an idle clock before each with probability `gap`."""
-    for word in words:
+async def send_apart(bench, driver, words, gap, frame=0):
+    """Send words (tuples) one by one, an idle clock before each with probability `gap`.
+
+    Every `frame` words a frame begins; 0: none does.
+    """
+    for index, word in enumerate(words):
         while bench.random.random() < gap:
             await bench.clocks(1)
+        driver.frame_start = bool(frame) and index % frame == 0
         await driver.send([word])
+
+
+def check_frame_starts(monitors, frame):
+    """Frames begin with every `frame`-th start that a monitor saw, and nowhere else."""
+    for monitor in monitors:
+        if monitor.frame_pin is not None:
+            want = [index % frame == 0 for index in range(len(monitor.starts))]
+            assert monitor.frame_starts == want, f"{monitor.name}: frames begin at {monitor.frame_starts}"
 
 
 async def interrupt(bench, send, interrupts, monitors, quiet):
@@ -187,13 +218,14 @@ async def interrupt(bench, send, interrupts, monitors, quiet):
 
 
 async def check_bursts(
-    dut, bursts, model, latency, *, in_fields, out_fields, gap=0, pause=0.0, interrupts=(), settle=40
+    dut, bursts, model, latency, *, in_fields, out_fields, frame=3, gap=0, pause=0.0, interrupts=(), strays=0, settle=40
 ):
     """Send bursts (count, size, fields); compare what leaves with the model of what was seen going in.
 
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
     number of clocks from each start in to its start out, or None where the core regroups bursts. Up to `gap`
-    idle clocks lie between bursts. `interrupts`: see there.
+    idle clocks lie between bursts. Every `frame` bursts a frame begins. `interrupts`: see there.
+    `strays` bursts, the beginning of a frame that is not completed, come right before; what they give is not looked at.
 
     Returns the monitors of both sides.
     """
@@ -205,26 +237,33 @@ async def check_bursts(
     await bench.start()
 
     async def send(count):
-        for sent in range(0, count, size):
-            await driver.send(bursts[sent // size % len(bursts), : count - sent].tolist())
+        for index, sent in enumerate(range(0, count, size)):
+            driver.frame_start = index % frame == 0
+            await driver.send(bursts[index % len(bursts), : count - sent].tolist())
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=(latency or 0) + 4)
-    for burst in bursts:
+    await send(strays * size)
+    for index, burst in enumerate(bursts):
         if gap:
             await bench.clocks(bench.random.randint(0, gap))
+        driver.frame_start = index % frame == 0
         await driver.send(burst.tolist())
     await bench.clocks(1)
+    source.forget_but(len(bursts))
     seen = np.array(source.words).reshape(bursts.shape)
     np.testing.assert_array_equal(seen, bursts, "the driver sent something else")
     clipped = Monitor()
     expected = model(seen, clipped).reshape(-1, len(out_fields))
     await bench.clocks((latency or len(expected)) + 2 * size + settle)
+    if strays:
+        sink.forget_but(len(expected) // size)
     np.testing.assert_array_equal(np.array(sink.words), expected)
+    check_frame_starts((source, sink), frame)
     if latency is not None:
         measured = {after - before for before, after in zip(source.starts, sink.starts, strict=True)}
         assert measured == {latency}, f"latency {measured}, expected {latency}"
     total = clipped.saturations.total()
-    assert bench.saturations == total, f"{bench.saturations} values clipped, {total} in the model"
+    assert strays or bench.saturations == total, f"{bench.saturations} values clipped, {total} in the model"
     return source, sink
 
 

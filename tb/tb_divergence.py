@@ -3,7 +3,17 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, extremes, interrupt, parameters, send_apart, uniform
+from stream import (
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    extremes,
+    interrupt,
+    parameters,
+    send_apart,
+    uniform,
+)
 
 from models.divergence import divergence
 from models.latency import DIVERGENCE
@@ -36,6 +46,7 @@ async def check(dut, gradient, gap=0.0, pause=0.0, interrupts=()):
     np.testing.assert_array_equal(seen, gradient, "the driver sent something else")
     np.testing.assert_array_equal(np.array(sink.words).reshape(gradient.shape[:3]), divergence(seen, bool(neumann)))
     assert sink.starts == [clock + DIVERGENCE for clock in source.starts]
+    check_frame_starts([sink], gradient[0, ..., 0].size)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

@@ -15,7 +15,8 @@ async def check(dut, amplitude, frames=3, **behaviour):
         return forward_elimination(x.reshape(-1, config.rows, config.columns), config, monitor)
 
     words = uniform((frames * config.rows, config.columns, 1), config.arithmetic_width, amplitude)
-    await check_bursts(dut, words, model, FORWARD_ELIMINATION, in_fields=["data"], out_fields=["data"], **behaviour)
+    behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.rows}
+    await check_bursts(dut, words, model, FORWARD_ELIMINATION, **behaviour)
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
@@ -30,3 +31,10 @@ async def reset_in_mid_frame(dut):
     config = configuration()
     inner = config.columns * (config.rows // 2) + config.columns // 2
     await check(dut, 0.1, interrupts=[*range(1, 9), inner])
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    await check(dut, 0.1, frames=1, strays=strays)

@@ -19,7 +19,7 @@ async def check(dut, frames=FRAMES, **behaviour):
 
     words = np.arange(1, frames * rows * size + 1)  # each stands for its place
     source, sink = await check_bursts(
-        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], **behaviour
+        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=rows, **behaviour
     )
     last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
     assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [FRAME_STACK] * frames
@@ -38,3 +38,10 @@ async def frames(dut, gap, pause):
 async def reset_in_mid_frame(dut, halves):
     size, rows = parameters(dut, "Size", "Rows")
     await check(dut, frames=2, interrupts=[halves * size * rows // 2 + size // 2])
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    await check(dut, frames=2, strays=strays)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_tags against models.frame_tags: the head in every clock, at every filling, through resets."""
+"""frame_tags against models.frame_tags: every output in every clock; frames close and apart, pauses, resets."""
 
 import os
 import random
@@ -9,60 +9,62 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 from stream import CLOCK_NS, parameters
 
-from models.frame_tags import CAPACITY, FrameTags
-
-CLOCKS = 3000
+from models.frame_tags import FrameTags
 
 
 class Bench:
-    """Drives one clock at a time and compares the head with the model."""
+    """Drives one clock at a time and compares the outputs with the model."""
 
     def __init__(self, dut):
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-        self.dut, self.model = dut, FrameTags()
+        self.dut = dut
         self.random = random.Random(cocotb.RANDOM_SEED)
-        (self.width,) = parameters(dut, "Width")
+        self.width, latency, self.pixels = parameters(dut, "Width", "Latency", "Pixels")
+        self.model = FrameTags(latency)
 
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
-        await self.clock(push=False, pop=False, rst=True)
-
-    async def clock(self, push, pop, rst=False):
-        tag = self.random.getrandbits(self.width)
-        self.dut.push.value, self.dut.pop.value, self.dut.tag.value = int(push), int(pop), tag
-        self.dut.rst.value = int(rst)
+        self.dut.rst.value, self.dut.en.value, self.dut.push.value = 1, 1, 0
         await RisingEdge(self.dut.clk)
-        if self.model.head is not None:
-            assert int(self.dut.head.value) == self.model.head, f"the head of {len(self.model.tags)} tags"
+
+    async def clock(self, push, en=True, rst=False):
+        tag = self.random.getrandbits(self.width)
+        dut, model = self.dut, self.model
+        dut.push.value, dut.tag.value, dut.en.value, dut.rst.value = int(push), tag, int(en), int(rst)
+        await RisingEdge(dut.clk)
+        assert bool(dut.held.value) == model.held
+        assert bool(dut.due.value) == (model.due is not None), f"{len(model.due_clock)} tags, clock {model.now}"
+        assert int(dut.due_tag.value) == (model.due or 0)
         if rst:
-            self.model.reset()
-        else:
-            self.model.clock(tag if push else None, pop)
+            model.reset()
+        elif en:
+            model.clock(tag if push else None)
+
+    async def frames(self, count, apart, pause=0.0, reset=0.0):
+        """Push `count` tags, `apart()` enabled clocks from one to the next."""
+        for _ in range(count):
+            left = apart()
+            while left:
+                en = self.random.random() >= pause
+                rst = self.random.random() < reset
+                await self.clock(push=left == 1, en=en, rst=rst)
+                left -= en or rst
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def fillings(dut):
-    """Every way of filling it up and emptying it, one in and one out at each filling; twice around."""
+@cocotb.parametrize(pause=[0.0, 0.4])
+async def frames_as_close_as_they_can_be(dut, pause):
     bench = Bench(dut)
     await bench.start()
-    for _ in range(2 * CAPACITY + 1):
-        for held in range(1, CAPACITY + 1):
-            for _ in range(held):
-                await bench.clock(push=True, pop=False)
-            for _ in range(2 * CAPACITY + 1):
-                await bench.clock(push=True, pop=True)
-            for _ in range(held):
-                await bench.clock(push=False, pop=True)
-        await bench.clock(push=True, pop=False)
-        await bench.clock(push=False, pop=True)
+    await bench.frames(30, lambda: bench.pixels, pause)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_traffic(dut):
+@cocotb.parametrize(reset=[0.0, 0.01])
+async def frames_apart(dut, reset):
+    """Each distance from the closest to where the one before has left; then at random."""
     bench = Bench(dut)
     await bench.start()
-    for _ in range(CLOCKS):
-        held = len(bench.model.tags)
-        pop = held > 0 and bench.random.random() < 0.5
-        push = held - pop < CAPACITY and bench.random.random() < 0.5
-        await bench.clock(push, pop, rst=bench.random.random() < 0.01)
+    distances = iter(range(bench.pixels, bench.model.latency + bench.pixels + 2))
+    await bench.frames(bench.model.latency + 2, lambda: next(distances), reset=reset)
+    await bench.frames(60, lambda: bench.pixels + bench.random.randrange(2 * bench.model.latency), 0.2, reset)

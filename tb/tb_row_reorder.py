@@ -3,15 +3,16 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, interrupt, parameters, send_apart
+from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, interrupt, parameters, send_apart
 
 from models.latency import ROW_REORDER
 from models.row_reorder import row_reorder
 
 ROWS = 7
+FRAME = 3  # rows
 
 
-async def check(dut, gap=0.0, pause=0.0, interrupts=()):
+async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
     size, to_burst = parameters(dut, "Size", "ToBurst")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
@@ -21,15 +22,20 @@ async def check(dut, gap=0.0, pause=0.0, interrupts=()):
     words = np.arange(1, ROWS * size + 1).reshape(-1, 1).tolist()  # each stands for its place
 
     async def send(count):
-        await send_apart(bench, driver, words[-count:], gap)
+        await send_apart(bench, driver, words[-count:], gap, FRAME * size)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=ROW_REORDER + 2)
-    await send_apart(bench, driver, words, gap)
+    await send_apart(bench, driver, words[:strays], gap, FRAME * size)
+    await send_apart(bench, driver, words, gap, FRAME * size)
     await bench.clocks(ROW_REORDER + size + 4)
+    source.forget_but(len(words))
+    sink.forget_but(ROWS)
 
     assert source.words == [tuple(word) for word in words], "the driver sent something else"
     rows = np.array(source.words).reshape(ROWS, size)
     np.testing.assert_array_equal(np.array(sink.words).reshape(rows.shape), row_reorder(rows, bool(to_burst)))
+    check_frame_starts([source], FRAME * size)
+    check_frame_starts([sink], FRAME)
     ends = source.starts[size - 1 :: size]
     assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [ROW_REORDER] * ROWS
 
@@ -45,3 +51,11 @@ async def reset_in_mid_row(dut):
     """At each word of a row, and while it leaves."""
     (size,) = parameters(dut, "Size")
     await check(dut, interrupts=range(1, size + size // 2))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def a_frame_begins_afresh(dut):
+    """After part of a row."""
+    (size,) = parameters(dut, "Size")
+    for strays in (1, size - 1, size + 1):
+        await check(dut, strays=strays)

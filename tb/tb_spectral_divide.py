@@ -15,7 +15,8 @@ async def check(dut, x, **behaviour):
     def model(x, monitor):
         return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
 
-    return await check_bursts(dut, x, model, SPECTRAL_DIVIDE, in_fields=["data"], out_fields=["data"], **behaviour)
+    behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.columns}
+    return await check_bursts(dut, x, model, SPECTRAL_DIVIDE, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
@@ -40,3 +41,11 @@ async def reset_in_mid_frame(dut, late):
     size, width = parameters(dut, "Size", "Width")
     first = 3 * size * size // 2 + size // 2 if late else 1
     await check(dut, uniform((size, size, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((size, size, 1), width), strays=strays)

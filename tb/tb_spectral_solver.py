@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, configuration, interrupt, send_apart, uniform
+from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, configuration, interrupt, send_apart, uniform
 
 from models.latency import spectral_solver_latency
 from models.round_saturate import Monitor
@@ -16,7 +16,7 @@ def codes(frames, amplitude):
     return uniform((frames, config.columns, config.columns), config.divergence.width, amplitude)
 
 
-async def check(dut, f, gap=0.0, pause=0.0, interrupts=()):
+async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
     config = configuration()
     size = config.columns
     bench = Bench(dut, pause)
@@ -28,17 +28,22 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=()):
     words = f.reshape(-1, 1).tolist()
 
     async def send(count):
-        await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap)
+        await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap, size * size)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=0)
-    await send_apart(bench, driver, words, gap)
+    await send_apart(bench, driver, words[:strays], gap, size * size)
+    await send_apart(bench, driver, words, gap, size * size)
     await bench.clocks(spectral_solver_latency(size) + size * size)
 
+    source.forget_but(len(words))
+    sink.forget_but(len(words) // size)
     np.testing.assert_array_equal(np.array(source.words), words, "the driver sent something else")
     monitor = Monitor()
     z = spectral_solver(np.array(source.words).reshape(f.shape), config, monitor)
     np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)
-    assert bench.saturations == monitor.saturations.total()
+    assert strays or bench.saturations == monitor.saturations.total()
+    check_frame_starts([source], size * size)
+    check_frame_starts([sink], size)
     last_pixels = source.starts[size * size - 1 :: size * size]
     first_depths = sink.starts[::size]
     latency = {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)}
@@ -67,3 +72,11 @@ async def reset_in_mid_frame(dut):
     """The third frame arrives as the first one leaves: every core is at work."""
     size = configuration().columns
     await check(dut, codes(1, 0.002), interrupts=[2 * size * size + 10 * size + size // 2])
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(rows=[1, 3])
+async def a_frame_begins_afresh(dut, rows):
+    """After rows of a frame that is not completed, and part of one more."""
+    columns = configuration().columns
+    await check(dut, codes(2, 0.002), strays=rows * columns + 5)

@@ -19,7 +19,7 @@ async def check(dut, frames=FRAMES, **behaviour):
 
     words = np.arange(1, frames * size * size + 1)  # each stands for its place
     source, sink = await check_bursts(
-        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], **behaviour
+        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=size, **behaviour
     )
     last_rows, first_columns = source.starts[size - 1 :: size], sink.starts[::size]
     assert [out - row for out, row in zip(first_columns, last_rows, strict=True)] == [TRANSPOSE] * frames
@@ -40,3 +40,10 @@ async def reset_in_mid_frame(dut, late):
     (size,) = parameters(dut, "Size")
     first = (size - 1) * size if late else 1
     await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    await check(dut, frames=2, strays=strays)

@@ -3,14 +3,14 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, configuration, interrupt, send_apart, uniform
+from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, configuration, interrupt, send_apart, uniform
 
 from models.latency import tridiagonal_solver_latency
 from models.round_saturate import Monitor
 from models.tridiagonal_solver import tridiagonal_solver
 
 
-async def check(dut, f, gap=0.0, pause=0.0, interrupts=()):
+async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
     """Frames f (frames, rows, columns) through the device; for `interrupts` see stream.interrupt."""
     config = configuration()
     pixels = config.rows * config.columns
@@ -23,16 +23,21 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=()):
     latency = tridiagonal_solver_latency(config.columns)
 
     async def send(count):
-        await send_apart(bench, driver, words[:count], gap)
+        await send_apart(bench, driver, words[:count], gap, pixels)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=0)
-    await send_apart(bench, driver, words, gap)
+    await send_apart(bench, driver, words[:strays], gap, pixels)
+    await send_apart(bench, driver, words, gap, pixels)
     await bench.clocks(latency + pixels + config.columns)
 
+    source.forget_but(len(words))
+    sink.forget_but(len(words) // config.columns)
     monitor = Monitor()
     z = tridiagonal_solver(np.array(source.words).reshape(f.shape), config, monitor)
     np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)
-    assert bench.saturations == monitor.saturations.total()
+    assert strays or bench.saturations == monitor.saturations.total()
+    check_frame_starts([source], pixels)
+    check_frame_starts([sink], config.rows)
     last_pixels, first_depths = source.starts[pixels - 1 :: pixels], sink.starts[:: config.rows]
     assert {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)} == {latency}
     if not gap:
@@ -68,3 +73,11 @@ async def a_frame_does_not_know_the_one_before(dut):
 async def reset_in_mid_frame(dut):
     config = configuration()
     await check(dut, codes(2, 0.002), interrupts=[3 * config.rows * config.columns // 2 + 3])
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(rows=[1, 3])
+async def a_frame_begins_afresh(dut, rows):
+    """After rows of a frame that is not completed, and part of one more."""
+    columns = configuration().columns
+    await check(dut, codes(2, 0.002), strays=rows * columns + 5)

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_tags: RTL against the model."""
 
+import pytest
 
-def test_rtl(run_tb):
-    run_tb("frame_tags", ["frame_tags.sv"], {"Width": 33})
+
+# Two places, one, two exactly, four.
+@pytest.mark.structures("width latency pixels", both=[(33, 37, 24)], icarus=[(4, 9, 16), (33, 32, 16), (33, 50, 13)])
+def test_rtl(run_tb, width, latency, pixels):
+    run_tb("frame_tags", ["frame_tags.sv"], {"Width": width, "Latency": latency, "Pixels": pixels})

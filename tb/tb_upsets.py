@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Soft errors: one bit of a register or memory of tactile_depth flips while frames stream through.
+
+Each experiment resets the device, streams FRAMES frames, flips one bit at one clock and looks at what leaves. Its
+outcome is the first of commands.upsets.OUTCOMES that holds. The bits are sampled evenly over modules, so that small
+ones are not lost among the memories. Results go to upsets.json in the run folder.
+"""
+
+import json
+import os
+import random
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import cocotb
+import numpy as np
+from axis import video
+from cocotb.clock import Clock
+from cocotb.handle import ArrayObject, HierarchyArrayObject, HierarchyObject, LogicArrayObject, LogicObject
+from cocotb.triggers import FallingEdge, RisingEdge
+from stream import CLOCK_NS, configuration
+
+from commands.simulator import HDL
+from models.calibration import synthetic
+from models.latency import last_pixel_to_first_depth
+from models.register_map import REGISTERS
+from models.tactile_depth import tactile_depth
+
+FRAMES = 6
+FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency later
+# What holds until software writes it again; an upset there is no matter of frames.
+SETTINGS = {
+    "axil_registers": ("threshold", "timeout", "hold_contact", "table_index", "table_gx"),
+    "gradient_lookup": ("words",),
+}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A register, or a word of a memory, and the module it belongs to."""
+
+    module: str
+    path: str
+    handle: LogicArrayObject | LogicObject
+    memory: bool
+
+
+def registers_of(module: str) -> set[str]:
+    """Names that a module's source assigns with <= in a clocked block."""
+    text = re.sub(r"//.*", "", (HDL / f"{module}.sv").read_text())
+    clocked = text[text.find("always_ff") :]
+    names = set(re.findall(r"(?:^|[;)]|begin|else)\s*\{?\s*(\w+)(?:\[[^\]]*\])?\s*<=", clocked, re.M))
+    joined = re.findall(r"\{([\w, ]+)\}\s*<=", clocked)
+    return names | {name.strip() for group in joined for name in group.split(",")}
+
+
+def places(dut) -> list[Place]:
+    """Every register and every word of memory; ROMs and what only simulation has are left out."""
+    found: list[Place] = []
+
+    def visit(scope, module: str, owner: str) -> None:
+        registers = registers_of(module)
+        for child in scope:
+            name = child._name
+            if isinstance(child, HierarchyArrayObject):
+                for element in child:
+                    visit(element, module, owner)
+            elif isinstance(child, HierarchyObject):
+                inner = child._def_name
+                if (HDL / f"{inner}.sv").is_file():
+                    if inner != "rom":
+                        # A memory counts for the core it serves, and so does what only counts or delays.
+                        shared = inner in ("ram", "delay_line", "burst_counter", "round_saturate", "dot_product")
+                        visit(child, inner, owner if shared else inner)
+                else:
+                    visit(child, module, owner)
+            elif name in registers or name == "words":
+                memory = isinstance(child, ArrayObject)
+                for element in child if memory else [child]:
+                    found.append(Place(owner, child._path, element, memory))
+
+    visit(dut, "tactile_depth", "tactile_depth")
+    return found
+
+
+class Device:
+    """The pins, clock by clock."""
+
+    def __init__(self, dut, rng):
+        self.dut, self.random = dut, rng
+        self.config = configuration()
+        rgb = np.random.default_rng(1).integers(0, 256, (FRAMES, self.config.rows, self.config.columns, 3), np.uint8)
+        self.codes = (
+            tactile_depth(rgb, synthetic(self.config.bits_per_channel), self.config).reshape(FRAMES, -1).tolist()
+        )
+        red, green, blue = (rgb[..., channel].astype(int) for channel in range(3))
+        pixels = (red << 16 | blue << 8 | green).reshape(FRAMES, -1).tolist()
+        self.words = [word for frame in pixels for word in video(frame, self.config.columns)]
+        self.pixels = self.config.rows * self.config.columns
+        self.latency = last_pixel_to_first_depth(self.config)
+        width = 8 * ((self.config.data_width + 7) // 8)
+        self.sign, self.range = 1 << width - 1, 1 << width
+
+    async def reset(self):
+        dut = self.dut
+        for pin in ("s_axis_tvalid", "s_axil_awvalid", "s_axil_wvalid", "s_axil_arvalid", "s_axil_bready"):
+            getattr(dut, pin).value = 0
+        dut.s_axil_rready.value, dut.m_axis_tready.value, dut.rst.value = 1, 1, 1
+        for _ in range(2):
+            await RisingEdge(dut.clk)
+        dut.rst.value = 0
+        await RisingEdge(dut.clk)
+
+    async def status(self) -> int | None:
+        """STATUS; None: the registers do not answer."""
+        dut = self.dut
+        dut.s_axil_araddr.value, dut.s_axil_arvalid.value = REGISTERS["STATUS"].offset, 1
+        for _ in range(10):
+            await RisingEdge(dut.clk)
+            if dut.s_axil_arready.value:
+                dut.s_axil_arvalid.value = 0
+            if dut.s_axil_rvalid.value:
+                return int(dut.s_axil_rdata.value)
+        return None
+
+    async def experiment(self, place: Place, bit: int, at: int, stall: float) -> str | None:
+        """Stream the frames, flip one bit after clock `at`; the outcome. None: nothing was written there before."""
+        dut, edge = self.dut, RisingEdge(self.dut.clk)
+        await self.reset()
+        sent, clock, quiet = 0, 0, 0
+        sent_at_flip = 0
+        beats: list[tuple[int, int]] = []
+        valid, ready, m_valid, m_ready = dut.s_axis_tvalid, dut.s_axis_tready, dut.m_axis_tvalid, dut.m_axis_tready
+        data, last, user = dut.s_axis_tdata, dut.s_axis_tlast, dut.s_axis_tuser
+        while quiet < 2 * self.latency:
+            valid.value = int(sent < len(self.words))
+            if sent < len(self.words):
+                data.value, last.value, user.value = self.words[sent]
+            m_ready.value = int(self.random.random() >= stall)
+            if clock == at:
+                await FallingEdge(dut.clk)
+                if not place.handle.value.is_resolvable:
+                    return None
+                self.flip(place, bit)
+                sent_at_flip = sent
+            await edge
+            clock += 1
+            quiet = 0 if sent < len(self.words) and clock < 20 * len(self.words) else quiet + 1
+            if sent < len(self.words) and ready.value:
+                sent += 1
+            if m_valid.value and m_ready.value:
+                beats.append((int(dut.m_axis_tdata.value), int(dut.m_axis_tuser.value)))
+                quiet = 0
+        valid.value = 0
+        status = await self.status()
+        if place.memory and place.module in SETTINGS:
+            self.flip(place, bit)
+        return self.outcome(beats, status, sent_at_flip)
+
+    def flip(self, place: Place, bit: int) -> None:
+        place.handle.value = int(place.handle.value) ^ 1 << bit
+
+    def outcome(self, beats: list[tuple[int, int]], status: int | None, sent_at_flip: int) -> str:
+        frames: list[list[int]] = []
+        for code, user in beats:
+            if user or not frames:
+                frames.append([])
+            frames[-1].append(code - self.range if code & self.sign else code)
+        later = FRAMES - -(-sent_at_flip // self.pixels)  # frames that began after the flip
+        if status is None or len(frames) < later or len(beats) < later * self.pixels:
+            return "hang"
+        if frames[len(frames) - later :] != self.codes[FRAMES - later :]:
+            return "stays wrong"
+        fields = REGISTERS["STATUS"].unpack(status)
+        flagged = any(value for name, value in fields.items() if name not in ("busy", "contact", "saturation"))
+        if frames == self.codes:
+            return "false alarm" if flagged else "masked"
+        return "flagged" if flagged else "not flagged"
+
+
+@cocotb.test()
+async def upsets(dut):
+    rng = random.Random(cocotb.RANDOM_SEED)
+    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    device = Device(dut, rng)
+    await device.reset()
+    by_module: dict[str, list[Place]] = {}
+    for place in places(dut):
+        by_module.setdefault(place.module + " memory" * place.memory, []).append(place)
+    dut._log.info("%s", {module: len(found) for module, found in by_module.items()})
+    assert len(by_module) > 20, "the registers were not found"
+    results = []
+    first = FLIPPED_IN * device.pixels
+    for name, found in sorted(by_module.items()):
+        wanted = len(results) + int(os.environ["UPSETS"])
+        while len(results) < wanted:
+            place = rng.choice(found)
+            bit = rng.randrange(len(place.handle))
+            at = first + rng.randrange(device.pixels + device.latency)
+            stall = rng.choice((0.0, 0.25))
+            outcome = await device.experiment(place, bit, at, stall)
+            if outcome is None:
+                continue
+            setting = place.path.rpartition(".")[2] in SETTINGS.get(place.module, ())
+            results.append(
+                {"group": name, "path": place.path, "bit": bit, "clock": at, "outcome": outcome, "setting": setting}
+            )
+            if outcome in ("hang", "stays wrong"):
+                dut._log.info("%s: %s bit %d at clock %d", outcome, place.path, bit, at)
+    Path("upsets.json").write_text(json.dumps(results))
