@@ -21,6 +21,12 @@ from commands import simulator as simulation
 
 SELECTOR = "mutsel"
 TESTS = simulation.ROOT / "tests"
+# A register becomes an input, its value, and an output, what it takes next.
+OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
+dffunmap @register
+expose -evert-dff -sep __ w:{name} @register %u
+opt_clean
+"""
 # Only the wrapper's signals are seen from Python. Warnings in what Yosys wrote are not ours.
 PUBLIC = """`verilator_config
 public_flat_rw -module "{core}" -var "*"
@@ -117,7 +123,8 @@ def described(line: str) -> str:
 def counts(line: str, cells: Mapping) -> bool:
     """Whether a mutant says something about the tests.
 
-    A register without a clock does not, nor a constant in place of itself. Constant pins of a memory say what kind it is.
+    A register without a clock does not, nor a constant in place of itself. Constant pins of a memory say what kind
+    it is.
     """
     words = line.split()
     mode, name, port, bit = (words[words.index(option) + 1] for option in ("-mode", "-cell", "-port", "-portbit"))
@@ -128,22 +135,27 @@ def counts(line: str, cells: Mapping) -> bool:
     return driver != mode.removeprefix("const")
 
 
-def make(core: str, structure: Structure, count: int, seed: int, folder: Path) -> list[Mutant]:
-    """Write <folder>/mutants.v and mutants.il, module <core>_mutants, and say what the mutants are.
+def make(
+    core: str, structure: Structure, count: int, seed: int, folder: Path, outside: Sequence[str] = ()
+) -> tuple[list[Mutant], bool]:
+    """Write <folder>/mutants.v and mutants.il, module <core>_mutants; the mutants, and whether those are all there are.
 
-    Constant logic goes first, so that no mutant is dead from the start.
+    `outside`: registers that become ports of the netlist, to be where a testbench can write them. Constant logic
+    goes first, so that no mutant is dead from the start.
     """
     if structure.roms:
         structure.roms(folder)
     width = 12
     yosys(
-        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\nopt_clean -purge\nwrite_rtlil base.il\n"
+        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\nopt_clean -purge\n"
+        f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\n"
         f"write_json ports.json\nmutate -list {2 * count} -seed {seed} -ctrl {SELECTOR} {width} 1 -o all.txt\n",
         folder,
         "list",
     )
     cells = json.loads((folder / "ports.json").read_text())["modules"][core]["cells"]
-    lines = [line for line in (folder / "all.txt").read_text().splitlines() if counts(line, cells)][:count]
+    every = (folder / "all.txt").read_text().splitlines()
+    lines = [line for line in every if counts(line, cells)][:count]
     (folder / "mutants.txt").write_text("\n".join(lines) + "\n")
     yosys(
         f"read_rtlil base.il\nscript mutants.txt\nrename {core} {core}_mutants\nopt_clean\nwrite_rtlil mutants.il\n"
@@ -152,13 +164,32 @@ def make(core: str, structure: Structure, count: int, seed: int, folder: Path) -
         "mutants",
     )
     numbers = (int(line.split()[line.split().index("-ctrl") + 3]) for line in lines)
-    return [Mutant(number, described(line)) for number, line in zip(numbers, lines, strict=True)]
+    made = [Mutant(number, described(line)) for number, line in zip(numbers, lines, strict=True)]
+    return made, len(made) < count and len(every) < 2 * count
 
 
 def ports(core: str, folder: Path) -> dict[str, tuple[str, int]]:
-    """Of the core as Yosys read it: name to (direction, bits)."""
+    """Of the netlist: name to (direction, bits), without the ports of registers outside and the selector."""
     module = json.loads((folder / "ports.json").read_text())["modules"][core]
-    return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items()}
+    return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items() if "__" not in name}
+
+
+def registers_outside(core: str, folder: Path) -> dict[str, int]:
+    """Name to bits of each."""
+    module = json.loads((folder / "ports.json").read_text())["modules"][core]
+    return {name[:-3]: len(port["bits"]) for name, port in module["ports"].items() if name.endswith("__q")}
+
+
+def instance(core: str, folder: Path) -> str:
+    """The netlist as a cell named `netlist`, and its registers outside. Verilog."""
+    outside = registers_outside(core, folder)
+    connections = [f".{name}({name})" for name in (*ports(core, folder), SELECTOR)]
+    lines = []
+    for name, bits in outside.items():
+        lines += [f"  reg [{bits - 1}:0] {name};", f"  wire [{bits - 1}:0] {name}__d;"]
+        lines += [f"  always @(posedge clk) {name} <= {name}__d;"]
+        connections += [f".{name}__q({name})", f".{name}__d({name}__d)", f".{name}__c(clk)"]
+    return "\n".join([*lines, f"  {core}_mutants netlist (", "    " + ",\n    ".join(connections), "  );\n"])
 
 
 def wrapper(core: str, folder: Path, inside: Mapping[str, str]) -> str:
@@ -168,13 +199,9 @@ def wrapper(core: str, folder: Path, inside: Mapping[str, str]) -> str:
     """
     header = re.search(rf"^module {core}\b.*?^\);\n", (simulation.HDL / f"{core}.sv").read_text(), re.S | re.M)
     assert header is not None, core
-    connections = [f".{name}({name})" for name in (*ports(core, folder), SELECTOR)]
     signals = [f"  {declaration} {name};\n  assign {name} = netlist.{name};\n" for name, declaration in inside.items()]
-    return (
-        f"{header.group()}\n  logic [11:0] {SELECTOR} = 12'd0;\n  {core}_mutants netlist (\n    "
-        + ",\n    ".join(connections)
-        + f"\n  );\n{''.join(signals)}\nendmodule\n"
-    )
+    selector = f"  logic [11:0] {SELECTOR} = 12'd0;\n"
+    return f"{header.group()}\n{selector}{instance(core, folder)}{''.join(signals)}\nendmodule\n"
 
 
 def run(
@@ -209,13 +236,14 @@ def run(
         fast=True,
         log=folder / "build.log",
     )
-    results = folder / "results.jsonl"
+    results = folder / f"{simulator}.jsonl"
     results.unlink(missing_ok=True)
     tests = tests or structure.environment.get("COCOTB_TEST_FILTER", "")
     environment = {
         **structure.environment,
         "MUTANT_NUMBERS": ",".join(str(mutant.number) for mutant in mutants),
         "MUTANT_JOBS": str(jobs),
+        "MUTANT_RESULTS": str(results),
         "COCOTB_TEST_FILTER": f"every_mutant|{tests}" if tests else "",
         "OPENBLAS_NUM_THREADS": "1",
     }
@@ -227,12 +255,11 @@ def run(
         simulator=simulator,
         seed=seed,
         environment=environment,
-        log=folder / "run.log",
+        log=folder / f"{simulator}.log",
     )
     seen = [json.loads(line) for line in results.read_text().splitlines()] if results.exists() else []
     if failed or len(seen) != len(mutants) + 1:
         told = f" ({seen[0]['reason']})" if seen and seen[0]["verdict"] != "survived" else ""
-        raise RuntimeError(
-            f"{core}: the netlist without a mutant fails its own tests{told}, or the simulator does: {folder / 'run.log'}"
-        )
+        log = folder / f"{simulator}.log"
+        raise RuntimeError(f"{core}: the tests fail without a mutant{told}, or the simulator does: {log}")
     return seen

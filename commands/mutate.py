@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make mutate`: mutants of every core in hdl/ through its own testbench, survivors settled by formal equivalence.
+"""`make mutate`: mutants of every core in hdl/ through its own testbench, survivors settled by formal proof.
 
 CORE=name,.. MUTANTS=200 SEED=1 JOBS=2 SECONDS=60 (of the solver, for each step of each survivor).
 
-For each core: as many mutants as asked for, or all there are, in one netlist (commands/mutants.py); its own testbench on
-each, up to the first failure (tb/mutants.py); for those that pass, whether anyone who keeps to the core's protocol
-could tell them apart (commands/equivalence.py). One that nobody can is no mutant of the function and does
-not count; one that somebody can is a hole in the tests; one that the solver leaves open counts as a hole.
-And the other way round: mutants that the testbench killed must not be proven equivalent.
+For each core: as many mutants as asked for, or all there are, in one netlist (commands/mutants.py); its own testbench
+on each, up to the first failure (tb/mutants.py); for those that pass, whether anyone who keeps to the core's protocol
+(commands/protocols.py) could tell them apart (commands/equivalence.py). One that nobody can is no mutant of the
+function and does not count; one that somebody can is a hole in the tests; one that the solver leaves open counts as a
+hole. And the other way round: mutants that the testbench killed must not be proven equivalent.
 """
 
 from __future__ import annotations
@@ -17,89 +17,22 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
+from multiprocessing.pool import ThreadPool
 from pathlib import Path
 
 from tqdm import tqdm
 
-from commands import equivalence, mutants
+from commands import equivalence, mutants, protocols
 from commands import simulator as simulation
-from commands.equivalence import EQUIVALENT, Protocol
+from commands.equivalence import EQUIVALENT, Protocol, settle
 from models.errors import InputError
 
 OUT = simulation.ROOT / "build" / "mutate"
 LEAF, WHOLE = 100.0, 95.0  # per cent of the mutants that are not equivalent
 CONTROLS = 4  # killed mutants of each structure that are also put to the solver
-
-# Parts of protocols. `live` is high after the first reset.
-LIVE = "  reg live = 1'b0;\n  always @(posedge clk) live <= live | rst;\n"
-
-
-def settled(clocks: int) -> str:
-    """`settled`: so many clocks with en have passed."""
-    return f"  reg [7:0] passed = 8'd0;\n  always @(posedge clk) if (en & ~settled) passed <= passed + 8'd1;\n  wire settled = passed == 8'd{clocks};\n"
-
-
-def axis_source(prefix: str, *fields: str) -> tuple[str, tuple[str, ...]]:
-    """Registers and assumptions: what is offered stays until it is taken; nothing in reset and in the clock after."""
-    payload = "{" + ", ".join(prefix + name for name in fields) + "}"
-    registers = (
-        f"  reg was_reset = 1'b1, waits = 1'b0;\n  reg [63:0] held_word;\n"
-        f"  always @(posedge clk) begin\n    was_reset <= rst;\n    waits <= {prefix}valid & ~{prefix}ready & ~rst;\n"
-        f"    held_word <= {payload};\n  end\n"
-    )
-    return registers, (
-        f"~{prefix}valid | ~(rst | was_reset)",
-        f"~waits | rst | ({prefix}valid & held_word == {payload})",
-    )
-
-
-def protocol_of_a_delay(parameters: Mapping[str, int]) -> Protocol:
-    delay = parameters["Delay"]
-    filled = f"  reg [7:0] words = 8'd0;\n  always @(posedge clk) words <= rst ? 8'd0 : words + (en & live & words != 8'd{delay});\n"
-    return Protocol(LIVE + filled, (), {"out": f"words == 8'd{delay} & ~rst"})
-
-
-def protocol_of_a_ram(parameters: Mapping[str, int]) -> Protocol:
-    """Never a read of the word that is being written; addresses within the memory."""
-    depth = parameters["Depth"]
-    return Protocol(
-        "",
-        (
-            "~(read_en & write_en & read_address == write_address)",
-            f"~read_en | read_address < {depth}",
-            f"~write_en | write_address < {depth}",
-        ),
-    )
-
-
-def protocol_of_a_skid(_: Mapping[str, int]) -> Protocol:
-    registers, assume = axis_source("s_", "data")
-    return Protocol(LIVE + registers, assume, {"s_ready": "live", "m_valid": "live", "m_data": "live & m_valid"})
-
-
-def protocol_of_the_guard(_: Mapping[str, int]) -> Protocol:
-    registers, assume = axis_source("s_", "data", "last", "user")
-    pixel, clock = "live & ~rst & en & out_valid", "live & ~rst"
-    data = ("data", "first_row", "first_column", "last_row", "last_column")
-    compare = {f"out_{name}": pixel for name in data}
-    compare |= {f"out_{name}": f"{clock} & en" for name in ("valid", "frame_start", "frame_end")}
-    compare |= dict.fromkeys(("s_ready", "row_short", "row_long", "start_missing", "start_early", "timed_out"), clock)
-    return Protocol(LIVE + registers, assume, compare | {"out_bad": f"{pixel} & out_frame_end"})
-
-
-def protocol_of_the_comparator(_: Mapping[str, int]) -> Protocol:
-    """The first beat after a reset is the first of a frame."""
-    begun = "  reg begun = 1'b0;\n  always @(posedge clk) begun <= ~rst & (begun | in_valid & in_user);\n"
-    return Protocol(LIVE + begun, ("~in_valid | rst | begun | in_user",), {"contact": "live & ~rst"})
-
-
-def protocol_of_the_lookup(_: Mapping[str, int]) -> Protocol:
-    """The table is not written while a pixel is read."""
-    word = "live & ~rst & en & out_valid"
-    compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
-    return Protocol(LIVE, ("~(write_en & in_valid)",), compare)
 
 
 @dataclass(frozen=True)
@@ -112,29 +45,54 @@ class Core:
 
     protocol: Callable[[Mapping[str, int]], Protocol]
     structures: tuple[int, ...] = (0,)
-    simulator: str = "verilator"
+    simulators: Sequence[str] = simulation.SIMULATORS  # one after the other gets what the one before let live
     bar: float = LEAF
     tests: str = ""  # a filter, where all would take too long
     inside: Mapping[str, str] = field(default_factory=dict)  # signals of the core that its testbench reads
+    outside: Sequence[str] = ()  # registers of the core that its testbench writes
 
 
-def nothing_assumed(_: Mapping[str, int]) -> Protocol:
-    return Protocol()
-
-
+TOP_TESTS = ""
 CORES = {
-    "round_saturate": Core(nothing_assumed, (0, 1, 11)),
-    "dot_product": Core(lambda _: Protocol(settled(4), (), {"sum": "settled"}), (3,)),
-    "ram": Core(protocol_of_a_ram, (1,)),
-    "rom": Core(lambda p: Protocol(settled(1), (f"address < {p['Depth']}",), {"data": "settled"}), (1,)),
-    "delay_line": Core(protocol_of_a_delay, (4, 3)),
-    "burst_counter": Core(lambda _: Protocol(LIVE, (), {"position": "live & active", "active": "live"}), (1,)),
-    "axis_skid": Core(protocol_of_a_skid),
-    "threshold_comparator": Core(protocol_of_the_comparator),
-    "frame_guard": Core(protocol_of_the_guard),
-    "gradient_lookup": Core(protocol_of_the_lookup, (1,)),
-    "thomas_table": Core(
-        lambda p: Protocol(settled(3), (f"row < {p['Rows']}",), {"coefficient": "settled", "shift": "settled"})
+    "round_saturate": Core(protocols.round_saturate, (0, 1, 11)),
+    "dot_product": Core(protocols.dot_product, (3,)),
+    "ram": Core(protocols.ram, (1,)),
+    "rom": Core(protocols.rom, (1,)),
+    "delay_line": Core(protocols.delay_line, (4, 3)),
+    "burst_counter": Core(protocols.burst_counter, (1,)),
+    "axis_skid": Core(protocols.axis_skid),
+    "threshold_comparator": Core(protocols.threshold_comparator),
+    "frame_guard": Core(protocols.frame_guard, outside=("silence",)),
+    "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
+    "thomas_table": Core(protocols.thomas_table),
+    "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2, 3)),
+    "divergence": Core(protocols.divergence, (1, 4)),
+    "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (4,)),
+    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
+    "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (1,)),
+    "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"])),
+    "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"])),
+    "mode_pairs": Core(lambda p: protocols.bursts(p["Size"], None), (1,)),
+    "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2, 5)),
+    "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (1,)),
+    "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
+    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
+    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
+    "frame_output": Core(protocols.frame_output, (1,)),
+    "frame_tags": Core(protocols.frame_tags, (1, 3)),
+    "axil_registers": Core(
+        protocols.axil_registers, outside=("frames_in", "frames_out", "frames_dropped", "saturations_count")
+    ),
+    "spectral_solver": Core(lambda p: protocols.words(p["Size"], p["Size"], whole=True), bar=WHOLE),
+    "tridiagonal_solver": Core(lambda p: protocols.words(p["Size"], p["Rows"], whole=True), bar=WHOLE),
+    # What has killed most mutants first; the rest of its testbench takes ten times as long.
+    "tactile_depth": Core(
+        protocols.tactile_depth,
+        (0, 3),
+        simulators=("verilator",),
+        bar=WHOLE,
+        tests=TOP_TESTS,
+        inside={"threshold": "logic signed [31:0]", "hold_contact": "logic"},
     ),
 }
 # Nothing in them to mutate.
@@ -167,11 +125,24 @@ class Outcome:
         return self.score >= self.bar and not self.contradictions
 
 
-def followed(path: Path, bar: tqdm, done: threading.Event) -> None:
-    """Move a progress bar with the lines of a file."""
-    while not done.wait(0.5):
-        if path.is_file():
-            bar.update(path.read_bytes().count(b"\n") - bar.n)
+@contextmanager
+def progress(what: str, count: int, path: Path) -> Iterator[None]:
+    """A bar that moves with the lines of a file."""
+    done = threading.Event()
+    with tqdm(total=count, desc=what, leave=False, disable=None) as bar:
+
+        def follow() -> None:
+            while not done.wait(0.5):
+                if path.is_file():
+                    bar.update(path.read_bytes().count(b"\n") - bar.n)
+
+        thread = threading.Thread(target=follow)
+        thread.start()
+        try:
+            yield
+        finally:
+            done.set()
+            thread.join()
 
 
 def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int) -> Outcome:
@@ -180,41 +151,42 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         structure = mutants.structure(name, index)
         folder = OUT / name / str(index)
         folder.mkdir(parents=True, exist_ok=True)
-        made = mutants.make(name, structure, count, seed, folder)
-        outcome.every &= len(made) < count
-        with tqdm(total=len(made) + 1, desc=name, leave=False, disable=None) as bar:
-            done = threading.Event()
-            thread = threading.Thread(target=followed, args=(folder / "results.jsonl", bar, done))
-            thread.start()
-            try:
+        made, every = mutants.make(name, structure, count, seed, folder, core.outside)
+        outcome.every &= every
+        lived, killed = made, []
+        for simulator in core.simulators:
+            with progress(f"{name}, {simulator}", len(lived) + 1, folder / f"{simulator}.jsonl"):
                 results = mutants.run(
                     name,
                     structure,
-                    made,
+                    lived,
                     folder,
-                    core.simulator,
+                    simulator,
                     inside=core.inside,
                     tests=core.tests,
                     jobs=jobs,
                     seed=seed,
                 )
-            finally:
-                done.set()
-                thread.join()
+            killed += [result["mutant"] for result in results if result["verdict"] == "killed"]
+            lived = [mutant for mutant in lived if mutant.number not in killed]
+            if not lived:
+                break
         what = {mutant.number: mutant.what for mutant in made}
-        killed = [result["mutant"] for result in results if result["mutant"] and result["verdict"] == "killed"]
-        lived = sorted(result["mutant"] for result in results if result["mutant"] and result["verdict"] != "killed")
         outcome.mutants += len(made)
         outcome.killed += len(killed)
         graph = equivalence.graph(name, folder, core.protocol(structure.parameters))
-        for number in tqdm(lived, desc=f"{name}: survivors", leave=False, disable=None):
-            verdict, how = equivalence.settle(graph, number, folder, seconds)
-            setattr(outcome, verdict, getattr(outcome, verdict) + 1)
-            outcome.survivors.append(
-                {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
+        numbers = [mutant.number for mutant in lived]
+        with ThreadPool(jobs) as pool:
+            verdicts = pool.imap(
+                lambda number, graph=graph, folder=folder: settle(graph, number, folder, seconds), numbers
             )
+            shown = tqdm(verdicts, f"{name}, survivors", len(numbers), leave=False, disable=None)
+            for number, (verdict, how) in zip(numbers, shown, strict=True):
+                setattr(outcome, verdict, getattr(outcome, verdict) + 1)
+                survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
+                outcome.survivors.append(survivor)
         for number in killed[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
-            if equivalence.settle(graph, number, folder, 1)[0] == EQUIVALENT:
+            if settle(graph, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
                 outcome.survivors.append(survivor | {"how": "killed, yet proven equivalent"})
@@ -223,18 +195,26 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
     return outcome
 
 
-HEAD = f"{'core':<22}{'mutants':>8}{'killed':>8}{'equivalent':>12}{'different':>11}{'unknown':>9}{'score':>9}{'bar':>6}{'seconds':>9}"
+COLUMNS = {
+    "mutants": 8,
+    "killed": 8,
+    "equivalent": 12,
+    "different": 11,
+    "unknown": 9,
+    "score": 9,
+    "bar": 6,
+    "seconds": 9,
+}
+HEAD = f"{'core':<22}" + "".join(f"{name:>{width}}" for name, width in COLUMNS.items())
 
 
 def row(outcome: Outcome) -> str:
-    counts = (
-        f"{outcome.mutants:>8}{outcome.killed:>8}{outcome.equivalent:>12}{outcome.different:>11}{outcome.unknown:>9}"
-    )
-    notes = ", all there are" if outcome.every else ""
-    notes += f", {outcome.contradictions} CONTRADICTIONS" if outcome.contradictions else ""
-    notes += "" if outcome.passed else ", MISSED"
-    score = f"{outcome.score:>8.1f}%{outcome.bar:>6.0f}{outcome.seconds:>9.0f}"
-    return f"{outcome.core:<22}{counts}{score}  {notes.removeprefix(', ')}".rstrip()
+    values = {name: f"{getattr(outcome, name):.0f}" for name in COLUMNS} | {"score": f"{outcome.score:.1f}%"}
+    notes = ["all there are"] if outcome.every else []
+    notes += [f"{outcome.contradictions} CONTRADICTIONS"] if outcome.contradictions else []
+    notes += [] if outcome.passed else ["MISSED"]
+    cells = "".join(f"{values[name]:>{width}}" for name, width in COLUMNS.items())
+    return f"{outcome.core:<22}{cells}  {', '.join(notes)}".rstrip()
 
 
 def parse(arguments: list[str]) -> dict[str, str]:
@@ -263,7 +243,7 @@ def main() -> None:
             if name not in CORES:
                 raise InputError(f"CORE={name} is unknown: accepted are {', '.join(CORES)}")
         modules = {path.stem for path in simulation.sources()}
-        if modules - {"later"} != CORES.keys() | LEFT_OUT.keys() and not os.environ.get("WIP"):
+        if modules != CORES.keys() | LEFT_OUT.keys() and not os.environ.get("WIP"):
             raise InputError(
                 f"commands/mutate.py does not list what is in hdl/: {modules ^ (CORES.keys() | LEFT_OUT.keys())}"
             )

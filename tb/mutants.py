@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the tests of the testbenches that follow it once for every mutant, each in a fork of the simulator.
 
-The device is a netlist with all mutants in it; its register `mutsel` says which one is alive, 0 being none. To start
-a simulator and import its testbench takes longer than most mutants live, so one process does that and then forks: the
-child sets the register, runs the tests and ends with the first that fails. Results go to results.jsonl, a line each.
-
-Environment: MUTANT_NUMBERS, those to run, with commas; MUTANT_JOBS, how many at a time.
+The device is a netlist with all mutants in it; its register `mutsel` says which one is alive, 0 being none. To start a
+simulator and import its testbench takes longer than most mutants live, so one process does that and then forks: the
+child sets the register, runs the tests and ends with the first that fails. Environment: MUTANT_NUMBERS, those to run,
+with commas; MUTANT_JOBS, how many at a time; MUTANT_RESULTS, the file that results are added to, a line each.
 """
 
 import json
@@ -112,7 +111,7 @@ def children(numbers, jobs, keep):
 @cocotb.test()
 async def every_mutant(dut):
     numbers = [int(number) for number in os.environ["MUTANT_NUMBERS"].split(",") if number]
-    with Path("results.jsonl").open("a", buffering=1) as results:
+    with Path(os.environ["MUTANT_RESULTS"]).open("a", buffering=1) as results:
         number = children(
             numbers,
             int(os.environ["MUTANT_JOBS"]),
