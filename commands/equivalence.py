@@ -2,7 +2,7 @@
 """Whether a mutant can be told from its core at all, by anyone who keeps to the core's protocol.
 
 The netlist with all mutants becomes one and-inverter graph, together with a small environment of SystemVerilog that
-says which inputs are allowed (`assumed`) and which outputs are looked at in which clock. Two copies of it, one without
+says which inputs are allowed and which outputs are looked at in which clock. Two copies of it, one without
 and one with the mutant, get the same inputs and the same power-up state: registers and memories that are not
 initialised start with anything, but with the same in both. The first clock is one of reset. Where the copies are built
 alike they are one, so that what is left for the solver is what the mutant can reach. Then yosys-abc: `bmc3` looks for
@@ -23,6 +23,7 @@ from commands.mutants import SELECTOR, instance, ports, yosys
 EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
 
+ALWAYS = "1'b1"
 TO_GRAPH = """read_rtlil mutants.il
 read_verilog -sv environment.v
 hierarchy -top environment
@@ -47,9 +48,9 @@ class Protocol:
     """Of a core: how it may be driven, and when its outputs mean something.
 
     `registers` is SystemVerilog before the rest: declarations with initial values and always blocks. `assume`
-    are expressions that hold in every clock (a history that breaks one is no longer looked at); `compare` gives
-    for an output the expression under which it is looked at, "1'b1" where it is not named. The core's ports
-    have their names, outputs being those of the core without a mutant.
+    are expressions that hold in every clock, of inputs and those registers; with a reset and zeros elsewhere they must.
+    `compare` gives for an output the expression under which it is looked at, always where it is not named. The core's
+    ports have their names, outputs being those of the core without a mutant.
     """
 
     registers: str = ""
@@ -67,27 +68,32 @@ class Graph:
     ands: list[tuple[int, int, int]]
 
 
+def across(bits: int) -> str:
+    return f"[{bits - 1}:0] " if bits > 1 else ""
+
+
 def environment(core: str, folder: Path, protocol: Protocol) -> str:
-    """The core and its protocol as one module of Verilog."""
+    """The core and its protocol as one module of Verilog.
+
+    Inputs that break an assumption are replaced, in that clock, by zeros and a reset. So every clock of the module is
+    allowed, and what holds of the core under its protocol holds of the module under any inputs, which is what
+    proofs by induction need.
+    """
     sides = ports(core, folder)
-    declared = [f"{side} wire [{bits - 1}:0] {name}" for name, (side, bits) in sides.items()]
-    outputs = [name for name, (side, _) in sides.items() if side == "output"]
-    declared += [f"input wire [11:0] {SELECTOR}", "output wire assumed"]
+    inputs = {name: bits for name, (side, bits) in sides.items() if side == "input" and name != "clk"}
+    outputs = {name: bits for name, (side, bits) in sides.items() if side == "output"}
+    declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
+    declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
     declared += [f"output wire looked_at_{name}" for name in outputs]
-    clock = "clk" if "clk" in sides else ""
-    holds = " & ".join(f"({expression})" for expression in protocol.assume) or "1'b1"
-    lines = [f"module environment ({', '.join(declared)});", instance(core, folder), protocol.registers]
-    if clock:
-        lines += [
-            "  reg held = 1'b1;",
-            f"  always @(posedge clk) held <= held & ({holds});",
-            f"  assign assumed = held & ({holds});",
-        ]
-    else:
-        lines.append(f"  assign assumed = {holds};")
-    lines += [
-        f"  assign looked_at_{name} = {protocol.compare.get(name, chr(49) + chr(39) + 'b1')};" for name in outputs
-    ]
+    declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
+    names = re.compile(r"\b(" + "|".join(inputs) + r")\b")
+    holds = " & ".join(f"({expression})" for expression in protocol.assume) or ALWAYS
+    holds = names.sub(r"any_\1", holds)
+    lines = [f"module environment ({', '.join(declared)});", "  wire holds;"]
+    for name, bits in inputs.items():
+        lines += [f"  wire [{bits - 1}:0] {name} = holds ? any_{name} : {bits}'d{int(name == 'rst')};"]
+    lines += [instance(core, folder), protocol.registers, f"  assign holds = {holds};"]
+    lines += [f"  assign looked_at_{name} = {protocol.compare.get(name, ALWAYS)};" for name in outputs]
     return "\n".join([*lines, "endmodule\n"])
 
 
@@ -182,10 +188,9 @@ class Miter:
             return values[literal & ~1] ^ (literal & 1)
 
         value.update(self.input_of)
-        for name in ("rst", "rst[0]"):
-            if name in source.inputs:  # the first clock is one of reset
-                literal = source.inputs[name]
-                value[literal] = self.either((self.input_of[literal], self.started ^ 1))
+        if "any_rst" in source.inputs:  # the first clock is one of reset
+            literal = source.inputs["any_rst"]
+            value[literal] = self.either((self.input_of[literal], self.started ^ 1))
         value.update(dict.fromkeys(self.selector, 0))
         for literal, _, start in source.latches:
             value[literal] = self.state(self.latch[literal], literal, start)
@@ -231,19 +236,18 @@ class Miter:
                         other[literal] = self.state(self.twin[literal], literal, start)
                         changed.append(literal)
         self.apart = apart
-        assumed = read(value, source.outputs["assumed"])
         wrong = []
         self.compared = []
         for name, literal in source.outputs.items():
             port = name.split("[")[0]
-            if port == "assumed" or port.startswith("looked_at_"):
+            if port.startswith("looked_at_"):
                 continue
             looked_at = read(value, source.outputs[f"looked_at_{port}"])
             different = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
             if different:
                 wrong.append(different)
                 self.compared.append(port)
-        self.bad = self.both(assumed, self.either(wrong))
+        self.bad = self.either(wrong)
         self.next = {self.latch[literal]: read(value, following) for literal, following, _ in source.latches}
         self.next.update(
             {self.twin[literal]: read(other, following) for literal, following, _ in source.latches if literal in apart}

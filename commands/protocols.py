@@ -139,7 +139,7 @@ def bursts(size: int, rows: int | None, out_size: int | None = None, word: str =
         "~in_start | in_left == 16'd0",
         "~in_frame_start | in_start",
         "~in_start | rst | in_frame_start | rows_left != 16'd0",
-        "~still | (in_start == start_before & in_frame_start == frame_start_before)",
+        "~still | rst | (in_start == start_before & in_frame_start == frame_start_before)",
     )
     return Protocol(LIVE + registers, assume, OUT_OF_BURSTS)
 
@@ -178,7 +178,7 @@ def words(size: int, rows: int | None, whole: bool) -> Protocol:
     assume = [
         "~in_frame_start | in_valid",
         "~in_valid | rst | in_frame_start | " + ("left != 24'd0" if rows is not None else "begun"),
-        "~still | (in_valid == valid_before & in_frame_start == frame_start_before)",
+        "~still | rst | (in_valid == valid_before & in_frame_start == frame_start_before)",
     ]
     if whole:
         assume.append("~in_frame_start | left == 24'd0")
@@ -208,7 +208,7 @@ def divergence(parameters: Mapping[str, int]) -> Protocol:
         f"in_first_column == (column == 16'd0) & in_last_column == (column == 16'd{columns - 1})"
         " & in_first_row == first & (column == 16'd0 | in_last_row == last_before)"
     )
-    assume = (f"~in_valid | rst | ({marks})", "~still | in_valid == valid_before")
+    assume = (f"~in_valid | rst | ({marks})", "~still | rst | in_valid == valid_before")
     return Protocol(
         LIVE + registers,
         assume,

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, interrupt, parameters, send_apart
+from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, interrupt, parameters, places, send_apart
 
 from models.latency import ROW_REORDER
 from models.row_reorder import row_reorder
@@ -13,13 +13,13 @@ FRAME = 3  # rows
 
 
 async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
-    size, to_burst = parameters(dut, "Size", "ToBurst")
+    size, width, to_burst = parameters(dut, "Size", "Width", "ToBurst")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
     sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
     await bench.start()
-    words = np.arange(1, ROWS * size + 1).reshape(-1, 1).tolist()  # each stands for its place
+    words = places(ROWS * size, width).reshape(-1, 1).tolist()
 
     async def send(count):
         await send_apart(bench, driver, words[-count:], gap, FRAME * size)
