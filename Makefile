@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | upsets | frontends | fuzz | calibration | setup | clean, see README.md
+# make sim | test | lint | upsets | mutate | frontends | fuzz | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -33,6 +33,11 @@ upsets: $(STAMP)
 # Two Verilog front ends read every core as the same circuit: a few minutes.
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
+
+# Mutants of every core through its own testbench; survivors settled by proof. CORE, MUTANTS, SEED, JOBS, SECONDS.
+mutate: $(TOOLS)
+	@sh commands/icarus.sh
+	@$(PY) -m commands.mutate $(foreach v,CORE MUTANTS SEED JOBS SECONDS,$(if $($(v)),'$(v)=$($(v))'))
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

@@ -51,8 +51,7 @@ class Structure:
 
 def structure(core: str, index: int) -> Structure:
     """The index-th structure of tests/test_<core>.py."""
-    if str(TESTS) not in sys.path:
-        sys.path.insert(0, str(TESTS))
+    sys.path[:0] = [path for path in (str(TESTS), str(simulation.ROOT / "tb")) if path not in sys.path]
     module = importlib.import_module(f"test_{core}")
     (test,) = (
         function
@@ -188,7 +187,7 @@ def instance(core: str, folder: Path) -> str:
     for name, bits in outside.items():
         lines += [f"  reg [{bits - 1}:0] {name};", f"  wire [{bits - 1}:0] {name}__d;"]
         lines += [f"  always @(posedge clk) {name} <= {name}__d;"]
-        connections += [f".{name}__q({name})", f".{name}__d({name}__d)", f".{name}__c(clk)"]
+        connections += [f".{name}__q({name})", f".{name}__d({name}__d)", f".{name}__c()"]
     return "\n".join([*lines, f"  {core}_mutants netlist (", "    " + ",\n    ".join(connections), "  );\n"])
 
 

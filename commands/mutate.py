@@ -52,7 +52,11 @@ class Core:
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
 
 
-TOP_TESTS = ""
+# Of the testbench of the whole, the tests that differ most: all of them would take ten times as long for each survivor.
+TOP_TESTS = (
+    "one_frame|back_to_back|tb_tactile_depth.contact|every_fault|words_before|silence|gradient_table|saturation|registers_written"
+    "|gaps_and_stalls/offers=random/accepts=[14]|resets.*(filling|full)|random_streams/offers=none"
+)
 CORES = {
     "round_saturate": Core(protocols.round_saturate, (0, 1, 11)),
     "dot_product": Core(protocols.dot_product, (3,)),
@@ -65,27 +69,26 @@ CORES = {
     "frame_guard": Core(protocols.frame_guard, outside=("silence",)),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
     "thomas_table": Core(protocols.thomas_table),
-    "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2, 3)),
-    "divergence": Core(protocols.divergence, (1, 4)),
+    "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
+    "divergence": Core(protocols.divergence, (4,)),
     "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (4,)),
     "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
     "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (1,)),
     "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"])),
     "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"])),
     "mode_pairs": Core(lambda p: protocols.bursts(p["Size"], None), (1,)),
-    "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2, 5)),
+    "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (1,)),
     "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
     "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "frame_output": Core(protocols.frame_output, (1,)),
-    "frame_tags": Core(protocols.frame_tags, (1, 3)),
+    "frame_tags": Core(protocols.frame_tags),
     "axil_registers": Core(
         protocols.axil_registers, outside=("frames_in", "frames_out", "frames_dropped", "saturations_count")
     ),
     "spectral_solver": Core(lambda p: protocols.words(p["Size"], p["Size"], whole=True), bar=WHOLE),
     "tridiagonal_solver": Core(lambda p: protocols.words(p["Size"], p["Rows"], whole=True), bar=WHOLE),
-    # What has killed most mutants first; the rest of its testbench takes ten times as long.
     "tactile_depth": Core(
         protocols.tactile_depth,
         (0, 3),
@@ -243,7 +246,7 @@ def main() -> None:
             if name not in CORES:
                 raise InputError(f"CORE={name} is unknown: accepted are {', '.join(CORES)}")
         modules = {path.stem for path in simulation.sources()}
-        if modules != CORES.keys() | LEFT_OUT.keys() and not os.environ.get("WIP"):
+        if modules != CORES.keys() | LEFT_OUT.keys():
             raise InputError(
                 f"commands/mutate.py does not list what is in hdl/: {modules ^ (CORES.keys() | LEFT_OUT.keys())}"
             )
@@ -255,7 +258,10 @@ def main() -> None:
     outcomes = []
     print(HEAD)
     for name in names:
-        outcomes.append(mutate(name, CORES[name], int(choices["MUTANTS"]), **numbers))
+        try:
+            outcomes.append(mutate(name, CORES[name], int(choices["MUTANTS"]), **numbers))
+        except RuntimeError as error:
+            sys.exit(f"make mutate: {name}: {error}")
         print(row(outcomes[-1]), flush=True)
         for survivor in outcomes[-1].survivors:
             if survivor["verdict"] != EQUIVALENT:
