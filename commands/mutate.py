@@ -45,13 +45,15 @@ class Core:
 
     protocol: Callable[[Mapping[str, int]], Protocol]
     structures: tuple[int, ...] = (0,)
-    simulators: Sequence[str] = simulation.SIMULATORS  # one after the other gets what the one before let live
+    # One after the other gets what the one before let live. Icarus needs no build, and sees X.
+    simulators: Sequence[str] = ("icarus",)
     bar: float = LEAF
     tests: str = ""  # a filter, where all would take too long
     inside: Mapping[str, str] = field(default_factory=dict)  # signals of the core that its testbench reads
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
 
 
+QUICK_FIRST = ("verilator", "icarus")
 # Of the testbench of the whole, the tests that differ most: all of them would take ten times as long for each survivor.
 TOP_TESTS = (
     "one_frame|back_to_back|tb_tactile_depth.contact|every_fault|words_before|silence|gradient_table|saturation|registers_written"
@@ -87,8 +89,12 @@ CORES = {
     "axil_registers": Core(
         protocols.axil_registers, outside=("frames_in", "frames_out", "frames_dropped", "saturations_count")
     ),
-    "spectral_solver": Core(lambda p: protocols.words(p["Size"], p["Size"], whole=True), bar=WHOLE),
-    "tridiagonal_solver": Core(lambda p: protocols.words(p["Size"], p["Rows"], whole=True), bar=WHOLE),
+    "spectral_solver": Core(
+        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE
+    ),
+    "tridiagonal_solver": Core(
+        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE
+    ),
     "tactile_depth": Core(
         protocols.tactile_depth,
         (0, 3),
@@ -188,7 +194,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
                 setattr(outcome, verdict, getattr(outcome, verdict) + 1)
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
                 outcome.survivors.append(survivor)
-        for number in killed[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
+        for number in sorted(killed)[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
             if settle(graph, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
