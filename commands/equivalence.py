@@ -38,6 +38,7 @@ dffunmap
 techmap
 opt -fast
 dfflegalize -cell $_DFF_P_ 01
+setundef -undriven -anyseq
 aigmap
 opt_clean
 """
