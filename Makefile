@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | coverage | upsets | frontends | fuzz | formal | regress | calibration | setup | clean, see README.md
+# make sim | test | lint | coverage | upsets | frontends | fuzz | formal | regress | mutate | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -50,6 +50,11 @@ fuzz: $(TOOLS)
 # Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
 formal: $(TOOLS)
 	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')
+
+# Mutants of every core through its own testbench; survivors settled by proof. CORE, MUTANTS, SEED, JOBS, SECONDS.
+mutate: $(TOOLS)
+	@sh commands/icarus.sh
+	@$(PY) -m commands.mutate $(foreach v,CORE MUTANTS SEED JOBS SECONDS,$(if $($(v)),'$(v)=$($(v))'))
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

@@ -35,6 +35,13 @@ def uniform(shape, width, amplitude=1.0):
     return np.clip(np.rint(words), -limit, limit - 1).astype(np.int64)
 
 
+def places(count, width):
+    """`count` words of `width` signed bits that stand for their place: all different, and every bit changes often."""
+    factor = round(2.0**width * 0.618) | 1  # odd, so that no two products are the same in `width` bits
+    words = [place * factor % (1 << width) for place in range(1, count + 1)]
+    return np.array([word - (word >> (width - 1) << width) for word in words], np.int64)
+
+
 def extremes(size, width, fields=1):
     """Bursts (8, size, fields) of words at their limits; the first is zero throughout.
 

@@ -132,6 +132,23 @@ STALLS = {
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
+async def long_silences(dut):
+    """Every bit of the timeout and of the count: it is set to a little before the end of what would take too long."""
+    bench = Bench(dut)
+    await bench.start()
+    powers = [1 << bit for bit in range(3, 32)]
+    for timeout in (*powers, *(power - 1 for power in powers), *(bench.random.getrandbits(32) | 8 for _ in range(10))):
+        await bench.reset(1, timeout)
+        await bench.source.send(bench.frame()[:3])
+        await ClockCycles(dut.clk, 2)
+        dut.silence.value = timeout - 3
+        await ClockCycles(dut.clk, 4)
+        assert not bench.collector.faults, f"given up before {timeout} clocks"
+        await ClockCycles(dut.clk, 1)
+        assert bench.collector.faults == ["timed_out"], f"not given up after {timeout} clocks"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
 async def faults(dut, kind, stalls):
     """A good frame, a broken one, a good one, for every position of the break."""

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, parameters
+from stream import check_bursts, parameters, places
 
 from models.frame_stack import frame_stack
 from models.latency import FRAME_STACK
@@ -12,12 +12,12 @@ FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
 async def check(dut, frames=FRAMES, **behaviour):
-    size, rows = parameters(dut, "Size", "Rows")
+    size, width, rows = parameters(dut, "Size", "Width", "Rows")
 
     def model(x, monitor):
         return frame_stack(x.reshape(-1, rows, size))
 
-    words = np.arange(1, frames * rows * size + 1)  # each stands for its place
+    words = places(frames * rows * size, width)
     source, sink = await check_bursts(
         dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=rows, **behaviour
     )

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, parameters
+from stream import check_bursts, parameters, places
 
 from models.latency import TRANSPOSE
 from models.transpose import transpose
@@ -12,12 +12,12 @@ FRAMES = 4  # in place, rows and columns of the memory change roles with every f
 
 
 async def check(dut, frames=FRAMES, **behaviour):
-    size, makhoul_in, makhoul_out = parameters(dut, "Size", "MakhoulIn", "MakhoulOut")
+    size, width, makhoul_in, makhoul_out = parameters(dut, "Size", "Width", "MakhoulIn", "MakhoulOut")
 
     def model(x, monitor):
         return transpose(x.reshape(-1, size, size), bool(makhoul_in), bool(makhoul_out))
 
-    words = np.arange(1, frames * size * size + 1)  # each stands for its place
+    words = places(frames * size * size, width)
     source, sink = await check_bursts(
         dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=size, **behaviour
     )

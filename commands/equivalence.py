@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a mutant can be told from its core at all, by anyone who keeps to the core's protocol.
+
+The netlist with all mutants becomes one and-inverter graph, together with a small environment of SystemVerilog that
+says which inputs are allowed and which outputs are looked at in which clock. Two copies of it, one without
+and one with the mutant, get the same inputs and the same power-up state: registers and memories that are not
+initialised start with anything, but with the same in both. The first clock is one of reset. Where the copies are built
+alike they are one, so that what is left for the solver is what the mutant can reach. Then yosys-abc: `bmc3` looks for
+a difference, `scorr` and `pdr` prove that there is none.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+
+from commands.mutants import SELECTOR, instance, ports, yosys
+
+EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
+
+
+ALWAYS = "1'b1"
+TO_GRAPH = """read_rtlil mutants.il
+read_verilog -sv environment.v
+hierarchy -top environment
+proc
+flatten
+opt_clean
+memory -nomap
+memory_map
+setundef -undriven -anyseq
+opt -fast
+dffunmap
+techmap
+opt -fast
+dfflegalize -cell $_DFF_P_ 01
+setundef -undriven -anyseq
+aigmap
+opt_clean
+"""
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """Of a core: how it may be driven, and when its outputs mean something.
+
+    `registers` is SystemVerilog before the rest: declarations with initial values and always blocks. `assume`
+    are expressions that hold in every clock, of inputs and those registers; with a reset and zeros elsewhere they must.
+    `compare` gives for an output the expression under which it is looked at, always where it is not named. The core's
+    ports have their names, outputs being those of the core without a mutant.
+    """
+
+    registers: str = ""
+    assume: Sequence[str] = ()
+    compare: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Graph:
+    """An and-inverter graph in AIGER's numbering: literal 2 v is node v, 2 v + 1 its inverse, 0 is false."""
+
+    inputs: dict[str, int]  # name of the bit to its literal
+    latches: list[tuple[int, int, int]]  # literal, next, start: 0, 1, or the literal itself for anything
+    outputs: dict[str, int]
+    ands: list[tuple[int, int, int]]
+
+
+def across(bits: int) -> str:
+    return f"[{bits - 1}:0] " if bits > 1 else ""
+
+
+def environment(core: str, folder: Path, protocol: Protocol) -> str:
+    """The core and its protocol as one module of Verilog.
+
+    Inputs that break an assumption are replaced, in that clock, by zeros and a reset. So every clock of the module is
+    allowed, and what holds of the core under its protocol holds of the module under any inputs, which is what
+    proofs by induction need.
+    """
+    sides = ports(core, folder)
+    inputs = {name: bits for name, (side, bits) in sides.items() if side == "input" and name != "clk"}
+    outputs = {name: bits for name, (side, bits) in sides.items() if side == "output"}
+    declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
+    declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
+    declared += [f"output wire looked_at_{name}" for name in outputs]
+    declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
+    names = re.compile(r"\b(" + "|".join(inputs) + r")\b")
+    holds = " & ".join(f"({expression})" for expression in protocol.assume) or ALWAYS
+    holds = names.sub(r"any_\1", holds)
+    lines = [f"module environment ({', '.join(declared)});", "  wire holds;"]
+    for name, bits in inputs.items():
+        lines += [f"  wire [{bits - 1}:0] {name} = holds ? any_{name} : {bits}'d{int(name == 'rst')};"]
+    lines += [instance(core, folder), protocol.registers, f"  assign holds = {holds};"]
+    lines += [f"  assign looked_at_{name} = {protocol.compare.get(name, ALWAYS)};" for name in outputs]
+    return "\n".join([*lines, "endmodule\n"])
+
+
+def graph(core: str, folder: Path, protocol: Protocol) -> Graph:
+    """Of the netlist with all mutants and its environment. Memories become registers."""
+    (folder / "environment.v").write_text(environment(core, folder, protocol))
+    yosys(f"{TO_GRAPH}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
+    lines = iter((folder / "graph.aag").read_text().splitlines())
+    _, _, inputs, latches, outputs, ands = next(lines).split()
+    in_literals = [int(next(lines)) for _ in range(int(inputs))]
+    rows = [[int(word) for word in next(lines).split()] for _ in range(int(latches))]
+    out_literals = [int(next(lines)) for _ in range(int(outputs))]
+    gates = [tuple(int(word) for word in next(lines).split()) for _ in range(int(ands))]
+    names = {}
+    for line in lines:
+        found = re.fullmatch(r"([io])(\d+) (\S+)", line)
+        if found:
+            names[found[1], int(found[2])] = found[3]
+    return Graph(
+        # Those without a name are undefined values, such as words beyond the end of a memory: anything, in both copies.
+        {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)},
+        [(row[0], row[1], row[2] if len(row) > 2 else 0) for row in rows],
+        {names["o", n]: literal for n, literal in enumerate(out_literals)},
+        sorted((g for g in gates), key=lambda g: g[0]),
+    )
+
+
+class Miter:
+    """Two copies of a graph, made one where they are alike, and whether they differ where it is looked at."""
+
+    def __init__(self, source: Graph, number: int):
+        self.source, self.number = source, number
+        self.ands: list[tuple[int, int]] = []  # of nodes from self.first on
+        self.known: dict[tuple[int, int], int] = {}
+        self.selector = {
+            literal: int(re.search(r"\[(\d+)\]$", name)[1])
+            for name, literal in source.inputs.items()
+            if name.split("[")[0] == SELECTOR
+        }
+        self.inputs = [literal for literal in source.inputs.values() if literal not in self.selector]
+        free = [literal for literal, _, start in source.latches if start == literal]
+        # Nodes: inputs, power-up values, `started`, latches of the first copy, as many for the second, gates.
+        count = 1
+        self.input_of, self.power_up, self.latch, self.twin = {}, {}, {}, {}
+        for table, literals in ((self.input_of, self.inputs), (self.power_up, free)):
+            for literal in literals:
+                table[literal] = 2 * count
+                count += 1
+        self.input_count = count - 1
+        self.started = 2 * count
+        count += 1
+        for table in (self.latch, self.twin):
+            for literal, _, _ in source.latches:
+                table[literal] = 2 * count
+                count += 1
+        self.first = count
+        self._build()
+
+    def both(self, a: int, b: int) -> int:
+        """The literal of a and b."""
+        if a > b:
+            a, b = b, a
+        if a == 0 or a ^ b == 1:
+            return 0
+        if a in (1, b):
+            return b
+        if (a, b) not in self.known:
+            self.known[a, b] = 2 * (self.first + len(self.ands))
+            self.ands.append((a, b))
+        return self.known[a, b]
+
+    def either(self, literals: Iterable[int]) -> int:
+        out = 0
+        for literal in literals:
+            out = self.both(out ^ 1, literal ^ 1) ^ 1
+        return out
+
+    def differ(self, a: int, b: int) -> int:
+        return self.either((self.both(a, b ^ 1), self.both(a ^ 1, b)))
+
+    def state(self, latch: int, literal: int, start: int) -> int:
+        """What a latch shows: in the first clock its power-up value, where that is not given."""
+        if start != literal:
+            return latch
+        return self.either((self.both(self.started, latch), self.both(self.started ^ 1, self.power_up[literal])))
+
+    def _build(self) -> None:
+        source = self.source
+        value = {0: 0, 1: 1}
+
+        def read(values: Mapping[int, int], literal: int) -> int:
+            return values[literal & ~1] ^ (literal & 1)
+
+        value.update(self.input_of)
+        if "any_rst" in source.inputs:  # the first clock is one of reset
+            literal = source.inputs["any_rst"]
+            value[literal] = self.either((self.input_of[literal], self.started ^ 1))
+        value.update(dict.fromkeys(self.selector, 0))
+        for literal, _, start in source.latches:
+            value[literal] = self.state(self.latch[literal], literal, start)
+        for out, a, b in source.ands:
+            value[out] = self.both(read(value, a), read(value, b))
+        # The second copy, as far as it differs: what depends on the selector's bits, then what that reaches.
+        other = dict(value)
+        users: dict[int, list[int]] = {}
+        for index, (_, a, b) in enumerate(source.ands):
+            users.setdefault(a & ~1, []).append(index)
+            users.setdefault(b & ~1, []).append(index)
+        loaded: dict[int, list[int]] = {}
+        for index, (_, following, _) in enumerate(source.latches):
+            loaded.setdefault(following & ~1, []).append(index)
+        apart: set[int] = set()  # latches of their own
+        changed = []
+        for literal, bit in self.selector.items():
+            if self.number >> bit & 1:
+                other[literal] = 1
+                changed.append(literal)
+        while changed:
+            reached: set[int] = set()
+            stack = list(changed)
+            while stack:  # gates that may change
+                for index in users.get(stack.pop(), ()):
+                    if index not in reached:
+                        reached.add(index)
+                        stack.append(source.ands[index][0])
+            moved = set(changed)
+            for index in sorted(reached):
+                out, a, b = source.ands[index]
+                if a & ~1 in moved or b & ~1 in moved:
+                    new = self.both(read(other, a), read(other, b))
+                    if new != other[out]:
+                        other[out] = new
+                        moved.add(out)
+            changed = []
+            for node in moved:
+                for index in loaded.get(node, ()):
+                    literal, following, start = source.latches[index]
+                    if literal not in apart and read(other, following) != read(value, following):
+                        apart.add(literal)
+                        other[literal] = self.state(self.twin[literal], literal, start)
+                        changed.append(literal)
+        self.apart = apart
+        wrong = []
+        self.compared = []
+        for name, literal in source.outputs.items():
+            port = name.split("[")[0]
+            if port.startswith("looked_at_"):
+                continue
+            looked_at = read(value, source.outputs[f"looked_at_{port}"])
+            different = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
+            if different:
+                wrong.append(different)
+                self.compared.append(port)
+        self.bad = self.either(wrong)
+        self.next = {self.latch[literal]: read(value, following) for literal, following, _ in source.latches}
+        self.next.update(
+            {self.twin[literal]: read(other, following) for literal, following, _ in source.latches if literal in apart}
+        )
+        self.start = {self.latch[literal]: int(start == 1) for literal, _, start in source.latches}
+        self.start.update({self.twin[literal]: int(start == 1) for literal, _, start in source.latches})
+        self.value, self.other = value, other
+
+    def write(self, path: Path) -> None:
+        """As a binary AIGER file with one output: a difference is seen."""
+        latches = [(self.started, 1, 0)]
+        latches += [
+            (latch, self.next.get(latch, latch), self.start[latch])
+            for table in (self.latch, self.twin)
+            for latch in table.values()
+        ]
+        top = self.first - 1 + len(self.ands)
+        head = f"aig {top} {self.input_count} {len(latches)} 1 {len(self.ands)}\n"
+        text = head + "".join(
+            f"{following} {start}\n" if start else f"{following}\n" for _, following, start in latches
+        )
+        text += f"{self.bad}\n"
+        coded = bytearray()
+        for index, (a, b) in enumerate(self.ands):
+            node = 2 * (self.first + index)
+            for delta in (node - b, b - a):
+                while delta >= 128:
+                    coded.append(delta & 127 | 128)
+                    delta >>= 7
+                coded.append(delta)
+        path.write_bytes(text.encode() + bytes(coded))
+
+
+def abc(commands: str, folder: Path, seconds: int) -> str:
+    """What yosys-abc prints, or nothing if it takes too long."""
+    package = find_spec("pyosys")
+    assert package is not None
+    assert package.submodule_search_locations
+    program = str(Path(package.submodule_search_locations[0]) / "yosys-abc")
+    try:
+        result = subprocess.run(
+            [program, "-q", commands], cwd=folder, capture_output=True, text=True, check=False, timeout=seconds
+        )
+    except subprocess.TimeoutExpired:
+        return ""
+    return result.stdout + result.stderr
+
+
+def proved(name: str, folder: Path, seconds: int) -> bool:
+    """Whether the output of a miter is never high."""
+    limit = 6 * seconds + 20
+    left = re.findall(
+        r"lat *= *(\d+)", abc(f"read_aiger {name}; scleanup; scorr; dc2; write_aiger left-{name}; ps", folder, limit)
+    )
+    if left and not int(left[-1]):
+        return "UNSATISFIABLE" in abc(f"read_aiger left-{name}; iprove", folder, limit)
+    if left and "Property proved" in abc(f"read_aiger left-{name}; pdr -T {seconds}", folder, limit):
+        return True
+    return "Property proved" in abc(f"read_aiger {name}; scleanup; pdr -T {seconds}", folder, limit)
+
+
+def settle(source: Graph, number: int, folder: Path, seconds: int) -> tuple[str, str]:
+    """(verdict, how): whether the mutant can be told apart, within about so many seconds for each step."""
+    miter = Miter(source, number)
+    if miter.bad == 0:
+        return EQUIVALENT, "by structure"
+    name = f"miter{number}.aig"
+    miter.write(folder / name)
+    # A short look for each first: most are told apart in a few clocks, or proven by what is alike in both copies.
+    for search, proof in ((1, 2), (seconds // 10, seconds), (seconds, 0)):
+        frame = None
+        if search:
+            found = abc(f"read_aiger {name}; bmc3 -T {search}", folder, 4 * search + 20)
+            frame = re.search(r"asserted in frame (\d+)", found)
+        if frame:
+            return DIFFERENT, f"after {frame[1]} clocks"
+        if proof and proved(name, folder, proof):
+            return EQUIVALENT, "by proof"
+    return UNKNOWN, f"in {seconds} s"

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How each core may be driven, and when its outputs are looked at: what commands/equivalence.py takes for granted.
+
+They allow at least what the testbenches do, and no more than the headers of hdl/ promise to work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from commands.equivalence import Protocol
+
+# `live` is high after the first reset.
+LIVE = "  reg live = 1'b0;\n  always @(posedge clk) live <= live | rst;\n"
+
+
+def settled(clocks: int) -> str:
+    """`settled`: so many clocks with en have passed."""
+    return f"""
+  reg [7:0] passed = 8'd0;
+  wire settled = passed == 8'd{clocks};
+  always @(posedge clk) if (en & ~settled) passed <= passed + 8'd1;
+"""
+
+
+def axis_source(prefix: str, *fields: str) -> tuple[str, tuple[str, ...]]:
+    """Registers and assumptions: what is offered stays until it is taken; nothing in reset and in the clock after."""
+    payload = "{" + ", ".join(prefix + name for name in fields) + "}"
+    registers = (
+        "  reg was_reset = 1'b1, waits = 1'b0;\n  reg [63:0] held_word;\n"
+        f"  always @(posedge clk) begin\n    was_reset <= rst;\n    waits <= {prefix}valid & ~{prefix}ready & ~rst;\n"
+        f"    held_word <= {payload};\n  end\n"
+    )
+    return registers, (
+        f"~{prefix}valid | ~(rst | was_reset)",
+        f"~waits | rst | ({prefix}valid & held_word == {payload})",
+    )
+
+
+def round_saturate(_: Mapping[str, int]) -> Protocol:
+    return Protocol()
+
+
+def dot_product(_: Mapping[str, int]) -> Protocol:
+    return Protocol(settled(4), (), {"sum": "settled"})
+
+
+def rom(parameters: Mapping[str, int]) -> Protocol:
+    return Protocol(settled(1), (f"address < {parameters['Depth']}",), {"data": "settled"})
+
+
+def thomas_table(parameters: Mapping[str, int]) -> Protocol:
+    within = f"row < {parameters['Rows']}"
+    return Protocol(settled(3), (within,), {"coefficient": "settled", "shift": "settled"})
+
+
+def burst_counter(_: Mapping[str, int]) -> Protocol:
+    return Protocol(LIVE, (), {"position": "live & active", "active": "live"})
+
+
+def delay_line(parameters: Mapping[str, int]) -> Protocol:
+    delay = parameters["Delay"]
+    filled = f"""
+  reg [7:0] words = 8'd0;
+  always @(posedge clk) words <= rst ? 8'd0 : words + (en & live & words != 8'd{delay});
+"""
+    return Protocol(LIVE + filled, (), {"out": f"words == 8'd{delay} & ~rst"})
+
+
+def ram(parameters: Mapping[str, int]) -> Protocol:
+    """Never a read of the word that is being written; addresses within the memory."""
+    depth = parameters["Depth"]
+    return Protocol(
+        "",
+        (
+            "~(read_en & write_en & read_address == write_address)",
+            f"~read_en | read_address < {depth}",
+            f"~write_en | write_address < {depth}",
+        ),
+    )
+
+
+def axis_skid(_: Mapping[str, int]) -> Protocol:
+    registers, assume = axis_source("s_", "data")
+    return Protocol(LIVE + registers, assume, {"s_ready": "live", "m_valid": "live", "m_data": "live & m_valid"})
+
+
+def frame_guard(_: Mapping[str, int]) -> Protocol:
+    registers, assume = axis_source("s_", "data", "last", "user")
+    pixel, clock = "live & ~rst & en & out_valid", "live & ~rst"
+    data = ("data", "first_row", "first_column", "last_row", "last_column")
+    compare = {f"out_{name}": pixel for name in data}
+    compare |= {f"out_{name}": f"{clock} & en" for name in ("valid", "frame_start", "frame_end")}
+    compare |= dict.fromkeys(("s_ready", "row_short", "row_long", "start_missing", "start_early", "timed_out"), clock)
+    return Protocol(LIVE + registers, assume, compare | {"out_bad": f"{pixel} & out_frame_end"})
+
+
+def threshold_comparator(_: Mapping[str, int]) -> Protocol:
+    """The first beat after a reset is the first of a frame."""
+    begun = "  reg begun = 1'b0;\n  always @(posedge clk) begun <= ~rst & (begun | in_valid & in_user);\n"
+    return Protocol(LIVE + begun, ("~in_valid | rst | begun | in_user",), {"contact": "live & ~rst"})
+
+
+def gradient_lookup(_: Mapping[str, int]) -> Protocol:
+    """The table is not written while a pixel is read."""
+    word = "live & ~rst & en & out_valid"
+    compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
+    return Protocol(LIVE, ("~(write_en & in_valid)",), compare)
+
+
+def bursts(size: int, rows: int | None, out_size: int | None = None, word: str = "") -> Protocol:
+    """Of a core between bursts: `size` words in successive enabled clocks, the first with in_start.
+
+    A frame begins with in_frame_start, at any burst, after less than a frame too; after a reset none has begun.
+    `rows`: bursts in a frame, if they are counted. Inputs stay while en is low. `word`: the expression of more words
+    in than those, where a core has no bursts going in.
+    """
+    out_size = out_size or size
+    registers = f"""
+  reg [15:0] in_left = 16'd0, out_left = 16'd0, rows_left = 16'd0;
+  reg still = 1'b0, start_before, frame_start_before;
+  always @(posedge clk) begin
+    still <= ~en & ~rst;
+    start_before <= in_start;
+    frame_start_before <= in_frame_start;
+    if (rst) begin
+      in_left <= 16'd0;
+      out_left <= 16'd0;
+      rows_left <= 16'd0;
+    end else if (en) begin
+      in_left <= in_start ? 16'd{size - 1} : in_left - (in_left != 16'd0);
+      out_left <= out_start ? 16'd{out_size - 1} : out_left - (out_left != 16'd0);
+      if (in_frame_start) rows_left <= 16'd{(rows or 2) - 1};
+      else if (in_start & {int(rows is not None)}) rows_left <= rows_left - 16'd1;
+    end
+  end
+"""
+    assume = (
+        "~in_start | in_left == 16'd0",
+        "~in_frame_start | in_start",
+        "~in_start | rst | in_frame_start | rows_left != 16'd0",
+        "~still | rst | (in_start == start_before & in_frame_start == frame_start_before)",
+    )
+    return Protocol(LIVE + registers, assume, OUT_OF_BURSTS)
+
+
+MOVES = "live & ~rst & en"
+IN_A_BURST = f"{MOVES} & (out_start | out_left != 16'd0)"
+OUT_OF_BURSTS = {"out_start": MOVES, "out_frame_start": MOVES, "saturations": "live & ~rst"}
+OUT_OF_BURSTS |= dict.fromkeys(("out_data", "out_re", "out_im", "out_mode", "out_mirrored"), IN_A_BURST)
+
+
+def words(size: int, rows: int | None, whole: bool) -> Protocol:
+    """Of a core with single words going in and bursts of `size` going out.
+
+    A frame begins with in_frame_start, at any word, or (`whole`) only after the one before is complete.
+    """
+    pixels = size * (rows or 2)
+    registers = f"""
+  reg [23:0] left = 24'd0;
+  reg [15:0] out_left = 16'd0;
+  reg begun = 1'b0, still = 1'b0, valid_before, frame_start_before;
+  always @(posedge clk) begin
+    still <= ~en & ~rst;
+    valid_before <= in_valid;
+    frame_start_before <= in_frame_start;
+    if (rst) begin
+      left <= 24'd0;
+      out_left <= 16'd0;
+      begun <= 1'b0;
+    end else if (en) begin
+      if (in_valid) begun <= 1'b1;
+      if (in_valid) left <= in_frame_start ? 24'd{pixels - 1} : left - 24'd1;
+      out_left <= out_start ? 16'd{size - 1} : out_left - (out_left != 16'd0);
+    end
+  end
+"""
+    assume = [
+        "~in_frame_start | in_valid",
+        "~in_valid | rst | in_frame_start | " + ("left != 24'd0" if rows is not None else "begun"),
+        "~still | rst | (in_valid == valid_before & in_frame_start == frame_start_before)",
+    ]
+    if whole:
+        assume.append("~in_frame_start | left == 24'd0")
+    return Protocol(LIVE + registers, tuple(assume), OUT_OF_BURSTS)
+
+
+def divergence(parameters: Mapping[str, int]) -> Protocol:
+    """The marks are those of pixels in raster order; how many rows a frame has is left open."""
+    columns = parameters["Columns"]
+    registers = """
+  reg [15:0] column = 16'd0;
+  reg first = 1'b1, last_before, still = 1'b0, valid_before;
+  always @(posedge clk) begin
+    still <= ~en & ~rst;
+    valid_before <= in_valid;
+    if (rst) begin
+      column <= 16'd0;
+      first <= 1'b1;
+    end else if (en & in_valid) begin
+      column <= in_last_column ? 16'd0 : column + 16'd1;
+      if (in_last_column) first <= in_last_row;
+      last_before <= in_last_row;
+    end
+  end
+"""
+    marks = (
+        f"in_first_column == (column == 16'd0) & in_last_column == (column == 16'd{columns - 1})"
+        " & in_first_row == first & (column == 16'd0 | in_last_row == last_before)"
+    )
+    assume = (f"~in_valid | rst | ({marks})", "~still | rst | in_valid == valid_before")
+    return Protocol(
+        LIVE + registers,
+        assume,
+        {"out_valid": MOVES, "out_frame_start": MOVES, "out_data": f"{MOVES} & out_valid"},
+    )
+
+
+def frame_output(_: Mapping[str, int]) -> Protocol:
+    """Anything may come; in_bad and in_data count where a model looks at them. Unlike the testbench: in reset too."""
+    word = f"{MOVES} & out_valid"
+    compare = dict.fromkeys(("out_data", "out_last", "out_user"), word)
+    return Protocol(LIVE, (), compare | dict.fromkeys(("active", "frame_end", "out_of_step", "out_valid"), MOVES))
+
+
+def frame_tags(parameters: Mapping[str, int]) -> Protocol:
+    """Frames end at least Pixels enabled clocks apart."""
+    pixels = parameters["Pixels"]
+    registers = f"""
+  reg [15:0] since = 16'd0;
+  always @(posedge clk) if (rst) since <= 16'd0; else if (en) since <= push ? 16'd1 : since + (since != 16'd{pixels});
+"""
+    assume = (f"~(push & en) | rst | since == 16'd0 | since == 16'd{pixels}",)
+    # `since` 0: none yet after the reset. It stays there until the first push.
+    registers = registers.replace("since + (since", "since + (since != 16'd0 & since")
+    return Protocol(LIVE + registers, assume, dict.fromkeys(("due", "due_tag", "held"), "live"))
+
+
+def axil_client() -> tuple[str, tuple[str, ...], dict[str, str]]:
+    """Registers, assumptions, outputs of an AXI4-Lite port: what is offered stays until it is taken."""
+    parts, assume = [], []
+    for channel, fields in (("aw", ("addr",)), ("w", ("data", "strb")), ("ar", ("addr",))):
+        prefix = f"s_axil_{channel}"
+        payload = "{" + ", ".join(prefix + name for name in fields) + "}"
+        parts.append(
+            f"  reg {channel}_waits = 1'b0;\n  reg [63:0] {channel}_word;\n  always @(posedge clk) begin\n"
+            f"    {channel}_waits <= {prefix}valid & ~{prefix}ready & ~rst;\n    {channel}_word <= {payload};\n  end\n"
+        )
+        assume.append(f"~{channel}_waits | rst | ({prefix}valid & {channel}_word == {payload})")
+    compare = {"s_axil_bresp": "live & s_axil_bvalid"}
+    compare |= dict.fromkeys(("s_axil_rdata", "s_axil_rresp"), "live & s_axil_rvalid")
+    compare |= {f"s_axil_{pin}": "live" for pin in ("awready", "wready", "bvalid", "arready", "rvalid")}
+    return "".join(parts), tuple(assume), compare
+
+
+def axil_registers(_: Mapping[str, int]) -> Protocol:
+    registers, assume, compare = axil_client()
+    compare |= dict.fromkeys(("threshold", "timeout", "hold_contact", "table_write", "table_index", "table_gx"), "live")
+    return Protocol(LIVE + registers, assume, compare | {"table_gy": "live & table_write"})
+
+
+def tactile_depth(_: Mapping[str, int]) -> Protocol:
+    registers, assume, compare = axil_client()
+    source, offered = axis_source("s_axis_t", "data", "last", "user")
+    compare |= dict.fromkeys((f"m_axis_t{name}" for name in ("data", "last", "user")), "live & m_axis_tvalid")
+    compare |= {"s_axis_tready": "live", "m_axis_tvalid": "live", "contact": "live & ~rst"}
+    return Protocol(LIVE + registers + source, (*assume, *offered), compare)
