@@ -204,7 +204,18 @@ def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str],
     """Run tests; what they recorded becomes the part's lines."""
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records.jsonl"
-        command = [sys.executable, "-m", "pytest", "-vv", "-n", str(jobs), "--dist", "worksteal", *arguments]
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-vv",
+            "-n",
+            str(jobs),
+            "--dist",
+            "worksteal",
+            f"--basetemp={folder}/tests",
+            *arguments,
+        ]
         process = subprocess.Popen(
             command,
             cwd=ROOT,
