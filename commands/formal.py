@@ -580,7 +580,7 @@ def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]
 
 def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
     """One line for each proof."""
-    rows = [("core", "parameters", "property", "engine", "seconds", "result")]
+    rows = [("core", "parameters", "property", "engine", "cpu seconds", "result")]
     for proof in proofs:
         mine = outcomes[proof.name]
         parameters = " ".join(f"{key}={value}" for key, value in proof.parameters.items())
