@@ -29,6 +29,7 @@ from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
 from models.round_saturate import Monitor
+from models.scenes import NOISE, SENSOR_WIDTH_MM, Press
 from models.spectral_divide import reciprocal_rom
 from models.tactile_depth import tactile_depth, top_parameters, write_roms
 from models.thomas_table import thomas_table
@@ -55,6 +56,7 @@ class Request:
     coefficient_width: int
     depth_range_mm: float | None
     frames: str
+    press: Press
     reference: str | None
     calibration: str
     repeat: int
@@ -73,8 +75,8 @@ def parse(arguments: list[str]) -> Request:
     InputError
     """
     accepted = (
-        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED "
-        "GAPS STALLS WAVES OUT"
+        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE "
+        "CALIBRATION REPEAT SEED GAPS STALLS WAVES OUT"
     )
     given: dict[str, str] = {}
     for argument in arguments:
@@ -103,6 +105,15 @@ def parse(arguments: list[str]) -> Request:
             raise InputError(f"{key}={value} is unknown: accepted are {', '.join(accepted)}")
         return value
 
+    def position(key: str) -> tuple[float, float]:
+        try:
+            x, y = (float(part) for part in given.get(key, "0,0").split(","))
+        except ValueError:
+            x = y = math.nan
+        if not max(abs(x), abs(y)) <= SENSOR_WIDTH_MM:
+            raise InputError(f"{key}={given[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
+        return x, y
+
     both = number("N", 128, -math.inf, math.inf)
     return Request(
         rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration says which
@@ -114,6 +125,11 @@ def parse(arguments: list[str]) -> Request:
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
         depth_range_mm=number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
         frames=given.get("FRAMES", DEFAULT_SCENE),
+        press=Press(
+            number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
+            position("AT"),
+            number("NOISE", NOISE, 0, 255, float),
+        ),
         reference=given.get("REFERENCE"),
         calibration=given.get("CALIBRATION", "synthetic"),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
@@ -330,7 +346,7 @@ def run(request: Request) -> int:
     # Refuse a grid before frames are read.
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
     grid = (request.rows, request.columns)
-    frames = load_frames(request.frames, grid, request.reference, request.seed)
+    frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
     pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
     config = configure(request, calibration, pixel_pitch_mm)
     shape = f"{config.rows}x{config.columns}"

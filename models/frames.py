@@ -13,7 +13,7 @@ from skimage import io
 
 from models.calibration import SYNTHETIC_PIXEL_PITCH_MM
 from models.errors import InputError
-from models.scenes import SCENES, render, scene_pixel_pitch_mm
+from models.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
 
 ACCEPTED = f"a scene ({', '.join(SCENES)}), a .npy of uint8 (frames, rows, cols, 3), a PNG, a folder of PNGs"
 
@@ -113,7 +113,9 @@ def read_picture(path: Path) -> np.ndarray:
     return image[:, :, :3]
 
 
-def load_frames(source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1) -> Frames:
+def load_frames(
+    source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1, press: Press = AS_EVER
+) -> Frames:
     """Load what `FRAMES` and `REFERENCE` name.
 
     Parameters
@@ -125,13 +127,17 @@ def load_frames(source: str, size: tuple[int, int], reference: str | None = None
         Picture of the sensor without contact, as large as the frames: they are flat-fielded by it.
     seed : int
         Seed of a scene's noise.
+    press : Press
+        Of a scene.
 
     Raises
     ------
     InputError
     """
     if source in SCENES:
-        return _scene(source, size, reference, seed)
+        return _scene(source, size, reference, seed, press)
+    if press != AS_EVER:
+        raise InputError(f"PRESS, AT and NOISE with FRAMES={source}: they go with scenes, leave them out")
     path = Path(source)
     if path.is_dir():
         files = sorted((p for p in path.iterdir() if p.suffix.lower() == ".png"), key=_natural)
@@ -150,12 +156,11 @@ def load_frames(source: str, size: tuple[int, int], reference: str | None = None
     return _to_grid(source, labels, images, size, reference)
 
 
-def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int) -> Frames:
+def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press) -> Frames:
     if reference is not None:
         raise InputError(f"reference {reference} with the scene {name}: scenes need none, leave it out")
-    pixels = render(name, *size, seed).frames
-    labels = tuple(f"{name} {i}" for i in range(len(pixels)))
-    return Frames(pixels, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, labels)
+    scene = render(name, *size, seed, press)
+    return Frames(scene.frames, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, scene.labels)
 
 
 def _to_grid(
