@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | upsets | calibration | setup | clean, see README.md
+# make sim | test | lint | sweep | tune | upsets | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -8,9 +8,11 @@ STAMP := $(VENV)/complete
 TOOLS := $(VENV)/verification
 
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION \
-  REPEAT SEED GAPS STALLS WAVES OUT
+  REPEAT SEED GAPS STALLS WAVES CONFIG OUT
+TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
+  FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint upsets calibration setup clean
+.PHONY: sim test lint sweep tune upsets calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -25,6 +27,14 @@ test: lint
 # Verilator -Wall on every module, ruff, mypy.
 lint: $(TOOLS)
 	@$(PY) -m commands.lint
+
+# Accuracy against latency, multipliers and memory, by the models, into a CSV; goes on where it was interrupted.
+sweep: $(if $(DASK_SCHEDULER),$(TOOLS),$(STAMP))
+	@$(PY) -m commands.sweep $(foreach v,OUT DASK_SCHEDULER,$(if $($(v)),'$(v)=$($(v))'))
+
+# The cheapest configuration that meets TOLERANCE (% of peak RMS) on FRAMES, proven in RTL; a file for make sim CONFIG=.
+tune: $(STAMP)
+	@$(PY) -m commands.tune $(foreach v,$(TUNE_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
@@ -49,7 +59,7 @@ $(STAMP): requirements.txt requirements-verilator.txt
 	  --requirement requirements-verilator.txt
 	@touch $@
 
-# What only lint, proofs, mutation and coverage need.
+# What only lint, proofs, mutation, coverage and a Dask cluster need.
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt

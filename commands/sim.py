@@ -24,6 +24,7 @@ from tqdm import tqdm
 from commands import simulator as simulation
 from commands.draw import draw_depth
 from models import latency, reference
+from models.accuracy import errors
 from models.calibration import Calibration, load
 from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
@@ -38,7 +39,6 @@ BENCH = "frame_bench"
 DEFAULT_SCENE = "ball"
 SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
-SMALLEST_PEAK_PX = 0.1  # below this an error in % of peak says nothing
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ROWS_SHOWN = 16
 
@@ -259,19 +259,6 @@ def measure(events: Path) -> dict[str, list[int | None]]:
         "frame_interval_cycles": [depth[i] - depth[i - 1] if i else None for i in frames],
         "contact_latency_cycles": [contact[i] - first[i] if i in contact else None for i in frames],
     }
-
-
-def errors(depth_px: np.ndarray, reference_px: np.ndarray) -> dict[str, list[float | None]]:
-    """RMS and largest error of each frame, in % of the reference's peak; no scale or offset is fitted."""
-    error = depth_px - reference_px
-    peak = np.abs(reference_px).max(axis=(1, 2))
-    rms = np.sqrt((error**2).mean(axis=(1, 2)))
-    largest = np.abs(error).max(axis=(1, 2))
-    percent = [
-        [float(100 * v / p) if p >= SMALLEST_PEAK_PX else None for v, p in zip(values, peak, strict=True)]
-        for values in (rms, largest)
-    ]
-    return {"rms_percent_of_peak": percent[0], "max_percent_of_peak": percent[1]}
 
 
 def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
