@@ -174,7 +174,7 @@ def test_pictures_with_a_reference(tmp_path):
 
 
 def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path):
-    path = _config(
+    given = _config(
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
     )
     request = sim.parse([given, "DATA_WIDTH=22", "SEED="])
