@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | sweep | tune | upsets | frontends | fuzz | calibration | setup | clean, see README.md
+# make sim | test | lint | sweep | tune | coverage | upsets | frontends | fuzz | formal | regress | calibration | setup | clean,
+# see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -12,7 +13,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint sweep tune upsets frontends fuzz calibration setup clean
+.PHONY: sim test lint sweep tune coverage upsets frontends fuzz formal regress calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -22,6 +23,11 @@ sim: $(STAMP)
 # The whole suite: lint, models, every core on every simulator.
 test: lint
 	@$(PY) -m pytest -n auto --dist worksteal
+
+# What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
+regress: $(TOOLS)
+	@sh commands/icarus.sh
+	@PARTS='$(PARTS)' JOBS='$(JOBS)' $(PY) -m commands.regress
 
 # Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
 lint: $(TOOLS)
@@ -36,6 +42,10 @@ sweep: $(if $(DASK_SCHEDULER),$(TOOLS),$(STAMP))
 tune: $(STAMP)
 	@$(PY) -m commands.tune $(foreach v,$(TUNE_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
+# The suite on Verilator with every line, branch, term and toggle of hdl/ counted, and the fault list's bins.
+coverage: $(STAMP)
+	@$(PY) -m commands.coverage
+
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
 	@UPSETS='$(UPSETS)' SEED='$(SEED)' $(PY) -m commands.upsets
@@ -43,6 +53,14 @@ upsets: $(STAMP)
 # Two Verilog front ends read every core as the same circuit: a few minutes.
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
+
+# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER=all
+fuzz: $(TOOLS)
+	@$(PY) -m commands.fuzz $(foreach v,MINUTES SEED READER,$(if $($(v)),'$(v)=$($(v))'))
+
+# Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
+formal: $(TOOLS)
+	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

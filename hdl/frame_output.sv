@@ -50,4 +50,11 @@ module frame_output #(
 
   always_ff @(posedge clk) if (en) bad_q <= bad;
 
+`ifndef SYNTHESIS
+  initial begin
+    if (Rows < 2) $fatal(1, "%m: Rows must be at least 2");
+    if (Columns < 2 || Columns != (1 << $clog2(Columns))) $fatal(1, "%m: Columns must be a power of two, at least 2");
+  end
+`endif
+
 endmodule

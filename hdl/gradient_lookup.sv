@@ -72,4 +72,8 @@ module gradient_lookup #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (BitsPerChannel < 1 || BitsPerChannel > 8) $fatal(1, "%m: BitsPerChannel must be 1 to 8");
+`endif
+
 endmodule

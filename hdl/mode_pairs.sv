@@ -78,4 +78,8 @@ module mode_pairs #(
   end
   assign out_mirrored = out_start ? '0 : mirrored;
 
+`ifndef SYNTHESIS
+  initial if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
+`endif
+
 endmodule

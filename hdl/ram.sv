@@ -52,7 +52,10 @@ module ram #(
   endcase
 
 `ifndef SYNTHESIS
-  initial if (Style == 2 && File != "") $fatal(1, "%m: an ultra memory has no contents at power-up");
+  initial begin
+    if (Depth < 2) $fatal(1, "%m: Depth must be at least 2");
+    if (Style == 2 && File != "") $fatal(1, "%m: an ultra memory has no contents at power-up");
+  end
 `endif
 
 endmodule

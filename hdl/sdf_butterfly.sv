@@ -103,7 +103,13 @@ module sdf_butterfly #(
   end
 
 `ifndef SYNTHESIS
-  initial if (Delay < 1 || 2 * Delay > Size) $fatal(1, "%m: Delay must be 1 to Size / 2");
+  initial begin
+    if (Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two");
+    if (Delay < 1 || 2 * Delay > Size || Delay != (1 << $clog2(Delay)))
+      $fatal(1, "%m: Delay must be a power of two, 1 to Size / 2");
+    if (RotateBlock != 0 && (RotateBlock < 4 || RotateBlock > Size || RotateBlock != (1 << $clog2(RotateBlock))))
+      $fatal(1, "%m: RotateBlock must be 0 or a power of two, 4 to Size");
+  end
 `endif
 
 endmodule

@@ -60,4 +60,11 @@ module thomas_table #(
   assign coefficient = last_q3 ? last : inner;
   assign shift = last_q3 ? last_shift : '0;
 
+`ifndef SYNTHESIS
+  initial begin
+    if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
+    if (Rows < 2) $fatal(1, "%m: Rows must be at least 2");
+  end
+`endif
+
 endmodule

@@ -35,4 +35,8 @@ module threshold_comparator #(
     if (rst) contact <= 1'b0;
   end
 
+`ifndef SYNTHESIS
+  initial if (Width < 2 || Width > 32) $fatal(1, "%m: Width must be 2 to 32");
+`endif
+
 endmodule

@@ -10,16 +10,18 @@ from models.row_reorder import row_reorder
 
 ROWS = 7
 FRAME = 3  # rows
+ODD = 0x9E3779B1  # multiples of it differ in all bits, and from each other as long as their places do
 
 
 async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
-    size, to_burst = parameters(dut, "Size", "ToBurst")
+    size, width, to_burst = parameters(dut, "Size", "Width", "ToBurst")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
     sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
     await bench.start()
-    words = np.arange(1, ROWS * size + 1).reshape(-1, 1).tolist()  # each stands for its place
+    places = np.arange(1, ROWS * size + 1).reshape(-1, 1)
+    words = (places * ODD % (1 << width) - (1 << width - 1)).tolist()  # each stands for its place
 
     async def send(count):
         await send_apart(bench, driver, words[-count:], gap, FRAME * size)

@@ -10,10 +10,12 @@ import random
 from itertools import pairwise, product, repeat
 
 import cocotb
+import functional_coverage
 import numpy as np
-from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, profile, video
+from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
+from second_client import SecondMaster, SecondSink, SecondSource
 from stream import CLOCK_NS, configuration
 from tb_axil_registers import master_of, response_of
 
@@ -33,6 +35,7 @@ STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 GREEN, BLUE, RED = 0, 8, 16  # lowest bits of the colours in a word
 SKID_WORDS = 2  # that a stalled output holds
+SECOND_CLIENT = os.environ.get("CLIENT") == "second"  # cocotbext-axi drives the ports
 
 
 def pixel(red, green, blue):
@@ -60,10 +63,16 @@ class Pipeline:
         if Pipeline.table is None:
             Pipeline.table = gradient_codes(synthetic(bits), self.config)
         self.timeout, self.stalled = timeout, accepts != "none"
+        self.profiles = offers, accepts
         dut.rst.value = 1
-        self.source = AxisSource(dut, "s_axis", prefix="t", offers=profile(offers, 1))
-        self.sink = AxisSink(dut, "m_axis", prefix="t", accepts=profile(accepts, 2))
-        self.master = master_of(dut)
+        if SECOND_CLIENT:
+            self.source = SecondSource(dut, profile(offers, 1))
+            self.sink = SecondSink(dut, profile(accepts, 2))
+            self.master = SecondMaster(dut)
+        else:
+            self.source = AxisSource(dut, "s_axis", prefix="t", offers=profile(offers, 1))
+            self.sink = AxisSink(dut, "m_axis", prefix="t", accepts=profile(accepts, 2))
+            self.master = master_of(dut)
         self.into = AxisMonitor(dut, "s_axis", prefix="t", silence=bool(timeout))
         self.out = AxisMonitor(dut, "m_axis", prefix="t")
         self.comparator = ThresholdComparator()
@@ -73,6 +82,7 @@ class Pipeline:
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
         cocotb.start_soon(self.watch_contact())
+        functional_coverage.start(self.dut, self.config, *self.profiles)
         await self.reset(3)
         if self.timeout:
             await self.write("TIMEOUT", self.timeout)
@@ -92,6 +102,8 @@ class Pipeline:
         self.expect_reset_values()
 
     def forget(self):
+        if SECOND_CLIENT:
+            self.sink.words()
         self.into.forget()
         self.out.forget()
         self.contacts.clear()
@@ -124,7 +136,8 @@ class Pipeline:
     # Registers.
 
     async def write(self, name, value):
-        return await response_of(self.master.write(OFFSET[name], value & WORD))
+        answer = self.master.write(OFFSET[name], value & WORD)
+        return await (answer if SECOND_CLIENT else response_of(answer))
 
     async def read(self, name):
         return int(await self.master.read(OFFSET[name]))
@@ -202,6 +215,8 @@ class Pipeline:
         await ClockCycles(self.dut.clk, 4 * self.columns)
 
         beats = self.out.words
+        if SECOND_CLIENT:
+            assert self.sink.words() == beats, "the second client's sink saw other words than the monitor"
         assert len(beats) == len(good) * self.pixels, f"{len(beats)} beats left, of {len(good)} good frames"
         got = np.array([self.signed(beat.data) for beat in beats], np.int64).reshape(-1, self.rows, self.columns)
         for index, (have, want) in enumerate(zip(got, codes[good], strict=True)):
@@ -309,7 +324,20 @@ async def back_to_back(dut):
 
 
 @TEST
-@cocotb.parametrize(offers=["none", "random", "long"], accepts=list(PROFILES))
+async def the_clock_comes_round(dut):
+    """Wherever the count of clocks returns to 0 while a frame is in flight, its latency is that of any other."""
+    pipeline = await started(dut)
+    for ahead in (5, pipeline.pixels // 2, pipeline.pixels + 5, first_depth_latency(pipeline.config)):
+        dut.now.value = (1 << 32) - ahead
+        await pipeline.send(pipeline.frame())
+        await pipeline.check()
+        assert pipeline.latency == first_depth_latency(pipeline.config)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
 async def gaps_and_stalls(dut, offers, accepts):
     """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
@@ -388,13 +416,9 @@ async def contact(dut, accepts):
 def places(pipeline, fault):
     """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
     size, pixels = pipeline.columns, pipeline.pixels
-    return {
-        "row_short": [0, size - 2, 5 * size + 3, pixels - size, pixels - 2],
-        "row_long": [size - 1, 6 * size - 1, pixels - 1],
-        "start_missing": [0],
-        "start_early": [1, 2, size - 1, size, 7 * size + 5, pixels - 1],
-        "timed_out": [1, size, 9 * size + 1, pixels - 1],
-    }[fault]
+    inner = pipeline.rows // 2 * size
+    chosen = (0, 1, size - 2, size - 1, size, inner + 3, inner + size - 1, pixels - size, pixels - 2, pixels - 1)
+    return [position for position in chosen if position in positions(fault, pipeline.rows, size)]
 
 
 @TEST
@@ -409,7 +433,7 @@ async def malformed(dut, fault, accepts):
     await pipeline.write("THRESHOLD", (int(codes[0].max()) + int(codes[1].max())) // 2)
     a = video((word.data ^ pipeline.random.getrandbits(3) for word in flat), pipeline.columns)
     for position in places(pipeline, fault)[: 2 if pipeline.stalled else None]:
-        b = broken(pressed, fault, position, pipeline.columns, timeout)
+        b = broken(pressed, fault, position, pipeline.columns, timeout + 1)
         await pipeline.send(a, b, a)
         left = await pipeline.check()
         assert pipeline.faults == [fault], f"{fault} at {position}: {pipeline.faults}"
@@ -427,6 +451,23 @@ async def malformed(dut, fault, accepts):
     pipeline.counters = dict.fromkeys(pipeline.counters, 0)
     await pipeline.send(a)
     await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(fault=FAULTS)
+async def faults_side_by_side(dut, fault):
+    """A broken frame between whole and broken ones: each is counted by itself, and the whole ones are right."""
+    timeout = 60 if fault == "timed_out" else 0
+    pipeline = await started(dut, timeout=timeout)
+    silent = timeout + pipeline.pixels  # the guard may be filling up the frame before
+    for before, after in product(("good", "bad"), repeat=2):
+        sides = {"good": pipeline.frame(), "bad": broken(pipeline.frame(), "row_short", 3, pipeline.columns)}
+        middle = broken(pipeline.frame(), fault, places(pipeline, fault)[0], pipeline.columns, silent)
+        await pipeline.send(pipeline.frame(), sides[before], middle, sides[after], pipeline.frame())
+        left = await pipeline.check()
+        assert len(left) == 2 + (before == "good") + (after == "good")
+        own = [] if fault == "start_missing" and before == "bad" else [fault]  # rest of the one before
+        assert pipeline.faults == [*["row_short"] * (before == "bad"), *own, *["row_short"] * (after == "bad")]
 
 
 @TEST
@@ -589,9 +630,12 @@ async def saturation(dut, accepts):
 
 
 @TEST
-@cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "output", "stalled", "full"])
+@cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "waiting", "output", "stalled", "full", "idle"])
 async def resets(dut, clocks, phase):
-    """After it the next frame is right, and registers are as after power-up, but for the gradient table."""
+    """Registers are as after power-up, but for the gradient table; the next frame is right.
+
+    tests/test_faults.py resets in every clock of these phases.
+    """
     pipeline = await started(dut)
     await pipeline.write("THRESHOLD", -5)
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
@@ -600,10 +644,14 @@ async def resets(dut, clocks, phase):
     wait = {
         "mid_frame": first,
         "filling": first + 50,
+        "waiting": pipeline.pixels + 50,
         "output": first_depth_latency(pipeline.config) + pipeline.random.randrange(3 * pipeline.pixels),
         "stalled": first_depth_latency(pipeline.config) + pipeline.pixels,
         "full": first_depth_latency(pipeline.config) + 3 * pipeline.pixels,
+        "idle": first_depth_latency(pipeline.config) + pipeline.pixels + 10,
     }[phase]
+    if phase in ("waiting", "idle"):
+        del streams[1:]
     if phase == "filling":
         streams[1] = broken(streams[1], "row_short", pipeline.random.randrange(10), pipeline.columns)
     if phase in ("stalled", "full"):
@@ -651,5 +699,80 @@ async def registers_written_all_the_time(dut, accepts):
     running = False
     await writing
     assert refused > 5
+    await pipeline.write("CONTROL", 0)
+    await pipeline.check()
+
+
+@TEST
+async def registers_written_phase_by_phase(dut):
+    """Each of them while nothing moves, while a frame comes, fills up, is waited for, leaves and is stalled."""
+    pipeline = await started(dut)
+    columns, first = pipeline.columns, Pipeline.table[0]
+
+    async def write_all(busy):
+        answers = [await pipeline.write(name, 0) for name in ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT")]
+        assert answers == [Response.OKAY] * len(answers)
+        assert await pipeline.write_bin(0, first) == (Response.SLVERR if busy else Response.OKAY)
+
+    await write_all(busy=False)
+    frame, silence = pipeline.frame(), [None] * 100
+    sending = cocotb.start_soon(pipeline.send(frame[:columns], silence, frame[columns:]))
+    await ClockCycles(dut.clk, columns + 10)
+    await write_all(busy=True)  # inside the frame
+    await sending
+    await write_all(busy=True)  # before its first depth
+    while not pipeline.out.words:
+        await RisingEdge(dut.clk)
+    await write_all(busy=True)  # while it leaves
+    pipeline.sink.stall(repeat(False))
+    await ClockCycles(dut.clk, 4)
+    await write_all(busy=True)
+    pipeline.sink.stall(repeat(True))
+    await pipeline.idle()
+    await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
+    await write_all(busy=True)  # while it fills up
+    await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(accepts=["none", "random"])
+async def registers_written_in_every_phase(dut, accepts):
+    """Each register at each pixel of a frame, while frames come without a gap: no code and no latency changes."""
+    pipeline = await started(dut, accepts=accepts)
+    rng, running = pipeline.random, True
+    words = (pixel(*(135 + rng.randint(-3, 3) for _ in range(3))) for _ in range(pipeline.pixels))
+    frame = video(words, pipeline.columns)
+    values = {
+        "THRESHOLD": lambda: rng.getrandbits(32),
+        "TIMEOUT": lambda: rng.randint(2, 300),  # no frame is silent
+        "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
+        "STATUS": lambda: rng.getrandbits(32),
+        "TABLE_INDEX": lambda: rng.getrandbits(32),
+        "TABLE_GX": lambda: rng.getrandbits(32),
+        "TABLE_GY": lambda: rng.getrandbits(32),
+        "GRID": lambda: rng.getrandbits(32),
+    }
+    refused = {"TABLE_GY", "GRID"}  # a frame is in flight; not to be written
+    missing = {name: set(range(pipeline.pixels)) for name in values}
+
+    async def feed():
+        while running:
+            await pipeline.send(frame, frame)
+
+    feeding = cocotb.start_soon(feed())
+    while not pipeline.into.words:
+        await RisingEdge(dut.clk)
+    await ClockCycles(dut.clk, 4)
+    while any(missing.values()):
+        phase = len(pipeline.into.words) % pipeline.pixels
+        name = max(missing, key=lambda name: (phase in missing[name], len(missing[name])))
+        if phase not in missing[name]:
+            await RisingEdge(dut.clk)
+            continue
+        missing[name].discard(phase)
+        answer = await pipeline.write(name, values[name]())
+        assert answer == (Response.SLVERR if name in refused else Response.OKAY), f"{name} at pixel {phase}: {answer}"
+    running = False
+    await feeding
     await pipeline.write("CONTROL", 0)
     await pipeline.check()

@@ -245,6 +245,8 @@ BAD_INPUT = {
     "unknown variable": lambda t: "SIZE=16",
     "no configuration file": lambda t: f"CONFIG={t / 'c.json'}",
     "configuration that is no JSON": lambda t: _config(t / "c.json", "SOLVER=spectral"),
+    "configuration nested deep": lambda t: _config(t / "c.json", "[" * 60_000),
+    "configuration of a megabyte": lambda t: _config(t / "c.json", "{" + " " * 1_000_000 + "}"),
     "configuration that is a list": lambda t: _config(t / "c.json", "[24]"),
     "unknown variable in a configuration": lambda t: _config(t / "c.json", '{"WIDTH": 24}'),
     "configuration in a configuration": lambda t: _config(t / "c.json", '{"CONFIG": "c.json"}'),

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What of the fault list a run of tactile_depth comes by: bins, and the monitor that counts them.
+
+A bin is "cover point: value, value, ..". The monitor watches; it drives and compares nothing. It looks inside the
+device only for what pins do not tell (where the guard stands, filler, frames in flight). With HDL_COVERAGE=1 it leaves
+its counts in the run folder; commands/coverage.py adds them up over all runs.
+"""
+
+import json
+import os
+from collections import Counter
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+
+import cocotb
+from axis import PROFILES
+from cocotb.triggers import RisingEdge
+
+from models.configuration import COLUMNS, ROWS, Configuration
+from models.frame_guard import FAULTS
+from models.latency import frame_latency
+from models.register_map import MAP
+
+FILE = "functional_coverage.json"
+
+SOLVERS = tuple(COLUMNS)
+PLACES = ("first pixel", "first row", "middle", "last row", "end of a row", "last pixel")
+PHASES = ("idle", "taking", "filling", "waiting", "putting out", "stalled")
+INPUTS, OUTPUTS = ("idle", "accept", "stalled"), ("idle", "taken", "held")
+RESETS = (1, 2, 16)  # clocks
+PAUSES = ("0", "1", "many")  # idle clocks between frames
+SILENCES = ("off", "waited for", "given up")
+WRITTEN = {register.offset: register.name for register in MAP if register.access != "ro"}
+# Frames between their last pixel and their first depth, at the smallest grid.
+SMALLEST = [
+    Configuration(columns=least, rows=0 if name == "spectral" else ROWS[0], solver=name)
+    for name, (least, _) in COLUMNS.items()
+]
+MOST_WAIT = {config.solver: -(-frame_latency(config) // (config.rows * config.columns)) for config in SMALLEST}
+POINTS = {
+    "fault, place": (FAULTS, PLACES),
+    "fault, frame before, frame after": (FAULTS, ("good", "bad"), ("good", "bad")),
+    "pause between frames": (PAUSES,),
+    "gaps, stalls": (tuple(PROFILES), tuple(PROFILES)),
+    "input, output": (INPUTS, OUTPUTS),
+    "reset clocks, phase": (RESETS, PHASES),
+    "register written, phase": (tuple(WRITTEN.values()), PHASES),
+    "silence inside a frame": (SILENCES,),
+    "clipped": (("no", "yes"),),
+    "contact": (("rises", "is held", "is cleared"),),
+    "start in a stall": (("between frames", "inside a frame"),),
+    "frames that wait": (tuple(range(1, max(MOST_WAIT.values()) + 1)),),
+}
+
+
+def label(point, *values) -> str:
+    return f"{point}: {', '.join(map(str, values))}"
+
+
+def impossible(point: str, solver: str, values: tuple) -> str | None:
+    """Why a bin cannot be hit, or None."""
+    if point == "fault, place":
+        fault, place = values
+        ends = place in ("end of a row", "last pixel")
+        if fault == "row_short" and ends:
+            return "a row that ends in its last column is not short"
+        if fault == "row_long" and not ends:
+            return "a row is long once its last column has no tlast"
+        if fault == "start_missing" and place != "first pixel":
+            return "a start is missing where a frame begins"
+        if fault in ("start_early", "timed_out") and place == "first pixel":
+            return "no frame has begun"
+    if point == "fault, frame before, frame after":
+        fault, before, _ = values
+        if fault == "start_missing" and before == "bad":
+            return "what follows a broken frame without a start is its rest"
+    if point == "frames that wait" and values[0] > MOST_WAIT[solver]:
+        return "the first depth is due earlier, on every grid"
+    return None
+
+
+def bins() -> dict[str, str | None]:
+    """Every bin, and why it is impossible, or None."""
+    return {
+        label(point, solver, *values): impossible(point, solver, values)
+        for point, axes in POINTS.items()
+        for solver, *values in product(SOLVERS, *axes)
+    }
+
+
+def place_of(row: int, column: int, rows: int, columns: int) -> str:
+    if row == column == 0:
+        return "first pixel"
+    if column == columns - 1:
+        return "last pixel" if row == rows - 1 else "end of a row"
+    return {0: "first row", rows - 1: "last row"}.get(row, "middle")
+
+
+class FunctionalCoverage:
+    """Counts bins, clock by clock."""
+
+    def __init__(self, dut, config, offers: str, accepts: str):
+        self.dut, self.config, self.offers, self.accepts = dut, config, offers, accepts
+        self.hits: Counter[str] = Counter()
+
+    def hit(self, point: str, *values) -> None:
+        self.hits[label(point, self.config.solver, *values)] += 1
+
+    def phases(self, held: bool, taken: bool) -> Iterator[str]:
+        """Those that the pipeline is in: it may take a frame while it puts one out."""
+        filling, inside = self.dut.u_guard.filling.value, not self.dut.u_guard.origin.value
+        if filling:
+            yield "filling"
+        elif inside:
+            yield "taking"
+        if held:
+            yield "stalled"
+        elif taken:
+            yield "putting out"
+        elif not filling and not inside:
+            yield "waiting" if self.dut.busy.value else "idle"
+
+    async def watch(self) -> None:
+        try:
+            while True:
+                await self.watch_until_reset()
+        finally:  # of the test
+            file = Path(FILE)
+            before = Counter(json.loads(file.read_text()) if file.exists() else {})
+            file.write_text(json.dumps(before + self.hits, indent=0, sort_keys=True))
+
+    async def watch_until_reset(self) -> None:
+        dut, edge = self.dut, RisingEdge(self.dut.clk)
+        pixels = self.config.rows * self.config.columns
+        while dut.rst.value:
+            await edge
+        frames: list[str] = []  # what became of them: "good", or the fault
+        since_start, pause, offered = 0, 0, False
+        quiet, clipped, contact, answered = 0, False, False, False
+        phases: list[str] = []
+        while True:
+            await edge
+            if dut.rst.value:
+                break
+            valid, ready = bool(dut.s_axis_tvalid.value), bool(dut.s_axis_tready.value)
+            out_valid, out_ready = bool(dut.m_axis_tvalid.value), bool(dut.m_axis_tready.value)
+            taken, held = out_valid and out_ready, out_valid and not out_ready
+            phases = list(self.phases(held, taken))
+            self.hit(
+                "input, output",
+                ("accept" if ready else "stalled") if valid else "idle",
+                ("taken" if out_ready else "held") if out_valid else "idle",
+            )
+
+            # Input: pauses, silence, starts.
+            inside = not dut.u_guard.origin.value
+            start = valid and bool(dut.s_axis_tuser.value)
+            if start and held and not offered:
+                self.hit("start in a stall", "inside a frame" if inside else "between frames")
+            if valid and ready:
+                if start and since_start == pixels:
+                    self.hit("pause between frames", PAUSES[min(pause, 2)])
+                since_start, pause = 1 if start else since_start + 1, 0
+            elif not valid:
+                pause += 1
+            offered = valid and not ready
+            if valid:
+                if inside and quiet > self.config.columns:
+                    self.hit("silence inside a frame", "waited for" if int(dut.timeout.value) else "off")
+                quiet = 0
+            elif inside:
+                quiet += 1
+
+            # Frames and faults.
+            fault = next((name for name in FAULTS if getattr(dut, name).value), None)
+            if fault:
+                row, column = int(dut.u_guard.row.value), int(dut.u_guard.column.value)
+                self.hit("fault, place", fault, place_of(row, column, self.config.rows, self.config.columns))
+                if fault == "timed_out":
+                    self.hit("silence inside a frame", "given up")
+                    quiet = 0
+            # A whole frame is told a clock after its last pixel: with a fault of the next one's first.
+            ends = ["good"] * bool(dut.u_registers.event_frame_in.value) + [fault] * bool(fault)
+            for end in ends:
+                frames.append(end)
+                if len(frames) > 2 and frames[-2] != "good":
+                    before, broken, after = frames[-3:]
+                    sides = ("good" if name == "good" else "bad" for name in (before, after))
+                    self.hit("fault, frame before, frame after", broken, *sides)
+            if dut.tags_held.value:
+                self.hit("frames that wait", int(dut.u_tags.full.value).bit_count())
+
+            # Output.
+            clipped |= bool(int(dut.saturations.value))
+            if taken and dut.m_axis_tuser.value:
+                self.hit("gaps, stalls", self.offers, self.accepts)
+                self.hit("clipped", "yes" if clipped else "no")
+                clipped = False
+                if contact and dut.contact.value and dut.hold_contact.value:
+                    self.hit("contact", "is held")
+            was, contact = contact, bool(dut.contact.value)
+            if contact != was:
+                self.hit("contact", "rises" if contact else "is cleared")
+
+            # Registers.
+            answers = bool(dut.s_axil_bvalid.value)
+            if answers and not answered:
+                register = WRITTEN.get(int(dut.u_registers.write_address.value))
+                for phase in phases if register else ():
+                    self.hit("register written, phase", register, phase)
+            answered = answers
+
+        clocks = 1
+        while dut.rst.value:
+            await edge
+            clocks += bool(dut.rst.value)
+        for phase in phases if clocks in RESETS else ():
+            self.hit("reset clocks, phase", clocks, phase)
+
+
+def start(dut, config, offers: str, accepts: str) -> None:
+    """Count from now to the end of the test, in a run with HDL_COVERAGE=1."""
+    if os.environ.get("HDL_COVERAGE") == "1":
+        cocotb.start_soon(FunctionalCoverage(dut, config, offers, accepts).watch())
