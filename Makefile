@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 # make sim | test | lint | coverage | upsets | frontends | fuzz | formal | regress | mutate | calibration | setup | clean, see README.md
 
+# make sim | test | lint | sweep | tune | coverage | upsets | frontends | fuzz | formal | regress | calibration | setup | clean,
+# see README.md
+
 PYTHON ?= python3
 VENV := .venv
 PY := $(VENV)/bin/python
 STAMP := $(VENV)/complete
 TOOLS := $(VENV)/verification
 
-SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED GAPS \
-  STALLS WAVES OUT
+SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION \
+  REPEAT SEED GAPS STALLS WAVES CONFIG OUT
+TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
+  FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint coverage upsets frontends fuzz formal regress calibration setup clean
+.PHONY: sim test lint sweep tune coverage upsets frontends fuzz formal regress calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -30,6 +35,14 @@ regress: $(TOOLS)
 lint: $(TOOLS)
 	@sh commands/icarus.sh
 	@$(PY) -m commands.lint
+
+# Accuracy against latency, multipliers and memory, by the models, into a CSV; goes on where it was interrupted.
+sweep: $(if $(DASK_SCHEDULER),$(TOOLS),$(STAMP))
+	@$(PY) -m commands.sweep $(foreach v,OUT DASK_SCHEDULER,$(if $($(v)),'$(v)=$($(v))'))
+
+# The cheapest configuration that meets TOLERANCE (% of peak RMS) on FRAMES, proven in RTL; a file for make sim CONFIG=.
+tune: $(STAMP)
+	@$(PY) -m commands.tune $(foreach v,$(TUNE_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
 # The suite on Verilator with every line, branch, term and toggle of hdl/ counted, and the fault list's bins.
 coverage: $(STAMP)
@@ -75,7 +88,7 @@ $(STAMP): requirements.txt requirements-verilator.txt
 	  --requirement requirements-verilator.txt
 	@touch $@
 
-# What only lint, proofs, mutation and coverage need.
+# What only lint, proofs, mutation, coverage and a Dask cluster need.
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt

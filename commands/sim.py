@@ -6,6 +6,7 @@ Takes the variables of the README's table as KEY=VALUE arguments. Exit status: 0
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -23,11 +24,14 @@ from commands import bench
 from commands import simulator as simulation
 from commands.draw import draw_depth
 from models import latency, reference
+from models.accuracy import errors
 from models.calibration import Calibration, load
 from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
+from models.npy import is_file
 from models.round_saturate import Monitor
+from models.scenes import NOISE, SENSOR_WIDTH_MM, Press
 from models.spectral_divide import reciprocal_rom
 from models.tactile_depth import tactile_depth
 from models.thomas_table import thomas_table
@@ -35,9 +39,9 @@ from models.thomas_table import thomas_table
 DEFAULT_SCENE = "ball"
 SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
-SMALLEST_PEAK_PX = 0.1  # below this an error in % of peak says nothing
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ROWS_SHOWN = 16
+LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ class Request:
     coefficient_width: int
     depth_range_mm: float | None
     frames: str
+    press: Press
     reference: str | None
     calibration: str
     repeat: int
@@ -71,8 +76,8 @@ def parse(arguments: list[str]) -> Request:
     InputError
     """
     accepted = (
-        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE CALIBRATION REPEAT SEED "
-        "GAPS STALLS WAVES OUT"
+        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE "
+        "CALIBRATION REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
     )
     given: dict[str, str] = {}
     for argument in arguments:
@@ -81,6 +86,8 @@ def parse(arguments: list[str]) -> Request:
             raise InputError(f"{argument}: unknown variable: accepted are {accepted.replace(' ', ', ')}")
         if value:
             given[key] = value
+    if "CONFIG" in given:
+        given = from_file(Path(given.pop("CONFIG")), given, accepted.replace("CONFIG ", "").split()) | given
 
     def number(key: str, default: float, low: float, high: float, kind: type = int) -> float:
         if key not in given:
@@ -101,6 +108,15 @@ def parse(arguments: list[str]) -> Request:
             raise InputError(f"{key}={value} is unknown: accepted are {', '.join(accepted)}")
         return value
 
+    def position(key: str) -> tuple[float, float]:
+        try:
+            x, y = (float(part) for part in given.get(key, "0,0").split(","))
+        except ValueError:
+            x = y = math.nan
+        if not max(abs(x), abs(y)) <= SENSOR_WIDTH_MM:
+            raise InputError(f"{key}={given[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
+        return x, y
+
     both = number("N", 128, -math.inf, math.inf)
     return Request(
         rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration says which
@@ -112,6 +128,11 @@ def parse(arguments: list[str]) -> Request:
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
         depth_range_mm=number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
         frames=given.get("FRAMES", DEFAULT_SCENE),
+        press=Press(
+            number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
+            position("AT"),
+            number("NOISE", NOISE, 0, 255, float),
+        ),
         reference=given.get("REFERENCE"),
         calibration=given.get("CALIBRATION", "synthetic"),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
@@ -121,6 +142,35 @@ def parse(arguments: list[str]) -> Request:
         waves=bool(number("WAVES", 0, 0, 1)),
         out=Path(given["OUT"]) if "OUT" in given else None,
     )
+
+
+def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[str, str]:
+    """Variables of a configuration file, a JSON object; an N that is `given` replaces rows and columns of the file.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        if not is_file(path):
+            raise FileNotFoundError(errno.ENOENT, "no such file")
+        with path.open("rb") as file:
+            text = file.read(LARGEST_CONFIG + 1)
+        if len(text) > LARGEST_CONFIG:
+            raise ValueError
+        values = json.loads(text)
+    except (OSError, ValueError, RecursionError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or "not JSON of a few lines"
+        raise InputError(f"CONFIG={path}: cannot be read ({reason}): give a file of `make tune`") from error
+    if not isinstance(values, dict):
+        raise InputError(f"CONFIG={path}: accepted is one JSON object of variables")
+    for key, value in values.items():
+        if key not in accepted:
+            raise InputError(f"CONFIG={path}: unknown variable {key}: accepted are {', '.join(accepted)}")
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: accepted is a number or a string")
+    replaced = ("ROWS", "COLS") if "N" in given else ()
+    return {key: str(value) for key, value in values.items() if key not in replaced}
 
 
 def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float) -> Configuration:
@@ -202,19 +252,6 @@ def measure(played: bench.Played) -> dict[str, list[int | None]]:
     }
 
 
-def errors(depth_px: np.ndarray, reference_px: np.ndarray) -> dict[str, list[float | None]]:
-    """RMS and largest error of each frame, in % of the reference's peak; no scale or offset is fitted."""
-    error = depth_px - reference_px
-    peak = np.abs(reference_px).max(axis=(1, 2))
-    rms = np.sqrt((error**2).mean(axis=(1, 2)))
-    largest = np.abs(error).max(axis=(1, 2))
-    percent = [
-        [float(100 * v / p) if p >= SMALLEST_PEAK_PX else None for v, p in zip(values, peak, strict=True)]
-        for values in (rms, largest)
-    ]
-    return {"rms_percent_of_peak": percent[0], "max_percent_of_peak": percent[1]}
-
-
 def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
     """What the hardware counted against what was seen from outside; one line for each that differs."""
     total = report["frames"]
@@ -280,14 +317,15 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
     return "\n".join(lines)
 
 
-def run(request: Request) -> int:
-    """Everything after parsing; returns the exit status."""
+def run(request: Request, frames: Frames | None = None) -> int:
+    """Everything after parsing; returns the exit status. `frames`: in place of those that the request names."""
     simulation.check(request.simulator)
     calibration = load(request.calibration)
     # Refuse a grid before frames are read.
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
     grid = (request.rows, request.columns)
-    frames = load_frames(request.frames, grid, request.reference, request.seed)
+    if frames is None:
+        frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
     pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
     config = configure(request, calibration, pixel_pitch_mm)
     shape = f"{config.rows}x{config.columns}"

@@ -16,7 +16,7 @@ from PIL import Image
 from models.calibration import SYNTHETIC_PIXEL_PITCH_MM
 from models.errors import InputError
 from models.npy import is_file, read_header
-from models.scenes import SCENES, render, scene_pixel_pitch_mm
+from models.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
 
 LARGEST_CAMERA = 4096  # rows, and columns, of a frame: what a file claims must not decide how much memory is taken
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -141,7 +141,9 @@ def _check_camera(name: str, height: int, width: int) -> None:
         )
 
 
-def load_frames(source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1) -> Frames:
+def load_frames(
+    source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1, press: Press = AS_EVER
+) -> Frames:
     """Load what `FRAMES` and `REFERENCE` name.
 
     Parameters
@@ -153,19 +155,23 @@ def load_frames(source: str, size: tuple[int, int], reference: str | None = None
         Picture of the sensor without contact, as large as the frames: they are flat-fielded by it.
     seed : int
         Seed of a scene's noise.
+    press : Press
+        Of a scene.
 
     Raises
     ------
     InputError
     """
     if source in SCENES:
-        return _scene(source, size, reference, seed)
+        return _scene(source, size, reference, seed, press)
+    if press != AS_EVER:
+        raise InputError(f"PRESS, AT and NOISE with FRAMES={source}: they go with scenes, leave them out")
     path = Path(source)
     try:
         folder = path.is_dir()
         listed = list(path.iterdir()) if folder else []
     except OSError as error:
-        raise InputError(f"{source}: {error.strerror}: accepted is {ACCEPTED}") from error
+        raise InputError(f"{source}: {error.strerror}: give a scene, a file or a folder") from error
     if folder:
         files = sorted((p for p in listed if p.suffix.lower() == ".png"), key=_natural)
         if not files:
@@ -183,12 +189,11 @@ def load_frames(source: str, size: tuple[int, int], reference: str | None = None
     return _to_grid(source, labels, images, size, reference)
 
 
-def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int) -> Frames:
+def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press) -> Frames:
     if reference is not None:
         raise InputError(f"reference {reference} with the scene {name}: scenes need none, leave it out")
-    pixels = render(name, *size, seed).frames
-    labels = tuple(f"{name} {i}" for i in range(len(pixels)))
-    return Frames(pixels, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, labels)
+    scene = render(name, *size, seed, press)
+    return Frames(scene.frames, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, scene.labels)
 
 
 def _to_grid(

@@ -49,11 +49,13 @@ def round_half_even(x: np.ndarray, drop: int | np.ndarray) -> np.ndarray:
     """
     if np.ndim(drop) == 0 and drop <= 0:
         return np.left_shift(x, -drop)
-    floor = np.right_shift(x, drop)
-    remainder = x - np.left_shift(floor, drop)
-    half = np.left_shift(np.int64(1), np.subtract(drop, 1))
-    # Up when above the middle, or on it with an odd floor: remainder + (floor & 1) > half.
-    return floor + (remainder + (floor & 1) > half)
+    # Just less than half is added, or half where the floor is odd: then a tie goes up.
+    y = np.right_shift(x, drop)
+    y &= 1
+    y += x
+    y += np.left_shift(np.int64(1), np.subtract(drop, 1)) - 1
+    y >>= drop
+    return y
 
 
 def round_saturate(
@@ -75,6 +77,8 @@ def round_saturate(
         return x
     y = round_half_even(x, drop)
     limit = np.int64(1) << (width - 1)
+    if not y.size or (y.min() >= -limit and y.max() < limit):  # as a rule
+        return y
     clipped = np.clip(y, -limit, limit - 1)
     if monitor is not None:
         monitor.clipped(node, int(np.count_nonzero(clipped != y)))

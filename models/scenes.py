@@ -8,7 +8,8 @@ The sensor: three lights 120 degrees apart, each colour linear in the slope towa
 It leaves out what a real gel adds: shadows, light that falls off with distance, colours that mix, a lens.
 
 A height map is drawn where the pipeline will find it: the slope of a pixel is the forward difference of the
-height, so that divergence and solve return the very map that was drawn. All lengths scale with the grid.
+height, so that divergence and solve return the very map that was drawn. All lengths scale with the grid. Bodies are
+drawn one row and column beyond the frame, so that one that the edge cuts goes on there.
 """
 
 from __future__ import annotations
@@ -19,16 +20,39 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.optimize import brentq
 
 from models.errors import InputError
 
 SENSOR_WIDTH_MM = 15.232  # 128 pixels of 0.119 mm
 REST = 135.5  # middle of a 4-bit bin: noise does not move the colour of a flat gel to another
 GAIN = 112.0  # grey levels per unit of slope: a slope of 1 nearly fills 8 bits
-NOISE = 1.0  # standard deviation, grey levels
+NOISE = 1.0  # standard deviation of the camera's noise, grey levels
 SLOPE_LIMIT = 0.95  # of every scene
 LIGHTS = np.array([(math.cos(t), math.sin(t)) for t in (math.pi / 2, math.pi * 7 / 6, math.pi * 11 / 6)])
 """Directions (lx, ly) of the red, green and blue light, 120 degrees apart, float64 (3, 2)."""
+
+
+@dataclass(frozen=True)
+class Press:
+    """How a body is pressed into the gel, and how well the camera sees it.
+
+    Attributes
+    ----------
+    depth_mm : float or None
+        Of the deepest point; None: each body as its own default.
+    at_mm : (float, float)
+        Shift of the body along the columns and down the rows; what leaves the scene's square is cut off.
+    noise : float
+        Standard deviation of the camera's noise, grey levels.
+    """
+
+    depth_mm: float | None = None
+    at_mm: tuple[float, float] = (0.0, 0.0)
+    noise: float = NOISE
+
+
+AS_EVER = Press()
 
 
 @dataclass(frozen=True)
@@ -40,11 +64,14 @@ class Scene:
     frames : uint8 array (frames, rows, columns, 3), RGB
     height : float64 array (frames, rows, columns), true depth in grid pixels, positive pressed in
     name : str
+    labels : tuple of str
+        One per frame.
     """
 
     frames: np.ndarray
     height: np.ndarray
     name: str
+    labels: tuple[str, ...]
 
 
 def scene_pixel_pitch_mm(size: int) -> float:
@@ -52,7 +79,7 @@ def scene_pixel_pitch_mm(size: int) -> float:
     return SENSOR_WIDTH_MM / size
 
 
-def render(name: str, rows: int, columns: int = 0, seed: int = 1) -> Scene:
+def render(name: str, rows: int, columns: int = 0, seed: int = 1, press: Press = AS_EVER) -> Scene:
     """Render a scene of the registry on a grid of `rows` by `columns` (0: square).
 
     The scene fills the largest square in the middle of the grid; around it the gel is untouched.
@@ -65,22 +92,42 @@ def render(name: str, rows: int, columns: int = 0, seed: int = 1) -> Scene:
     Raises
     ------
     InputError
-        No scene of that name.
+        No scene of that name; a press that the sensor cannot see, or of a scene that takes none.
     """
     if name not in SCENES:
         raise InputError(f"unknown scene {name}: accepted are {', '.join(SCENES)}")
     columns = columns or rows
     size = min(rows, columns)
+    bodies = SCENES[name]
+    fixed = [label for label in bodies if label not in BENCH]
+    if fixed and (press.depth_mm is not None or any(press.at_mm)):
+        raise InputError(
+            f"the scene {name} is what it is: a press depth and a position go with {', '.join(BENCH)} and bench"
+        )
+    depth = None if press.depth_mm is None else press.depth_mm / SENSOR_WIDTH_MM
+    x, y = (shift / SENSOR_WIDTH_MM for shift in press.at_mm)
+    drawn = np.stack([size * _draw(body, size, depth, x, y) for body in bodies.values()])
+    steepest = float(np.abs(_slopes(drawn)).max())
+    if steepest > SLOPE_LIMIT + 1e-9:
+        raise InputError(
+            f"the scene {name} pressed {press.depth_mm:g} mm deep has slopes of {steepest:.2f}, and the sensor sees "
+            f"up to {SLOPE_LIMIT:g}: press less deep"
+        )
     top, left = (rows - size) // 2, (columns - size) // 2
     margins = ((0, 0), (top, rows - size - top), (left, columns - size - left))
-    height = np.pad(SCENES[name](size), margins)
-    return Scene(photograph(height, seed), height, name)
+    slopes = np.pad(_slopes(drawn), (*margins, (0, 0)))
+    height = np.pad(drawn[:, :-1, :-1], margins)
+    return Scene(_photograph(slopes, seed, press.noise), height, name, tuple(bodies))
 
 
 def photograph(height: np.ndarray, seed: int = 1) -> np.ndarray:
     """What the synthetic sensor sees of height maps (..., N, N) in grid pixels: uint8 (..., N, N, 3)."""
-    noise = np.random.default_rng(seed).normal(scale=NOISE, size=(*height.shape, 3))
-    return np.clip(np.rint(REST + GAIN * slopes_of(height) @ LIGHTS.T + noise), 0, 255).astype(np.uint8)
+    return _photograph(slopes_of(height), seed, NOISE)
+
+
+def _photograph(slopes: np.ndarray, seed: int, noise: float) -> np.ndarray:
+    grain = np.random.default_rng(seed).normal(scale=noise, size=(*slopes.shape[:-1], 3))
+    return np.clip(np.rint(REST + GAIN * slopes @ LIGHTS.T + grain), 0, 255).astype(np.uint8)
 
 
 def slopes_of(height: np.ndarray) -> np.ndarray:
@@ -88,32 +135,26 @@ def slopes_of(height: np.ndarray) -> np.ndarray:
     return np.stack((np.diff(height, axis=-1, append=0), np.diff(height, axis=-2, append=0)), axis=-1)
 
 
-# Drawing: a shape is the distance from a skeleton (a point, a circle, strokes) put through a profile.
+def _slopes(drawn: np.ndarray) -> np.ndarray:
+    """Of a drawing that goes one row and column beyond the frame: (..., N + 1, N + 1) to (..., N, N, 2)."""
+    return np.stack((np.diff(drawn, axis=-1)[..., :-1, :], np.diff(drawn, axis=-2)[..., :-1]), axis=-1)
 
 
-def _axes(size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Coordinates x along the columns, y down the rows, from the middle of the frame, in frame widths."""
-    x = (np.arange(size) + 0.5) / size - 0.5
-    return x[None, :], x[:, None]
+# Drawing: a shape is the distance from a skeleton (a point, a circle, strokes) put through a profile. All lengths are
+# in widths of the frame.
 
 
-def _point(size: int, x: float = 0, y: float = 0) -> np.ndarray:
-    columns, rows = _axes(size)
-    return np.hypot(columns - x, rows - y)
+def _circle(x: np.ndarray, y: np.ndarray, radius: float) -> np.ndarray:
+    return np.abs(np.hypot(x, y) - radius)
 
 
-def _circle(size: int, radius: float, x: float = 0, y: float = 0) -> np.ndarray:
-    return np.abs(_point(size, x, y) - radius)
-
-
-def _strokes(size: int, corners: list[tuple[float, float]]) -> np.ndarray:
+def _strokes(x: np.ndarray, y: np.ndarray, corners: list[tuple[float, float]]) -> np.ndarray:
     """Distance from the line that joins the corners (x, y)."""
-    columns, rows = _axes(size)
-    distance = np.full((size, size), np.inf)
+    distance = np.full(np.broadcast_shapes(x.shape, y.shape), np.inf)
     for (x0, y0), (x1, y1) in pairwise(corners):
         dx, dy = x1 - x0, y1 - y0
-        along = np.clip(((columns - x0) * dx + (rows - y0) * dy) / (dx * dx + dy * dy), 0, 1)
-        distance = np.minimum(distance, np.hypot(columns - x0 - along * dx, rows - y0 - along * dy))
+        along = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0, 1)
+        distance = np.minimum(distance, np.hypot(x - x0 - along * dx, y - y0 - along * dy))
     return distance
 
 
@@ -124,29 +165,257 @@ def _star(radius: float, waist: float) -> list[tuple[float, float]]:
     return [(r * math.sin(2 * math.pi * t), -r * math.cos(2 * math.pi * t)) for r, t in zip(reach, turns, strict=True)]
 
 
-def _cap(distance: np.ndarray, peak: float, edge_slope: float) -> np.ndarray:
-    """A round body pressed in: circular where it touches, then the gel rising smoothly to its rest.
+SKIRT = 0.3  # of a round body, in its radii: over it the gel rises to its rest, as a parabola
 
-    `edge_slope` is the slope where contact ends; it and the peak give the radius of the body. The gel leaves
-    the body with that slope and flattens, as a parabola, over 0.3 radii.
-    """
+
+def _cap_depth(edge_slope: float) -> float:
+    """Depth, in radii, at which a round body's contact ends with this slope."""
+    return 1 - 1 / math.hypot(1, edge_slope) + edge_slope * SKIRT / 2
+
+
+def _cap(distance: np.ndarray, depth: float, radius: float) -> np.ndarray:
+    """A round body pressed in: circular where it touches, then the gel leaving it smoothly and rising to its rest."""
+    edge_slope = brentq(lambda slope: _cap_depth(slope) - depth / radius, 0, 100) if depth > 0 else 0.0
     touching = edge_slope / math.hypot(1, edge_slope)  # lengths in radii, up to the last line
-    skirt = 0.3
     sagitta = 1 - math.sqrt(1 - touching**2)
-    rim = edge_slope * skirt / 2
-    radius = peak / (sagitta + rim)
+    rim = edge_slope * SKIRT / 2
     r = distance / radius
     body = np.sqrt(1 - np.minimum(r, touching) ** 2) - (1 - sagitta) + rim
-    gel = rim * np.clip(1 - (r - touching) / skirt, 0, 1) ** 2
+    gel = rim * np.clip(1 - (r - touching) / SKIRT, 0, 1) ** 2
     return radius * np.where(r < touching, body, gel)
 
 
-def _ridge(distance: np.ndarray, peak: float, half_width: float) -> np.ndarray:
-    """A raised cosine over the distance: steepest pi/2 peak / half_width."""
-    return peak / 2 * (1 + np.cos(np.pi * np.minimum(distance / half_width, 1)))
+def _cap_radius(depth: float, edge_slope: float) -> float:
+    """Radius of the body whose contact, at that depth, ends with that slope."""
+    return depth / _cap_depth(edge_slope)
 
 
-# Heights (N, N) in grid pixels.
+def _ridge(distance: np.ndarray, depth: float, half_width: float) -> np.ndarray:
+    """A raised cosine over the distance: steepest pi/2 depth / half_width."""
+    return depth / 2 * (1 + np.cos(np.pi * np.minimum(distance / half_width, 1)))
+
+
+def _facet(distance: np.ndarray, depth: float, slope: float) -> np.ndarray:
+    """A sharp body of straight flanks, its tip and the gel at its foot rounded over FACET_ROUNDING."""
+    height = depth - slope * (np.hypot(distance, FACET_ROUNDING) - FACET_ROUNDING)
+    foot = slope * FACET_ROUNDING
+    return np.where(height > foot, height, np.maximum(height + foot, 0) ** 2 / (4 * foot))
+
+
+FACET_ROUNDING = 0.02
+
+
+# The contacts of a tactile bench: coordinates from the body's middle and press depth to height. Each says what it
+# leaves out beside what the sensor leaves out.
+
+Body = Callable[[np.ndarray, np.ndarray, float], np.ndarray]
+
+
+def ball(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A ball, the gel rising smoothly around it. Leaves out the bulge of displaced gel."""
+    return _cap(np.hypot(x, y), depth, _cap_radius(0.09, 0.85))
+
+
+def cylinder(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A cylinder on its side, its ends rounded. Leaves out the sharp rims of a cut one."""
+    return _cap(_strokes(x, y, [(-0.16, 0.1), (0.16, -0.1)]), depth, _cap_radius(0.08, 0.85))
+
+
+def cone(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A blunt cone, point down. Leaves out that gel stands off from a sharp tip."""
+    return _facet(np.hypot(x, y), depth, 0.6)
+
+
+def punch(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A flat punch. Leaves out the cusp of pressure at its rim: the gel falls off as half a cosine."""
+    return _ridge(np.maximum(np.hypot(x, y) - 0.2, 0), depth, 0.1)
+
+
+def ring(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A ring of round wire. Leaves out that the gel inside the ring is pressed in too."""
+    return _cap(_circle(x, y, 0.26), depth, _cap_radius(0.05, 0.8))
+
+
+def edge(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """The straight edge of a wedge, of finite length. Leaves out its corners."""
+    return _facet(_strokes(x, y, [(-0.22, -0.12), (0.22, 0.12)]), depth, 0.7)
+
+
+def two_balls(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """Two balls side by side. Leaves out that the gel between them is stretched."""
+    radius = _cap_radius(0.06, 0.85)
+    return np.maximum(*(_cap(np.hypot(x - at, y - at / 3), depth, radius) for at in (-0.17, 0.17)))
+
+
+def pyramid(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A square pyramid, point down, turned by 30 degrees. Leaves out the rounding of its four edges."""
+    turn = math.radians(30)
+    along, across = x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn)
+    return _facet(np.maximum(np.abs(along), np.abs(across)), depth, 0.6)
+
+
+# Seals. In relief the device is raised and touches; in intaglio it is cut into a disc, and the disc touches. All leave
+# out that gel cannot follow into narrow corners.
+
+
+def _relief(distance: np.ndarray, depth: float) -> np.ndarray:
+    return _ridge(distance, depth, 0.055)
+
+
+def _intaglio(x: np.ndarray, y: np.ndarray, distance: np.ndarray, depth: float) -> np.ndarray:
+    disc = _ridge(np.maximum(np.hypot(x, y) - 0.34, 0), depth, 0.08)
+    return disc - _ridge(distance, 0.7 * depth, 0.055)
+
+
+def _cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    bars = ([(-0.2, -0.05), (0.2, 0.05)], [(0.05, -0.22), (-0.05, 0.22)])
+    return np.minimum(*(_strokes(x, y, bar) for bar in bars))
+
+
+def _letters(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """T and D, as in tactile depth."""
+    t = _strokes(x, y, [(-0.23, -0.13), (-0.05, -0.13), (-0.14, -0.13), (-0.14, 0.15)])
+    d = _strokes(x, y, [(0.06, 0.14), (0.06, -0.13), (0.14, -0.12), (0.2, 0.0), (0.14, 0.13), (0.06, 0.14)])
+    return np.minimum(t, d)
+
+
+STAR = _star(0.23, 0.105)
+
+
+def seal(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A raised border with a star in it, a little lower."""
+    border = _ridge(_circle(x, y, 0.34), depth, 0.055)
+    return np.maximum(border, _ridge(_strokes(x, y, _star(0.25, 0.115)), 11 / 13 * depth, 0.048))
+
+
+def star_relief(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """The outline of a star, raised."""
+    return _relief(_strokes(x, y, STAR), depth)
+
+
+def star_intaglio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """The same, cut into a disc."""
+    return _intaglio(x, y, _strokes(x, y, STAR), depth)
+
+
+def cross_relief(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """A cross, raised."""
+    return _relief(_cross(x, y), depth)
+
+
+def cross_intaglio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """The same, cut into a disc."""
+    return _intaglio(x, y, _cross(x, y), depth)
+
+
+def letters_relief(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """Two letters, raised."""
+    return _relief(_letters(x, y), depth)
+
+
+def letters_intaglio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """The same, cut into a disc."""
+    return _intaglio(x, y, _letters(x, y), depth)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A body of the bench, where it stands and how deep it is pressed unless said otherwise, in frame widths."""
+
+    body: Body
+    depth: float
+    x: float = 0.0
+    y: float = 0.0
+
+
+BENCH: dict[str, Contact] = {
+    contact.body.__name__: contact
+    for contact in (
+        Contact(ball, 0.09, 0.03, -0.02),
+        Contact(cylinder, 0.08, -0.01, 0.02),
+        Contact(cone, 0.11, 0.02, 0.03),
+        Contact(punch, 0.05, -0.03, 0.01),
+        Contact(ring, 0.05, -0.02, 0.02),
+        Contact(edge, 0.07, 0.01, -0.02),
+        Contact(two_balls, 0.06, -0.01, 0.01),
+        Contact(pyramid, 0.1, 0.02, -0.01),
+        Contact(seal, 0.026),
+        Contact(star_relief, 0.03),
+        Contact(star_intaglio, 0.03),
+        Contact(cross_relief, 0.03, 0.02, -0.01),
+        Contact(cross_intaglio, 0.03, 0.01, 0.01),
+        Contact(letters_relief, 0.03),
+        Contact(letters_intaglio, 0.03),
+    )
+}
+"""The 15 contacts of the bench by name: machined indenters, then seals."""
+
+
+# What is not one body: height over the whole frame, in frame widths, from coordinates about its middle.
+
+
+def flat(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """No contact. Leaves out drift and dirt: only the camera's noise is left."""
+    return np.zeros(np.broadcast_shapes(x.shape, y.shape))
+
+
+def deep(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """One dome as deep as the default depth range, a quarter of the grid. Leaves out any body's shape."""
+    tip = (x[0, 1] - x[0, 0]) / 2  # on a sample
+    return _ridge(np.hypot(x - tip, y - tip), depth, math.pi / 2 * depth / SLOPE_LIMIT)
+
+
+def _contacts() -> dict[str, Contact]:
+    """Eight contacts, 3 to 18 pixels deep at N = 128. Leaves out motion: no frame follows from the last."""
+
+    def shallow(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        return _cap(np.hypot(x + 0.13, y - 0.16), depth, _cap_radius(depth, 0.5))
+
+    def letters(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        strokes = np.minimum(
+            _strokes(x, y, [(-0.27, -0.16), (-0.05, -0.16), (-0.16, -0.16), (-0.16, 0.18)]),
+            _strokes(x, y, [(0.07, 0.17), (0.07, -0.16), (0.16, -0.14), (0.23, 0.0), (0.16, 0.15), (0.07, 0.17)]),
+        )
+        return _ridge(strokes, depth, 0.058)
+
+    def trio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        places = ((-0.2, -0.16), (0.21, -0.1), (-0.02, 0.22))
+        radius = _cap_radius(depth, 0.9)
+        return np.maximum.reduce([_cap(np.hypot(x - at, y - down), depth, radius) for at, down in places])
+
+    def peg(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        return _cap(_strokes(x, y, [(-0.16, 0.1), (0.14, -0.12)]), depth, _cap_radius(depth, 0.9))
+
+    def deepest(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        return _cap(np.hypot(x - 0.04, y - 0.03), depth, _cap_radius(depth, 0.9))
+
+    return {
+        "contacts 0": Contact(shallow, 3 / 128),
+        "contacts 1": BENCH["seal"],
+        "contacts 2": Contact(letters, 4 / 128),
+        "contacts 3": BENCH["ring"],
+        "contacts 4": Contact(trio, 9 / 128),
+        "contacts 5": BENCH["ball"],
+        "contacts 6": Contact(peg, 14 / 128),
+        "contacts 7": Contact(deepest, 18 / 128),
+    }
+
+
+SCENES: dict[str, dict[str, Contact]] = {
+    **{name: {name: contact} for name, contact in BENCH.items()},
+    "bench": BENCH,
+    "contacts": _contacts(),
+    "deep": {"deep 0": Contact(deep, 0.25)},
+    "flat": {"flat 0": Contact(flat, 0.0)},
+}
+"""Scenes by name; each is its frames by their labels."""
+
+
+def _draw(contact: Contact, size: int, depth: float | None, x: float, y: float) -> np.ndarray:
+    """Height in frame widths, float64 (size + 1, size + 1)."""
+    at = (np.arange(size + 1) + 0.5) / size - 0.5
+    columns, rows = (at - contact.x - x)[None, :], (at - contact.y - y)[:, None]
+    return contact.body(columns, rows, contact.depth if depth is None else depth)
 
 
 def dome(size: int, peak_px: float) -> np.ndarray:
@@ -173,78 +442,5 @@ def dome(size: int, peak_px: float) -> np.ndarray:
     if not 0 < peak_px <= deepest:
         raise InputError(f"a dome of {peak_px:g} pixels on a grid of {size}: accepted is up to {deepest:.4g}")
     half_width = max(math.pi / 2 * peak_px / SLOPE_LIMIT, size / 4)
-    tip = 0.5 / size  # on a sample
-    return _ridge(size * _point(size, tip, tip), peak_px, half_width)
-
-
-def _seal(size: int) -> np.ndarray:
-    border = _ridge(_circle(size, 0.34), 0.026, 0.055)
-    star = _ridge(_strokes(size, _star(0.25, 0.115)), 0.022, 0.048)
-    return size * np.maximum(border, star)
-
-
-def _ball(size: int) -> np.ndarray:
-    return size * _cap(_point(size, 0.03, -0.02), 0.09, 0.85)
-
-
-def _ring(size: int) -> np.ndarray:
-    return size * _cap(_circle(size, 0.26, -0.02, 0.02), 0.05, 0.8)
-
-
-# Scenes: heights (frames, N, N) in grid pixels.
-
-
-def flat(size: int) -> np.ndarray:
-    """No contact. Leaves out drift and dirt: only the camera's noise is left."""
-    return np.zeros((1, size, size))
-
-
-def ball(size: int) -> np.ndarray:
-    """A ball pressed in, the gel rising smoothly around it. Leaves out the bulge of displaced gel."""
-    return _ball(size)[None]
-
-
-def seal(size: int) -> np.ndarray:
-    """An embossed seal: a raised border and a star. Leaves out that gel cannot follow into narrow corners."""
-    return _seal(size)[None]
-
-
-def ring(size: int) -> np.ndarray:
-    """A ring of round wire. Leaves out that the gel inside the ring is pressed in too."""
-    return _ring(size)[None]
-
-
-def deep(size: int) -> np.ndarray:
-    """One dome as deep as the default depth range, a quarter of the grid. Leaves out any body's shape."""
-    return dome(size, size / 4)[None]
-
-
-def contacts(size: int) -> np.ndarray:
-    """Eight contacts, 3 to 18 pixels deep at N = 128. Leaves out motion: no frame follows from the last."""
-    peg = _strokes(size, [(-0.16, 0.1), (0.14, -0.12)])
-    letters = np.minimum(
-        _strokes(size, [(-0.27, -0.16), (-0.05, -0.16), (-0.16, -0.16), (-0.16, 0.18)]),
-        _strokes(size, [(0.07, 0.17), (0.07, -0.16), (0.16, -0.14), (0.23, 0.0), (0.16, 0.15), (0.07, 0.17)]),
-    )
-    shallow = size * _cap(_point(size, -0.13, 0.16), 3 / 128, 0.5)
-    trio = size * np.maximum.reduce(
-        [_cap(_point(size, x, y), 9 / 128, 0.9) for x, y in ((-0.2, -0.16), (0.21, -0.1), (-0.02, 0.22))]
-    )
-    return np.stack(
-        [
-            shallow,
-            _seal(size),
-            size * _ridge(letters, 4 / 128, 0.058),
-            _ring(size),
-            trio,
-            _ball(size),
-            size * _cap(peg, 14 / 128, 0.9),
-            size * _cap(_point(size, 0.04, 0.03), 18 / 128, 0.9),
-        ]
-    )
-
-
-SCENES: dict[str, Callable[[int], np.ndarray]] = {
-    scene.__name__: scene for scene in (contacts, ball, seal, ring, deep, flat)
-}
-"""Scenes by name: size to height maps, float64 (frames, N, N) in grid pixels."""
+    at = np.arange(size) - size / 2  # the tip on a sample
+    return _ridge(np.hypot(at[None, :], at[:, None]), peak_px, half_width)

@@ -44,14 +44,19 @@ def sdf_butterfly(
 def _butterfly(x: np.ndarray, delay: int) -> np.ndarray:
     pairs = x.reshape(*x.shape[:-1], -1, 2, delay)
     first, second = pairs[..., 0, :], pairs[..., 1, :]
-    return np.stack((first + second, first - second), axis=-2).reshape(x.shape)
+    out = np.empty_like(pairs)  # in the memory layout of x
+    np.add(first, second, out=out[..., 0, :])
+    np.subtract(first, second, out=out[..., 1, :])
+    return out.reshape(x.shape)
 
 
 def _rotate_last_quarter(re: np.ndarray, im: np.ndarray, block: int, inverse: bool) -> tuple[np.ndarray, np.ndarray]:
     """Multiply the last quarter of each block by -j (inverse: +j)."""
-    sign = -1 if inverse else 1
     quarters = (*re.shape[:-1], -1, 4, block // 4)
-    turned_re, turned_im = re.copy(), im.copy()
-    turned_re.reshape(quarters)[..., 3, :] = sign * im.reshape(quarters)[..., 3, :]
-    turned_im.reshape(quarters)[..., 3, :] = -sign * re.reshape(quarters)[..., 3, :]
+    turned_re, turned_im = re.copy(order="K"), im.copy(order="K")
+    for turned, other, negative in ((turned_re, im, inverse), (turned_im, re, not inverse)):
+        last = turned.reshape(quarters)[..., 3, :]
+        last[...] = other.reshape(quarters)[..., 3, :]
+        if negative:
+            np.negative(last, out=last)
     return turned_re, turned_im

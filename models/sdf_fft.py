@@ -58,6 +58,11 @@ def halvings(size: int, inverse: bool) -> int:
     return sum(stage.halve for stage in stages(size, inverse))
 
 
+def _position_major(x: np.ndarray) -> np.ndarray:
+    """The same array with its last axis outermost in memory: stages then run over whole bursts side by side."""
+    return np.moveaxis(np.ascontiguousarray(np.moveaxis(x, -1, 0)), 0, -1)
+
+
 def sdf_fft(
     re: np.ndarray,
     im: np.ndarray,
@@ -82,6 +87,7 @@ def sdf_fft(
         Forward: bit-reversed order. Inverse: natural order. The gain is
         2**-halvings (1 - 2**(1 - coefficient_width)) ** twiddle_stages, relative to the sum without a factor.
     """
+    re, im = _position_major(re), _position_major(im)
     for index, stage in enumerate(stages(re.shape[-1], inverse)):
         name = f"{node}.stage{index}"
         if stage.delay:

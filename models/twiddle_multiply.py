@@ -60,7 +60,11 @@ def twiddle_multiply(
         `drop` fraction bits less, saturated to `width` bits; im is 0 with `real_only`.
     """
     w_re, w_im = (np.tile(factors[:, part], re.shape[-1] // len(factors)) for part in (0, 1))
-    out_re = round_saturate(re * w_re - im * w_im, drop, width, monitor, node + ".re")
+    product = re * w_re
+    product -= im * w_im
+    out_re = round_saturate(product, drop, width, monitor, node + ".re")
     if real_only:
         return out_re, np.zeros_like(out_re)
-    return out_re, round_saturate(re * w_im + im * w_re, drop, width, monitor, node + ".im")
+    product = re * w_im
+    product += im * w_re
+    return out_re, round_saturate(product, drop, width, monitor, node + ".im")

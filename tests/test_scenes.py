@@ -11,11 +11,13 @@ from models.calibration import synthetic
 from models.divergence import divergence
 from models.errors import InputError
 from models.scenes import (
+    BENCH,
     NOISE,
     REST,
     SCENES,
     SENSOR_WIDTH_MM,
     SLOPE_LIMIT,
+    Press,
     dome,
     photograph,
     render,
@@ -59,6 +61,43 @@ def test_reference_depth_resembles_the_true_height(name, size, bound):
     error = reference.depth(scene.frames, synthetic()) - scene.height
     percent = 100 * np.sqrt((error**2).mean(axis=(1, 2))) / scene.height.max(axis=(1, 2))
     assert percent.max() < bound
+
+
+def test_the_bench_has_15_contacts_each_a_scene_of_its_own():
+    bench = render("bench", 64)
+    assert len(bench.frames) == len(set(bench.labels)) == 15
+    for label, height in zip(bench.labels, bench.height, strict=True):
+        np.testing.assert_array_equal(render(label, 64).height[0], height)
+
+
+@pytest.mark.parametrize("name", BENCH)
+def test_a_press_is_as_deep_as_asked_for_and_where_asked_for(name):
+    half = BENCH[name].depth / 2
+    shallow = render(name, 128, press=Press(depth_mm=half * SENSOR_WIDTH_MM)).height[0]
+    # The deepest point falls between samples, and where three strokes meet there may be none at full depth.
+    assert shallow.max() == pytest.approx(128 * half, rel=0.01)
+    pitch = scene_pixel_pitch_mm(128)
+    shifted = render(name, 128, press=Press(at_mm=(3 * pitch, -5 * pitch))).height[0]
+    np.testing.assert_allclose(shifted[:-5, 3:], render(name, 128).height[0][5:, :-3], atol=1e-9)
+
+
+def test_a_contact_that_the_edge_cuts_goes_on_beyond_it():
+    inside, cut = (render("ball", 64, seed=1, press=Press(at_mm=(x, 0), noise=0)) for x in (0, 7.14))
+    assert cut.height[0, :, -1].max() > 3
+    shift = 30  # 7.14 mm
+    np.testing.assert_array_equal(cut.frames[0][:, shift:], inside.frames[0][:, :-shift])
+
+
+def test_a_press_that_the_sensor_cannot_see_is_refused():
+    with pytest.raises(InputError, match="seal pressed 1 mm deep"):
+        render("seal", 64, press=Press(depth_mm=1))
+    with pytest.raises(InputError, match="deep is what it is"):
+        render("deep", 64, press=Press(depth_mm=1))
+
+
+def test_noise_is_as_strong_as_asked_for():
+    assert render("flat", 64, press=Press(noise=3)).frames.std() == pytest.approx(3, rel=0.05)
+    assert len(np.unique(render("flat", 64, press=Press(noise=0)).frames)) == 1
 
 
 def test_contacts_span_the_peaks_of_the_accuracy_bar():

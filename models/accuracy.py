@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far the bit-accurate models are from double precision and from the truth, for one configuration of a sweep.
+
+No scale or offset is fitted anywhere.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.resources
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from models import reference
+from models.calibration import Calibration, synthetic
+from models.configuration import Configuration
+from models.cost import cost
+from models.errors import InputError
+from models.round_saturate import Monitor
+from models.scenes import render, scene_pixel_pitch_mm
+from models.tactile_depth import tactile_depth
+
+SMALLEST_PEAK_PX = 0.1  # below this an error in % of peak says nothing
+PIXELS_AT_ONCE = 1 << 17  # of a batch of frames: arrays that stay in a cache
+SCENE, SEED = "bench", 1  # what a sweep measures on
+
+
+def _version() -> str:
+    """Of the sources of all models: a row measured with others is another row."""
+    digest = hashlib.sha256()
+    files = [file for file in importlib.resources.files("models").iterdir() if file.name.endswith(".py")]
+    for file in sorted(files, key=lambda file: file.name):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:12]
+
+
+VERSION = _version()  # at import: it is that of the code that runs
+
+
+def errors(depth_px: np.ndarray, reference_px: np.ndarray) -> dict[str, list[float | None]]:
+    """RMS and largest error of each frame (frames, rows, columns), in % of the reference's peak."""
+    error = depth_px - reference_px
+    peak = np.abs(reference_px).max(axis=(1, 2))
+    rms = np.sqrt((error**2).mean(axis=(1, 2)))
+    largest = np.abs(error).max(axis=(1, 2))
+    percent = [
+        [float(100 * v / p) if p >= SMALLEST_PEAK_PX else None for v, p in zip(values, peak, strict=True)]
+        for values in (rms, largest)
+    ]
+    return {"rms_percent_of_peak": percent[0], "max_percent_of_peak": percent[1]}
+
+
+def depth_px(
+    frames: np.ndarray, config: Configuration, calibration: Calibration, monitor: Monitor | None = None
+) -> np.ndarray:
+    """Depth of frames by the bit-accurate model, rows in the order of the input, in grid pixels."""
+    step = max(1, PIXELS_AT_ONCE // (config.rows * config.columns))
+    codes = np.concatenate(
+        [tactile_depth(frames[i : i + step], calibration, config, monitor) for i in range(0, len(frames), step)]
+    )
+    if config.solver == "tridiagonal":  # it puts the bottom row out first
+        codes = codes[..., ::-1, :]
+    return codes * config.depth_lsb_px
+
+
+@dataclass(frozen=True)
+class _Bench:
+    frames: np.ndarray
+    height: np.ndarray
+    reference: np.ndarray
+
+
+@lru_cache(maxsize=2)
+def _bench(size: int, neumann: bool) -> _Bench:
+    scene = render(SCENE, size, seed=SEED)
+    height = scene.height - scene.height.mean(axis=(1, 2), keepdims=True) if neumann else scene.height
+    return _Bench(scene.frames, height, reference.depth(scene.frames, synthetic(), neumann))
+
+
+CONFIGURATION = ("solver", "boundary", "rows", "columns", "data_width", "coefficient_width", "depth_range")
+MEASURED = (
+    "problem",
+    "depth_range_mm",
+    "scene",
+    "seed",
+    "frames",
+    "rms_percent_mean",
+    "rms_percent_worst",
+    "max_percent_mean",
+    "max_percent_worst",
+    "true_rms_mm_mean",
+    "true_rms_mm_worst",
+    "true_max_mm_worst",
+    "saturations",
+    "first_depth_cycles",
+    "last_pixel_to_first_depth_cycles",
+    "multipliers",
+    "memory_bits",
+    "frame_store_bits",
+    "delay_line_bits",
+    "table_bits",
+    "row_buffer_bits",
+    "models",
+)
+
+
+def configuration_cells(choices: dict[str, Any]) -> dict[str, str]:
+    """The configuration of a row, from the arguments of a `Configuration`."""
+    default = Configuration()
+    columns = choices.get("columns", default.columns)
+    depth_range = choices.get("depth_range_px")
+    return {
+        "solver": choices.get("solver", default.solver),
+        "boundary": "neumann" if choices.get("neumann") else "dirichlet",
+        "rows": str(choices.get("rows", columns)),
+        "columns": str(columns),
+        "data_width": str(choices.get("data_width", default.data_width)),
+        "coefficient_width": str(choices.get("coefficient_width", default.coefficient_width)),
+        "depth_range": "default" if depth_range is None else str(depth_range),
+    }
+
+
+def measure(choices: dict[str, Any]) -> dict[str, str]:
+    """Measure a configuration over the contacts of the bench; one that cannot be built says why.
+
+    Parameters
+    ----------
+    choices : dict
+        Arguments of a `Configuration`, of a square grid.
+
+    Returns
+    -------
+    dict of str
+        CONFIGURATION and MEASURED. `*_percent_*`: error to double precision in % of its peak, mean and worst of the
+        contacts. `true_*_mm`: error to the height map that was drawn, in which the sensor's own share is.
+    """
+    row = dict.fromkeys((*CONFIGURATION, *MEASURED), "")
+    row |= configuration_cells(choices) | {"scene": SCENE, "seed": str(SEED), "models": VERSION}
+    try:
+        config = Configuration(**choices)
+    except InputError as error:
+        return row | {"problem": str(error)}
+    bench, pitch = _bench(config.columns, config.neumann), scene_pixel_pitch_mm(config.columns)
+    monitor = Monitor()
+    depth = depth_px(bench.frames, config, synthetic(), monitor)
+    percent = errors(depth, bench.reference)
+    rms = np.array(percent["rms_percent_of_peak"], float)
+    largest = np.array(percent["max_percent_of_peak"], float)
+    true = np.abs(depth - bench.height) * pitch
+    true_rms = np.sqrt((true**2).mean(axis=(1, 2)))
+    counted = cost(config)
+    assert config.depth_range_px is not None
+    numbers = {
+        "depth_range_mm": config.depth_range_px * pitch,
+        "frames": len(bench.frames),
+        "rms_percent_mean": rms.mean(),
+        "rms_percent_worst": rms.max(),
+        "max_percent_mean": largest.mean(),
+        "max_percent_worst": largest.max(),
+        "true_rms_mm_mean": true_rms.mean(),
+        "true_rms_mm_worst": true_rms.max(),
+        "true_max_mm_worst": true.max(),
+        "saturations": monitor.saturations.total(),
+        "first_depth_cycles": counted.first_depth_cycles,
+        "last_pixel_to_first_depth_cycles": counted.last_pixel_cycles,
+        "multipliers": counted.tiles,
+        "memory_bits": counted.memory_bits,
+        "frame_store_bits": counted.bits_of("frame stores"),
+        "delay_line_bits": counted.bits_of("delay lines"),
+        "table_bits": counted.bits_of("tables"),
+        "row_buffer_bits": counted.bits_of("row buffers"),
+    }
+    return row | {name: str(v) if isinstance(v, int) else f"{float(v):.6g}" for name, v in numbers.items()}

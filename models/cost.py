@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a configuration costs: multipliers, memory bits, latency; from the parameters that the RTL gets.
+
+Memories are those behind hdl/ram.sv and hdl/rom.sv; registers, and with them delays of up to LONGEST_SHIFT, are not
+counted. A test elaborates the RTL and counts the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from models.configuration import Configuration
+from models.latency import first_depth_latency, last_pixel_to_first_depth
+from models.sdf_fft import stages
+from models.tactile_depth import top_parameters
+
+KINDS = ("frame stores", "delay lines", "tables", "row buffers")
+LONGEST_SHIFT = 4  # delays up to this are registers, hdl/delay_line.sv
+
+# A DSP48E2 multiplies 27 by 18 bits, signed. The low parts of a wider operand are unsigned: a bit less each.
+PORTS = (27, 18)
+
+
+@dataclass(frozen=True)
+class Multiplier:
+    """A signed product of `a` by `b` bits."""
+
+    a: int
+    b: int
+
+    @property
+    def tiles(self) -> int:
+        """Multipliers of 27 x 18 bits that it takes: either operand on the wide port, whichever takes fewer."""
+
+        def parts(width: int, port: int) -> int:
+            return 1 + max(0, -(-(width - port) // (port - 1)))
+
+        wide, narrow = PORTS
+        return min(parts(self.a, wide) * parts(self.b, narrow), parts(self.b, wide) * parts(self.a, narrow))
+
+
+@dataclass(frozen=True)
+class Memory:
+    """A memory of `words` words of `width` bits."""
+
+    kind: str
+    width: int
+    words: int
+
+    @property
+    def bits(self) -> int:
+        return self.width * self.words
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a configuration costs.
+
+    Attributes
+    ----------
+    multipliers : list of Multiplier
+    memories : list of Memory
+    first_depth_cycles, last_pixel_cycles : int
+        From the first and from the last pixel of a frame to its first depth.
+    """
+
+    multipliers: list[Multiplier]
+    memories: list[Memory]
+    first_depth_cycles: int
+    last_pixel_cycles: int
+
+    @cached_property
+    def tiles(self) -> int:
+        """Multipliers of 27 x 18 bits."""
+        return sum(multiplier.tiles for multiplier in self.multipliers)
+
+    @cached_property
+    def memory_bits(self) -> int:
+        return sum(memory.bits for memory in self.memories)
+
+    def bits_of(self, kind: str) -> int:
+        return sum(memory.bits for memory in self.memories if memory.kind == kind)
+
+
+def cost(config: Configuration) -> Cost:
+    """Count what the RTL of a configuration holds."""
+    multipliers, memories = _pipeline(top_parameters(config))
+    return Cost(multipliers, memories, first_depth_latency(config), last_pixel_to_first_depth(config))
+
+
+Parts = tuple[list[Multiplier], list[Memory]]
+
+
+def _pipeline(p: dict[str, int]) -> Parts:
+    """hdl/tactile_depth.sv."""
+    size, slope, data = p["Size"], p["GradientWidth"], p["DataWidth"]
+    divergence = slope + 2
+    memories = [
+        Memory("tables", 2 * slope, 1 << 3 * p["BitsPerChannel"]),
+        Memory("row buffers", slope, size),  # of the divergence: the row above
+        Memory("row buffers", divergence, 2 * size),  # row_reorder, in and out
+        Memory("row buffers", data, 2 * size),
+    ]
+    solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
+    return solver[0], memories + solver[1]
+
+
+def _spectral(p: dict[str, int]) -> Parts:
+    size, data, width, coefficient = p["Size"], p["DataWidth"], p["Width"], p["CoeffWidth"]
+    return _joined(
+        _forward(p),
+        ([], [Memory("frame stores", data, size * size)] * 2),
+        _forward(p),
+        (
+            [Multiplier(width, coefficient)],
+            [Memory("tables", p["DivideShiftWidth"] + coefficient, size * (size + 1) // 2)],
+        ),
+        _inverse(p, width),
+        _inverse(p, data),
+    )
+
+
+def _tridiagonal(p: dict[str, int]) -> Parts:
+    size, rows, data, width, coefficient = p["Size"], p["Rows"], p["DataWidth"], p["Width"], p["CoeffWidth"]
+    words = p["TableWords"]
+    one_way = (  # down or up
+        [Multiplier(width, coefficient)],
+        [
+            Memory("row buffers", width, size),  # the running row
+            Memory("tables", coefficient, words),
+            Memory("tables", (words - 1).bit_length() + p["SettledWidth"], size),
+            Memory("tables", p["LastShiftWidth"] + coefficient, size),
+        ],
+    )
+    row_number = (rows - 1).bit_length() + 2  # 1 to rows, signed
+    mean = [Multiplier(width, row_number), Multiplier(width, coefficient)] if p["Neumann"] else []
+    return _joined(
+        _forward(p),
+        one_way,
+        (mean, [Memory("frame stores", data, rows * size)]),
+        one_way,
+        _inverse(p, width),
+    )
+
+
+def _forward(p: dict[str, int]) -> Parts:
+    """hdl/dst_forward.sv: of the product with the phase only the real part is formed."""
+    phase = [Multiplier(p["Width"], p["CoeffWidth"])] * 2
+    return _joined(_fft(p, inverse=False), (phase, [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]))
+
+
+def _inverse(p: dict[str, int], in_width: int) -> Parts:
+    """hdl/dst_inverse.sv with its mode_pairs."""
+    size = p["Size"]
+    memories = [
+        Memory("delay lines", in_width, size // 2 + 1),
+        Memory("row buffers", in_width, size),
+        Memory("tables", 3 * p["CoeffWidth"], size),
+    ]
+    return _joined(([Multiplier(in_width, p["CoeffWidth"])] * 4, memories), _fft(p, inverse=True))
+
+
+def _fft(p: dict[str, int], inverse: bool) -> Parts:
+    """hdl/sdf_fft.sv: complex words of twice the width in its delays, {-Im, Im, Re} in its tables."""
+    multipliers, memories = [], []
+    for stage in stages(p["Size"], inverse):
+        if stage.delay > LONGEST_SHIFT:
+            memories.append(Memory("delay lines", 2 * p["Width"], stage.delay))
+        elif not stage.delay:
+            multipliers += [Multiplier(p["Width"], p["CoeffWidth"])] * 4
+            memories.append(Memory("tables", 3 * p["CoeffWidth"], stage.block))
+    return multipliers, memories
+
+
+def _joined(*parts: Parts) -> Parts:
+    return [m for part in parts for m in part[0]], [m for part in parts for m in part[1]]

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The cost of a configuration against the RTL, elaborated and counted by Yosys, and against the README's formulas."""
+
+import json
+from collections import Counter
+
+import pytest
+
+from commands import simulator as simulation
+from commands import yosys
+from models.calibration import synthetic
+from models.configuration import Configuration
+from models.cost import KINDS, Multiplier, cost
+from models.sdf_fft import twiddle_stages
+from models.tactile_depth import top_parameters, write_roms
+
+CASES = [
+    {"columns": 16, "bits_per_channel": 2},
+    {"columns": 32, "data_width": 30, "coefficient_width": 20, "neumann": True},
+    {"columns": 16, "rows": 24, "solver": "tridiagonal", "bits_per_channel": 2, "data_width": 20},
+    {"columns": 64, "rows": 24, "solver": "tridiagonal", "neumann": True, "coefficient_width": 14},
+]
+
+
+def elaborated(config, folder):
+    """Cells of the whole pipeline, by name."""
+    write_roms(folder, synthetic(config.bits_per_channel), config)
+    names = []
+    for path in simulation.sources():
+        (folder / path.name).write_text(path.read_text())
+        names.append(path.name)
+    parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
+    script = folder / "count.ys"
+    script.write_text(
+        f"read_slang --threads 1 --top tactile_depth {parameters} {' '.join(names)}\n"
+        "proc\nmemory_collect\nwrite_json cells.json\n"
+    )
+    assert yosys.run(script, timeout_s=300) == ""
+    (module,) = json.loads((folder / "cells.json").read_text())["modules"].values()
+    return module["cells"]
+
+
+def operand_width(bits):
+    """Without the copies of its sign by which an operand was widened to the product."""
+    while len(bits) > 1 and bits[-1] == bits[-2]:
+        bits = bits[:-1]
+    return len(bits)
+
+
+@pytest.mark.parametrize("choices", CASES, ids=str)
+def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path, choices):
+    config = Configuration(**choices)
+    multipliers, memories, others = Counter(), Counter(), set()
+    for name, cell in elaborated(config, tmp_path).items():
+        if cell["type"] == "$mul":
+            wires = cell["connections"]
+            multipliers[tuple(sorted((operand_width(wires["A"]), operand_width(wires["B"]))))] += 1
+        elif cell["type"].startswith("$mem"):
+            behind_wrapper = name.split(".")[-2].startswith("g_")  # ram.sv and rom.sv name their array in a generate
+            if behind_wrapper:
+                memories[int(cell["parameters"]["WIDTH"], 2), int(cell["parameters"]["SIZE"], 2)] += 1
+            else:
+                others.add(name)
+    counted = cost(config)
+    assert multipliers == Counter(tuple(sorted((m.a, m.b))) for m in counted.multipliers)
+    assert memories == Counter((memory.width, memory.words) for memory in counted.memories)
+    assert others <= {"u_tags.due_clock", "u_tags.tags"}, "registers of a few words, as frame_tags.sv has them"
+
+
+@pytest.mark.parametrize("size", [32, 64, 128, 256, 512])
+def test_formulas_of_the_readme(size):
+    stages = twiddle_stages(size)
+    for neumann in (False, True):
+        spectral = cost(Configuration(columns=size, neumann=neumann))
+        tridiagonal = cost(Configuration(columns=size, neumann=neumann, solver="tridiagonal"))
+        assert spectral.tiles == 16 * stages + 13
+        assert tridiagonal.tiles == 8 * stages + 8 + 2 * neumann
+        assert spectral.bits_of("frame stores") == 2 * 24 * size**2
+        assert tridiagonal.bits_of("frame stores") == 24 * size**2
+        for counted in (spectral, tridiagonal):
+            assert counted.memory_bits == sum(counted.bits_of(kind) for kind in KINDS)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "tiles"),
+    [
+        (27, 18, 1),
+        (18, 27, 1),
+        (28, 18, 2),
+        (27, 19, 2),
+        (28, 19, 2),
+        (35, 24, 2),
+        (35, 28, 4),
+        (53, 18, 2),
+        (54, 18, 3),
+    ],
+)
+def test_wide_products_take_several_multipliers(a, b, tiles):
+    assert Multiplier(a, b).tiles == tiles
