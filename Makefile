@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | coverage | upsets | frontends | fuzz | formal | regress | mutate | calibration | setup | clean, see README.md
-
-# make sim | test | lint | sweep | tune | coverage | upsets | frontends | fuzz | formal | regress | calibration | setup | clean,
-# see README.md
+# What each target does stands above it; the README shows when to use which.
 
 PYTHON ?= python3
 VENV := .venv
@@ -15,7 +12,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint sweep tune coverage upsets frontends fuzz formal regress calibration setup clean
+.PHONY: sim test lint sweep tune coverage upsets frontends fuzz formal regress mutate calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
