@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | upsets | calibration | setup | clean, see README.md
+# make sim | test | lint | upsets | certify | extremes | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +10,7 @@ TOOLS := $(VENV)/verification
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION \
   REPEAT SEED GAPS STALLS WAVES OUT
 
-.PHONY: sim test lint upsets calibration setup clean
+.PHONY: sim test lint upsets certify extremes calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -29,6 +29,14 @@ lint: $(TOOLS)
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
 	@UPSETS='$(UPSETS)' SEED='$(SEED)' $(PY) -m commands.upsets
+
+# The largest value that each node can be asked to hold, and the frames that ask for it, run in model and RTL; RTL=0: model.
+certify: $(STAMP)
+	@$(PY) -m commands.certify $(foreach v,$(SIM_VARIABLES) RTL,$(if $($(v)),'$(v)=$($(v))'))
+
+# What happens at the edges, one row each: error, saturations, whether the status bit told; SHORT=1 without the long runs.
+extremes: $(STAMP)
+	@$(PY) -m commands.extremes $(foreach v,N SIM SHORT OUT,$(if $($(v)),'$(v)=$($(v))'))
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)
