@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make certify`: the largest value that each node can be asked to hold, and the frames that ask for it, put to the test.
+"""`make certify`: the largest value that each node can be asked to hold, and the frames that ask for it, run.
 
-Takes the variables of `make sim`, and RTL=0 to leave the simulation out. Exit status: 0 when model and RTL saturate where
-the certificate says they can, and nowhere else; 1 when not, 2 on bad input.
+Takes the variables of `make sim`, and RTL=0 to leave the simulation out. Exit status: 0 when model and RTL saturate
+where the certificate says they can, and nowhere else; 1 when not, 2 on bad input.
 """
 
 from __future__ import annotations

@@ -226,7 +226,7 @@ class _Survey:
         ) * self.slope
         return norm
 
-    # Inverse row transform: `sources` gives, for some rows of the depth, the response (modes, rows) of that row's modes.
+    # Inverse row transform: `sources` gives, for some rows of depth, the response (modes, rows) of that row's modes.
 
     def row_inverse(self, sources: dict[int, np.ndarray]) -> None:
         size = self.config.columns
