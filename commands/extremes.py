@@ -456,11 +456,13 @@ def table(rows: list[Row]) -> str:
     head = f"{'extreme':<34}{'solver':<12}{'grid':>10}{'bits':>5}{'frames':>7}{'RMS %':>10}{'max %':>10}"
     lines = [head + f"{'RMS codes':>12}{'max codes':>12}  {'told':<5}{'wrapped':>8}  saturated"]
     for row in rows:
-        percent = "".join(f"{'-' if v is None else format(v, '.5f'):>10}" for v in (row.rms_percent, row.max_percent))
+        shares = (row.rms_percent, row.max_percent)
+        percent = "".join(f"{'-' if share is None else format(share, '.5f'):>10}" for share in shares)
         clipped = ", ".join(f"{node} {count:,}" for node, count in row.saturations.items()) or "-"
         lines.append(
             f"{row.extreme:<34}{row.solver:<12}{row.grid:>10}{row.data_width:>5}{row.frames:>7,}{percent}"
-            f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.told else 'no':<5}{row.wrapped:>8}  {clipped}"
+            f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.told else 'no':<5}{row.wrapped:>8}"
+            f"  {clipped}"
         )
     return "\n".join(lines)
 
