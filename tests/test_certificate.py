@@ -129,6 +129,55 @@ def test_depths_at_their_bounds_saturate_no_node(solver, depth_range_px):
     assert np.abs(codes).max() * config.depth_lsb_px == pytest.approx(depth_range_px, rel=0.01)
 
 
+def slopes_of_field(z):
+    """Slopes (..., 2) whose divergence is the Laplacian of z, zero half a pixel outside: a slope at the edge is carried
+    along the whole row, since the divergence takes the slope outside as 0.
+    """
+    along = [np.diff(z, axis=axis, append=-np.take(z, [-1], axis)) - 2 * np.take(z, [0], axis) for axis in (-1, -2)]
+    return np.stack(along, axis=-1)
+
+
+@pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
+def test_depths_at_their_bounds_through_rtl(tmp_path, solver):
+    """A calibration with a colour for every pixel of every pattern lets a camera show them."""
+    size, bits = 16, 4
+    patterns_held = 2 ** (3 * bits) // size**2
+    config = Configuration(columns=size, solver=solver, gradient_limit=32.0)
+    words, depth = whole_map(config)
+    from_depth = np.linalg.inv(depth)
+    meant, patterns = [], []
+    for name in [name for name in words if not name.startswith(("row_forward", "column_forward"))]:
+        response = from_depth @ words[name]
+        pattern = np.sign(response[:, np.abs(response).sum(axis=0).argmax()]).reshape(size, size)
+        pattern = pattern[::-1] if solver == "tridiagonal" else pattern
+        if np.abs(response).max() and not any((pattern == other).all() for other in patterns):
+            meant.append(name)
+            patterns.append(pattern)
+    patterns = np.stack(patterns[:patterns_held])
+    gradient = np.zeros((patterns_held * size**2, 2))
+    slopes = slopes_of_field(config.depth_range_px * patterns)
+    gradient[: patterns.size] = slopes.reshape(-1, 2)
+    np.savez(tmp_path / "c.npz", gradient=gradient.reshape((1 << bits,) * 3 + (2,)), pixel_pitch_mm=0.1)
+    index = np.arange(patterns.size).reshape(patterns.shape)
+    colours = np.stack([index >> 2 * bits, index >> bits & 15, index & 15], axis=-1) << (8 - bits)
+    np.save(tmp_path / "patterns.npy", colours.astype(np.uint8))
+    given = [f"FRAMES={tmp_path / 'patterns.npy'}", f"CALIBRATION={tmp_path / 'c.npz'}", f"OUT={tmp_path / 'out'}"]
+    assert sim.run(sim.parse([f"N={size}", f"SOLVER={solver}", "SIM=icarus", *given])) == 0
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert report["saturations"] == {}
+    assert report["registers"]["saturations"] == 0
+    reached = np.load(tmp_path / "out" / "depth.npy") * config.depth_lsb_px
+    np.testing.assert_allclose(reached, config.depth_range_px * patterns, rtol=1e-3)
+
+    peaks = command.Peaks({name: node_format(name, config).width for name in words}, len(patterns))
+    command.tactile_depth(colours.astype(np.uint8), command.load(str(tmp_path / "c.npz")), config, peaks)
+    nodes = {node.name: node for node in certify(config)}
+    for frame, name in enumerate(meant[:patterns_held]):
+        bound = np.abs(from_depth @ words[name]).sum(axis=0).max() * config.depth_range_px / config.depth_lsb_px
+        assert peaks.peaks[name][frame] == pytest.approx(bound, rel=1e-3), name
+        assert bound * nodes[name].form.lsb < nodes[name].form.limit
+
+
 @pytest.mark.parametrize("depth_range_px", [1.0, 2.0])
 def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_px):
     """Steep and shallow at once: what comes into the elimination is then larger than any mode of the depth."""
