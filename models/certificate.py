@@ -279,7 +279,10 @@ class _Survey:
 
 
 def places(rows: int) -> list[int]:
-    """Rows of which one holds the deepest point that slopes can make: the middle (Dirichlet), an end (Neumann)."""
+    """Rows of which one holds the deepest point that slopes can make: the middle (Dirichlet), an end (Neumann).
+
+    Found by looking everywhere on small grids, where a test holds it.
+    """
     return sorted({0, rows // 2 - 1, rows // 2, rows - 1})
 
 
@@ -303,9 +306,8 @@ class _Spectral(_Survey):
             self.at(name).see(slopes.ravel(), depths.ravel() * self.depth_in, pick)
 
         inverse = Responses()
-        to_column = spectral_solver.column_inverse(
-            np.eye(size), config, inverse
-        )  # (mode's position, row in Makhoul order)
+        # (mode's position, row in Makhoul order)
+        to_column = spectral_solver.column_inverse(np.eye(size), config, inverse)
         from_column = np.linalg.inv(to_column)
         # From a column of stored words back to each node, then from the depth to that column.
         lengths = {name: l1(from_column @ words) for name, words in inverse.nodes.items()}

@@ -290,7 +290,7 @@ class Configuration:
         depth = self._bounds.depth_modes / DEPTH_HEADROOM
         return {
             "forward_elimination.difference": difference,
-            "forward_elimination": 2 * depth,
+            "forward_elimination.state": 2 * depth,
             "back_substitution": depth,
         }
 
@@ -303,10 +303,9 @@ class Configuration:
             "row_inverse.output": (deep, self.depth),
         }
         if self.solver == "tridiagonal":
-            store = {"forward_elimination.store": self.elimination_store}
-            return found | {
-                node: (bound, store.get(node, self.elimination)) for node, bound in self._elimination_bounds.items()
-            }
+            running = {node: (bound, self.elimination) for node, bound in self._elimination_bounds.items()}
+            stored = (self._elimination_bounds["forward_elimination.state"], self.elimination_store)
+            return found | running | {"forward_elimination.store": stored}
         return found | {
             "row_forward.phase.re": (self._bounds.row_modes * steep, self.row_modes),
             "column_forward": (self._bounds.column_forward * steep, self.column_forward),

@@ -130,8 +130,9 @@ def test_depths_at_their_bounds_saturate_no_node(solver, depth_range_px):
 
 
 def slopes_of_field(z):
-    """Slopes (..., 2) whose divergence is the Laplacian of z, zero half a pixel outside: a slope at the edge is carried
-    along the whole row, since the divergence takes the slope outside as 0.
+    """Slopes (..., 2) whose divergence is the Laplacian of z, zero half a pixel outside.
+
+    The divergence takes the slope outside as 0, so one at the edge is carried along the whole row.
     """
     along = [np.diff(z, axis=axis, append=-np.take(z, [-1], axis)) - 2 * np.take(z, [0], axis) for axis in (-1, -2)]
     return np.stack(along, axis=-1)
