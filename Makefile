@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | upsets | certify | extremes | calibration | setup | clean, see README.md
+# make sim | test | lint | upsets | certify | extremes | frontends | fuzz | formal | regress | calibration | setup | clean,
+# see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +11,7 @@ TOOLS := $(VENV)/verification
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION \
   REPEAT SEED GAPS STALLS WAVES OUT
 
-.PHONY: sim test lint upsets certify extremes calibration setup clean
+.PHONY: sim test lint upsets certify extremes frontends fuzz formal regress calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -19,11 +20,16 @@ sim: $(STAMP)
 
 # The whole suite: lint, models, every core on every simulator.
 test: lint
-	@sh commands/icarus.sh
 	@$(PY) -m pytest -n auto --dist worksteal
 
-# Verilator -Wall on every module, ruff, mypy.
+# What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
+regress: $(TOOLS)
+	@sh commands/icarus.sh
+	@PARTS='$(PARTS)' JOBS='$(JOBS)' $(PY) -m commands.regress
+
+# Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
 lint: $(TOOLS)
+	@sh commands/icarus.sh
 	@$(PY) -m commands.lint
 
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
@@ -37,6 +43,18 @@ certify: $(STAMP)
 # What happens at the edges, one row each: error, saturations, whether the status bit told; SHORT=1 without the long runs.
 extremes: $(STAMP)
 	@$(PY) -m commands.extremes $(foreach v,N SIM SHORT OUT,$(if $($(v)),'$(v)=$($(v))'))
+
+# Two Verilog front ends read every core as the same circuit: a few minutes.
+frontends: $(TOOLS)
+	@$(PY) -m commands.frontends
+
+# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER=all
+fuzz: $(TOOLS)
+	@$(PY) -m commands.fuzz $(foreach v,MINUTES SEED READER,$(if $($(v)),'$(v)=$($(v))'))
+
+# Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
+formal: $(TOOLS)
+	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

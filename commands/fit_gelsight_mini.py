@@ -15,6 +15,7 @@ about that.
 from __future__ import annotations
 
 import csv
+import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -107,10 +108,27 @@ def data_folder() -> Path:
 
 
 def read_presses(folder: Path) -> list[Press]:
-    """All presses in camera pixels, by name."""
-    with (folder / "presses.csv").open(newline="") as table:
-        columns = ("centre_x_px", "centre_y_px", "contact_radius_px", "ball_radius_px")
-        presses = [Press(row["frame"], *(float(row[c]) for c in columns)) for row in csv.DictReader(table)]
+    """All presses in camera pixels, by name.
+
+    Raises
+    ------
+    InputError
+        The table is not one.
+    """
+    path = folder / "presses.csv"
+    columns = ("centre_x_px", "centre_y_px", "contact_radius_px", "ball_radius_px")
+    presses = []
+    try:
+        with path.open(newline="", encoding="utf-8") as table:
+            for row in csv.DictReader(table):
+                press = Press(str(row["frame"]), *(float(row[column]) for column in columns))
+                if not all(map(math.isfinite, (press.x, press.y))):
+                    raise ValueError(f"{press.name} is nowhere")
+                if not 0 < press.contact_radius < press.ball_radius < math.inf:
+                    raise ValueError(f"the contact of {press.name} does not lie on its ball")
+                presses.append(press)
+    except (OSError, ValueError, TypeError, KeyError, csv.Error) as error:
+        raise InputError(f"{path}: not a table of frame, {', '.join(columns)} ({error!r})") from error
     return sorted(presses, key=lambda press: press.name)
 
 

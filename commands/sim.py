@@ -6,8 +6,6 @@ Takes the variables of the README's table as KEY=VALUE arguments. Exit status: 0
 
 from __future__ import annotations
 
-import fcntl
-import hashlib
 import json
 import math
 import os
@@ -21,6 +19,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from commands import bench
 from commands import simulator as simulation
 from commands.draw import draw_depth
 from models import latency, reference
@@ -32,10 +31,9 @@ from models.frames import Frames, load_frames
 from models.round_saturate import Monitor
 from models.scenes import NOISE, SENSOR_WIDTH_MM, Press
 from models.spectral_divide import reciprocal_rom
-from models.tactile_depth import tactile_depth, top_parameters, write_roms
+from models.tactile_depth import tactile_depth
 from models.thomas_table import thomas_table
 
-BENCH = "frame_bench"
 DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can leave
 SOLVERS = tuple(COLUMNS)
@@ -167,56 +165,17 @@ def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float)
     )
 
 
-def build(request: Request, config: Configuration) -> Path:
-    """The simulator for a configuration, built once for each state of the sources."""
-    bench = simulation.ROOT / "tb" / BENCH
-    sources = [*simulation.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
-    parameters = top_parameters(config)
-    key = hashlib.sha256(json.dumps([request.simulator, request.waves, parameters, simulation.versions()]).encode())
-    for source in sources:
-        key.update(source.read_bytes())
-    folder = simulation.ROOT / "build" / "simulators" / key.hexdigest()[:16]
-    complete = folder / "complete"
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with folder.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # another run may be building the same
-        if complete.exists():
-            return folder
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir()
-        print(f"building the {request.simulator} model (once for this configuration) ..", flush=True)
-        try:
-            simulation.build(
-                request.simulator,
-                BENCH,
-                sources,
-                parameters,
-                folder,
-                fast=not request.waves,
-                waves=request.waves,
-                log=folder / "build.log",
-            )
-        except (RuntimeError, SystemExit) as error:
-            raise RuntimeError(f"the build failed: see {folder / 'build.log'}") from error
-        complete.touch()
-    return folder
-
-
-def simulate(request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path) -> None:
-    """Run the bench in `folder`, which then holds depth.bin, events.txt and registers.json."""
-    write_roms(folder, calibration, config)
-    frames.pixels[..., [0, 2, 1]].tofile(folder / "frames.bin")
+def simulate(
+    request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path
+) -> bench.Played:
+    """Run the bench in `folder`, with a bar that shows how far it is."""
     total = len(frames.pixels) * request.repeat
-    wanted = {
-        "sequence_frames": len(frames.pixels),
-        "total_frames": total,
-        "pixels": config.rows * config.columns,
-        "gap": request.gaps,
-        "stall": request.stalls,
-        "seed": request.seed * 2 + 1,
-        "threshold": round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px),
-    }
-    built = build(request, config)
+    pixels = config.rows * config.columns
+    # Twice the clocks that gaps and stalls make likely: a pipeline that hangs ends with a failure.
+    clocks = int(2 * (total + 4) * pixels / (1 - request.gaps) / (1 - request.stalls))
+    profiles = [
+        bench.entry(side, bench.chance(no)) for side, no in (("sink", request.stalls), ("source", request.gaps))
+    ]
     finished = threading.Event()
 
     def watch() -> None:
@@ -224,43 +183,41 @@ def simulate(request: Request, config: Configuration, frames: Frames, calibratio
         with tqdm(total=total, unit="frame", desc="simulating", leave=False, disable=None) as bar:
             while not finished.wait(0.2):
                 if depth.exists():
-                    bar.update(min(depth.stat().st_size // (4 * config.rows * config.columns), total) - bar.n)
+                    bar.update(min(depth.stat().st_size // (4 * pixels), total) - bar.n)
 
+    bench.build(request.simulator, config, request.waves)
     watcher = threading.Thread(target=watch)
     watcher.start()
     try:
-        count, failed = simulation.run(
-            BENCH,
-            f"tb_{BENCH}",
-            built,
+        return bench.play(
+            request.simulator,
+            config,
+            calibration,
+            np.concatenate([np.array(profiles, np.uint32), bench.frame_entries(frames.pixels)]),
             folder,
-            simulator=request.simulator,
+            clocks=clocks,
+            passes=request.repeat,
+            total_frames=total,
+            registers={"THRESHOLD": round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)},
             seed=request.seed,
-            environment={"FRAME_BENCH": json.dumps(wanted)},
             waves=request.waves,
-            log=folder / "simulation.log",
         )
-    except RuntimeError:  # it ended without results
-        count, failed = 0, 0
     finally:
         finished.set()
         watcher.join()
-    if failed or not count:
-        log = shutil.copy(folder / "simulation.log", built / "simulation.log")
-        raise RuntimeError(f"the simulation failed: see {log}")
 
 
-def measure(events: Path) -> dict[str, list[int | None]]:
+def measure(played: bench.Played) -> dict[str, list[int | None]]:
     """Latencies of each frame, in clocks, from the events of the bench."""
-    clocks: dict[str, list[int]] = {letter: [] for letter in "plde"}
+    taken, depth, end = (played.clocks(letter) for letter in "tde")
+    first, last = taken[::2], taken[1::2]
     contact: dict[int, int] = {}
-    for line in events.read_text().splitlines():
-        letter, clock = line.split()
-        if letter == "c":
-            contact[len(clocks["d"]) - 1] = int(clock)
-        else:
-            clocks[letter].append(int(clock))
-    first, last, depth, end = (clocks[letter] for letter in "plde")
+    frame = -1
+    for letter, numbers in played.events:
+        if letter == "d":
+            frame += 1
+        elif letter == "c":
+            contact[frame] = numbers[0]
     frames = range(len(end))
     return {
         "first_depth_latency_cycles": [depth[i] - first[i] for i in frames],
@@ -371,11 +328,11 @@ def run(request: Request) -> int:
     except OSError as error:
         raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
     try:
-        simulate(request, config, frames, calibration, work)
+        played = simulate(request, config, frames, calibration, work)
         monitor = Monitor()
         codes = tactile_depth(frames.pixels, calibration, config, monitor)
         reference_px = reference.depth(frames.pixels, calibration, config.neumann)
-        seen = np.fromfile(work / "depth.bin", dtype="<i4").reshape(request.repeat, *codes.shape)
+        seen = played.codes.reshape(request.repeat, *codes.shape)
         depth = seen.reshape(-1, *codes.shape[1:])
         bit_exact = bool((seen == codes).all())
         if config.solver == "tridiagonal":  # it puts the bottom row out first; results are in input order
@@ -398,13 +355,13 @@ def run(request: Request) -> int:
             "calibration": calibration.name,
             "source": frames.name,
             "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
-            **measure(work / "events.txt"),
+            **measure(played),
             **{key: values * request.repeat for key, values in per_frame.items()},
             "bit_exact": bit_exact,
             "saturations": {node: count * request.repeat for node, count in sorted(monitor.saturations.items())},
         }
-        report["registers"] = json.loads((work / "registers.json").read_text())
-        differences = check_registers(report["registers"], report, request.stalls)
+        report["registers"] = played.registers
+        differences = check_registers(played.registers, report, request.stalls)
         report["registers_agree"] = not differences
 
         result = work / "result"
@@ -420,7 +377,10 @@ def run(request: Request) -> int:
             f"{request.solver}, {request.boundary}, {shape}, {config.data_width}-bit words, {calibration.name}",
         )
         if request.waves:
-            for dump in (*work.glob("*.vcd"), *build(request, config).glob("*.fst")):  # Verilator's, Icarus'
+            for dump in (
+                *work.glob("*.vcd"),
+                *bench.build(request.simulator, config, True).glob("*.fst"),
+            ):  # Verilator's, Icarus'
                 shutil.move(dump, result / dump.name)
         out.mkdir(exist_ok=True)
         for file in result.iterdir():

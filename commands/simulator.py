@@ -11,6 +11,7 @@ import shutil
 import sys
 import tempfile
 import time
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -92,8 +93,8 @@ def build(
         ]  # waivers first
         level = "-O2" if fast else "-O0"  # a core's testbench compiles longer than it runs
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
-        if fast:
-            arguments += ["-O3", "--x-assign", "fast", "--x-initial", "fast"]
+        # Registers and memories come up at random, from the seed that `run` gives.
+        arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
@@ -148,8 +149,12 @@ def run(
     environment: Mapping[str, str] | None = None,
     waves: bool = False,
     log: Path | None = None,
+    power_up: int | None = None,
 ) -> tuple[int, int]:
     """Run what `build` left in `folder`, inside `run_folder`, where $readmemh finds its files.
+
+    `power_up` is the seed of what Verilator's registers and memories hold before the first reset, by default one
+    made of the seed and the folder, so that a suite has as many as it has runs. Icarus begins with X.
 
     Returns
     -------
@@ -159,6 +164,8 @@ def run(
     for path in (str(ROOT), str(ROOT / "tb")):  # the runner hands sys.path to the simulator
         if path not in sys.path:
             sys.path.insert(0, path)
+    if power_up is None:
+        power_up = zlib.crc32(f"{seed} {run_folder.name}".encode())
     results = run_folder / "results.xml"
     results.unlink(missing_ok=True)
     with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
@@ -170,6 +177,8 @@ def run(
             test_dir=run_folder,
             results_xml=str(results),
             seed=seed,
+            test_args=[f"+verilator+seed+{power_up % 2**31 or 1}", "+verilator+rand+reset+2"]
+            * (simulator == "verilator"),
             extra_env=dict(environment or {}),
             waves=waves,
             log_file=log,

@@ -34,4 +34,8 @@ module burst_counter #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (Size < 2) $fatal(1, "%m: Size must be at least 2");
+`endif
+
 endmodule

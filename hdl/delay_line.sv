@@ -53,4 +53,8 @@ module delay_line #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (Delay < 1) $fatal(1, "%m: Delay must be at least 1");
+`endif
+
 endmodule

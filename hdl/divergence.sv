@@ -76,4 +76,8 @@ module divergence #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (Columns < 2) $fatal(1, "%m: Columns must be at least 2");
+`endif
+
 endmodule

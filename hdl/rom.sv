@@ -28,4 +28,8 @@ module rom #(
     always_ff @(posedge clk) if (en) data <= words[address];
   end
 
+`ifndef SYNTHESIS
+  initial if (Depth < 2) $fatal(1, "%m: Depth must be at least 2");
+`endif
+
 endmodule

@@ -48,11 +48,11 @@ module sdf_butterfly #(
     logic turn;
     assign turn = &position[QuarterBit+:2];
     if (Inverse != 0) begin : g_plus_j
-      assign b_re = turn ? -(Width + 1)'(in_im) : (Width + 1)'(in_re);
+      assign b_re = turn ? -$signed({in_im[Width-1], in_im}) : (Width + 1)'(in_re);
       assign b_im = turn ? (Width + 1)'(in_re) : (Width + 1)'(in_im);
     end else begin : g_minus_j
       assign b_re = turn ? (Width + 1)'(in_im) : (Width + 1)'(in_re);
-      assign b_im = turn ? -(Width + 1)'(in_re) : (Width + 1)'(in_im);
+      assign b_im = turn ? -$signed({in_re[Width-1], in_re}) : (Width + 1)'(in_im);
     end
   end else begin : g_straight
     assign b_re = (Width + 1)'(in_re);
@@ -103,7 +103,13 @@ module sdf_butterfly #(
   end
 
 `ifndef SYNTHESIS
-  initial if (Delay < 1 || 2 * Delay > Size) $fatal(1, "%m: Delay must be 1 to Size / 2");
+  initial begin
+    if (Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two");
+    if (Delay < 1 || 2 * Delay > Size || Delay != (1 << $clog2(Delay)))
+      $fatal(1, "%m: Delay must be a power of two, 1 to Size / 2");
+    if (RotateBlock != 0 && (RotateBlock < 4 || RotateBlock > Size || RotateBlock != (1 << $clog2(RotateBlock))))
+      $fatal(1, "%m: RotateBlock must be 0 or a power of two, 4 to Size");
+  end
 `endif
 
 endmodule

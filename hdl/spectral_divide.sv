@@ -103,4 +103,8 @@ module spectral_divide #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
+`endif
+
 endmodule

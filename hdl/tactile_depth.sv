@@ -238,4 +238,11 @@ module tactile_depth
     .threshold, .timeout, .hold_contact, .table_write, .table_index, .table_gx, .table_gy
   );
 
+`ifndef SYNTHESIS
+  initial begin
+    if (Tridiagonal == 0 && Rows != Size) $fatal(1, "%m: the spectral solver takes square grids: Rows must be Size");
+    if (DataWidth > 32) $fatal(1, "%m: DataWidth must be at most 32");
+  end
+`endif
+
 endmodule

@@ -111,4 +111,12 @@ module twiddle_multiply #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial begin
+    if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
+    if (Block < 2 || Block > Size || Block != (1 << $clog2(Block)))
+      $fatal(1, "%m: Block must be a power of two, 2 to Size");
+  end
+`endif
+
 endmodule

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import io
 import math
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,12 +13,15 @@ import numpy as np
 
 from models.configuration import GRADIENT_LIMITS
 from models.errors import InputError
+from models.npy import is_file, read_header
 from models.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
 FOLDER = Path(__file__).resolve().parent.parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
 BITS_PER_CHANNEL = (1, 6)
 SYNTHETIC_PIXEL_PITCH_MM = scene_pixel_pitch_mm(128)  # of a synthetic camera of 128 columns
+LARGEST_MEMBER = 2 * (1 << BITS_PER_CHANNEL[1]) ** 3 * np.dtype(np.longdouble).itemsize + 1024  # bytes, with a header
+PIXEL_PITCHES_MM = (1e-6, 1e3)
 ROUNDING = 2.0**-8  # share by which rounding to a table's format may enlarge the largest slope
 LARGEST_SLOPE = 0.99  # in the synthetic table, so that its gradient limit is 1
 
@@ -77,12 +82,15 @@ def synthetic(bits_per_channel: int = 4) -> Calibration:
 
 
 def _read(name: str, path: Path) -> Calibration:
-    if not path.is_file():
+    if not is_file(path):
         problem = f"{path}: no such file" if path.suffix == ".npz" else f"unknown calibration {name}"
         raise InputError(f"{problem}: accepted are {', '.join(BUILT_IN)}, or the path of an .npz file")
+    arrays = {}
     try:
-        with np.load(path, allow_pickle=False) as data:
-            arrays = {key: np.asarray(data[key]) for key in ("gradient", "pixel_pitch_mm") if key in data}
+        with zipfile.ZipFile(path) as archive:
+            for key in ("gradient", "pixel_pitch_mm"):
+                if f"{key}.npy" in archive.namelist():
+                    arrays[key] = _member(archive, f"{key}.npy")
     except Exception as error:  # numpy, zipfile and zlib raise a dozen kinds over a damaged file
         reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(f"{path}: not a readable .npz ({reason}): write it with numpy.savez_compressed") from error
@@ -90,6 +98,21 @@ def _read(name: str, path: Path) -> Calibration:
         if key not in arrays:
             raise InputError(f"{path}: no `{key}` in it: a calibration holds `gradient` and `pixel_pitch_mm`")
     return Calibration(name, _gradient(path, arrays["gradient"]), _pitch(path, arrays["pixel_pitch_mm"]))
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> np.ndarray:
+    """An array of an archive, of which no more is unpacked than the largest table takes."""
+    member = archive.getinfo(name)
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ValueError(f"{name} is packed in a way that numpy does not write")
+    if member.file_size > LARGEST_MEMBER:
+        raise ValueError(f"{name} has {member.file_size:,} bytes, and the largest table {LARGEST_MEMBER:,}")
+    content = io.BytesIO(archive.read(member))  # never longer than file_size
+    shape, _, dtype = read_header(content)
+    if any(length < 0 for length in shape) or math.prod(shape) * dtype.itemsize > LARGEST_MEMBER:
+        raise ValueError(f"{name} is {dtype} {shape}")
+    content.seek(0)
+    return np.lib.format.read_array(content, allow_pickle=False)
 
 
 def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
@@ -114,6 +137,7 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
 def _pitch(path: Path, pitch: np.ndarray) -> float:
     if pitch.shape != () or pitch.dtype.kind not in "iuf":
         raise InputError(f"{path}: `pixel_pitch_mm` is {pitch.dtype} {pitch.shape}: accepted is one number, in mm")
-    if not 0 < float(pitch) < math.inf:
-        raise InputError(f"{path}: `pixel_pitch_mm` is {float(pitch):g}: accepted is a number above 0, in mm")
+    low, high = PIXEL_PITCHES_MM
+    if not low <= float(pitch) <= high:
+        raise InputError(f"{path}: `pixel_pitch_mm` is {float(pitch):g}: accepted are {low:g} to {high:g}, in mm")
     return float(pitch)

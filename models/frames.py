@@ -3,18 +3,24 @@
 
 from __future__ import annotations
 
+import math
 import re
+import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from skimage import io
+from PIL import Image
 
 from models.calibration import SYNTHETIC_PIXEL_PITCH_MM
 from models.errors import InputError
+from models.npy import is_file, read_header
 from models.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
 
+LARGEST_CAMERA = 4096  # rows, and columns, of a frame: what a file claims must not decide how much memory is taken
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
 ACCEPTED = f"a scene ({', '.join(SCENES)}), a .npy of uint8 (frames, rows, cols, 3), a PNG, a folder of PNGs"
 
 
@@ -91,7 +97,7 @@ def flat_field(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 
 def read_picture(path: Path) -> np.ndarray:
-    """Read an 8-bit RGB picture; transparency is dropped.
+    """Read an 8-bit colour PNG; transparency is dropped.
 
     Returns
     -------
@@ -100,17 +106,39 @@ def read_picture(path: Path) -> np.ndarray:
     Raises
     ------
     InputError
-        Missing, truncated, or not an 8-bit colour picture.
+        Missing, truncated, too large, or not an 8-bit colour PNG.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{path}: no such file: give an 8-bit RGB PNG")
     try:
-        image = io.imread(path)
-    except Exception as error:  # the readers behind it raise a dozen kinds over a damaged file
+        with path.open("rb") as file:
+            head = file.read(26)
+            if head[:8] != PNG_SIGNATURE or head[12:16] != b"IHDR" or len(head) < 26:
+                raise ValueError("it does not begin as a PNG does")
+            width, height, bits, colour = struct.unpack(">IIBB", head[16:])
+            # Asked of the header: the reader takes 16 bits for 8, and memory before it looks at what is there.
+            if (bits, colour) not in ((8, 2), (8, 6)) and not (bits <= 8 and colour == 3):
+                raise InputError(
+                    f"{path}: a PNG of {bits} bits, {PNG_COLOURS.get(colour, f'colour type {colour}')}, {height} x "
+                    f"{width}: save it as 8-bit RGB"
+                )
+            _check_camera(str(path), height, width)
+            file.seek(0)
+            with Image.open(file, formats=["PNG"]) as picture:
+                if getattr(picture, "is_animated", False):
+                    raise InputError(f"{path}: an animation: save each of its frames as a PNG, in one folder")
+                return np.array(picture.convert("RGB"))
+    except InputError:
+        raise
+    except Exception as error:  # the reader raises a dozen kinds over a damaged file
         raise InputError(f"{path}: not a readable picture ({_line(error)}): give an intact PNG") from error
-    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] not in (3, 4):
-        raise InputError(f"{path}: a picture of {image.dtype} {image.shape}: save it as 8-bit RGB, (rows, cols, 3)")
-    return image[:, :, :3]
+
+
+def _check_camera(name: str, height: int, width: int) -> None:
+    if max(height, width) > LARGEST_CAMERA:
+        raise InputError(
+            f"{name}: frames of {height} x {width}: accepted are up to {LARGEST_CAMERA} x {LARGEST_CAMERA}"
+        )
 
 
 def load_frames(
@@ -139,17 +167,22 @@ def load_frames(
     if press != AS_EVER:
         raise InputError(f"PRESS, AT and NOISE with FRAMES={source}: they go with scenes, leave them out")
     path = Path(source)
-    if path.is_dir():
-        files = sorted((p for p in path.iterdir() if p.suffix.lower() == ".png"), key=_natural)
+    try:
+        folder = path.is_dir()
+        listed = list(path.iterdir()) if folder else []
+    except OSError as error:
+        raise InputError(f"{source}: {error.strerror}: accepted is {ACCEPTED}") from error
+    if folder:
+        files = sorted((p for p in listed if p.suffix.lower() == ".png"), key=_natural)
         if not files:
             raise InputError(f"{source}: a folder without any PNG: accepted is {ACCEPTED}")
         labels = tuple(p.name for p in files)
         images: Iterable[np.ndarray] = map(read_picture, files)
-    elif path.is_file() and path.suffix.lower() == ".npy":
+    elif is_file(path) and path.suffix.lower() == ".npy":
         array = _read_array(path)
         labels = tuple(str(i) for i in range(len(array)))
         images = array
-    elif path.is_file():
+    elif is_file(path):
         labels, images = (path.name,), [read_picture(path)]
     else:
         raise InputError(f"{source}: neither a scene nor a file or folder: accepted is {ACCEPTED}")
@@ -202,18 +235,25 @@ def _to_grid(
 def _read_array(path: Path) -> np.ndarray:
     try:
         with path.open("rb") as file:
-            array = np.lib.format.read_array(file, allow_pickle=False)
+            shape, _, dtype = read_header(file)
+            if dtype != np.uint8 or len(shape) != 4 or shape[3] != 3 or min(shape) < 1:
+                raise InputError(f"{path}: {dtype} {shape}: accepted is uint8 (frames, rows, cols, 3)")
+            _check_camera(str(path), shape[1], shape[2])
+            present = path.stat().st_size - file.tell()
+            if math.prod(shape) > present:  # before memory is taken for it
+                raise ValueError(f"{present:,} bytes of data for {shape}")
+            file.seek(0)
+            return np.lib.format.read_array(file, allow_pickle=False)
+    except InputError:
+        raise
     except Exception as error:  # a damaged header can make numpy raise anything
         raise InputError(f"{path}: not a readable .npy ({_line(error)}): write it with numpy.save") from error
-    if array.dtype != np.uint8 or array.ndim != 4 or array.shape[3] != 3 or 0 in array.shape:
-        raise InputError(f"{path}: {array.dtype} {array.shape}: accepted is uint8 (frames, rows, cols, 3)")
-    return array
 
 
 def _natural(path: Path) -> list[tuple[int, str]]:
     """Sorting key in which numbers count as numbers: 2.png before 12.png."""
     parts = re.split(r"(\d+)", path.name)
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in parts]
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts]
 
 
 def _line(error: BaseException) -> str:

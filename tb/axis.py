@@ -173,33 +173,72 @@ def video(pixels: Iterable[int], columns: int) -> list[Word]:
     ]
 
 
-def positions(fault: str, rows: int, columns: int) -> list[int]:
+# Each way to break a frame, and some that break nothing, with the faults it is flagged as when whole frames come
+# before and after it. `inner` says whether the position is anywhere but at the beginning of a row.
+BREAKS = {
+    "whole": lambda inner: (),
+    "waited": lambda inner: (),  # silent for as long as the time-out allows
+    "row_short": lambda inner: ("row_short",),  # the row ends at the position, the next follows
+    "end_extra": lambda inner: ("row_short",),  # tlast there, and the row goes on
+    "row_long": lambda inner: ("row_long",),  # one pixel too many
+    "end_missing": lambda inner: ("row_long",),  # no tlast, and the next row follows
+    "start_missing": lambda inner: ("start_missing",),
+    "stray": lambda inner: ("start_missing",),  # so many words without a start, and then the next frame
+    "start_late": lambda inner: ("start_missing", "row_short" if inner else "start_early"),  # so many pixels late
+    "start_early": lambda inner: ("start_early",),  # the frame ends there, the next one follows
+    "start_extra": lambda inner: ("start_early", "row_short" if inner else "start_early"),  # and the frame goes on
+    "timed_out": lambda inner: ("timed_out",),  # silent for longer, then it goes on
+    "broken_off": lambda inner: ("timed_out",),  # silent for longer, then the next frame follows
+}
+SILENT = ("waited", "timed_out", "broken_off")
+WITHOUT_START = ("start_missing", "stray", "start_late")
+
+
+def positions(kind: str, rows: int, columns: int) -> list[int]:
     """Pixels of a frame at which it can be broken in this way."""
     pixels = range(rows * columns)
-    return {
-        "row_short": [p for p in pixels if p % columns < columns - 1],
-        "row_long": [p for p in pixels if p % columns == columns - 1],
-        "start_missing": [0],
-        "start_early": list(pixels[1:]),
-        "timed_out": list(pixels[1:]),
-    }[fault]
+    if kind in ("whole", "start_missing"):
+        return [0]
+    if kind in ("row_short", "end_extra"):
+        return [p for p in pixels if p % columns < columns - 1]
+    if kind in ("row_long", "end_missing"):
+        return [p for p in pixels if p % columns == columns - 1]
+    assert kind in BREAKS, kind
+    return list(pixels[1:])
 
 
-def broken(words: Sequence[Word], fault: str, position: int, columns: int, timeout: int = 0) -> list[Word | None]:
-    """A frame with one fault at a position, as a camera would go on from there.
+def faults_of(kind: str, position: int, columns: int) -> tuple[str, ...]:
+    """What a frame so broken is flagged as, between whole frames."""
+    return BREAKS[kind](position % columns > 0)
 
-    A row that ends early is followed by the next; one that is too long has one more pixel; a frame cut short
-    by an early start ends before the position; one given up after `timeout` clocks goes on after them.
-    """
+
+def broken(words: Sequence[Word], kind: str, position: int, columns: int, silent: int = 0) -> list[Word | None]:
+    """A frame with one break at a position, as a camera would go on from there, `silent` clocks silent if it is of
+    that kind."""
     before, word, after = list(words[:position]), words[position], list(words[position + 1 :])
-    if fault == "row_short":
-        missing = columns - 1 - position % columns
-        return [*before, word._replace(last=1), *after[missing:]]
-    if fault == "row_long":
-        return [*before, word._replace(last=0), word._replace(user=0), *after]
-    if fault == "start_missing":
-        return [word._replace(user=0), *after]
-    if fault == "start_early":
-        return before
-    assert fault == "timed_out", fault
-    return [*before, *[None] * (timeout + 1), word, *after]
+    without_start = [other._replace(user=0) for other in before]
+    match kind:
+        case "whole":
+            return list(words)
+        case "row_short":
+            return [*before, word._replace(last=1), *after[columns - 1 - position % columns :]]
+        case "end_extra":
+            return [*before, word._replace(last=1), *after]
+        case "row_long":
+            return [*before, word._replace(last=0), word._replace(user=0), *after]
+        case "end_missing":
+            return [*before, word._replace(last=0), *after]
+        case "start_missing":
+            return [word._replace(user=0), *after]
+        case "stray":
+            return without_start
+        case "start_late":
+            return [*without_start, word._replace(user=1), *after]
+        case "start_early":
+            return before
+        case "start_extra":
+            return [*before, word._replace(user=1), *after]
+        case "broken_off":
+            return [*before, *[None] * silent]
+    assert kind in ("waited", "timed_out"), kind
+    return [*before, *[None] * silent, word, *after]

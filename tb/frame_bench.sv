@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// frame_bench: streams whole frames through tactile_depth without a coroutine step a pixel.
+// frame_bench: plays a file through tactile_depth without a coroutine step a clock.
 //
-// frames.bin holds the frames of a sequence, three bytes a pixel (R, B, G, so that a word is tdata); depth.bin receives the
-// codes that leave, four bytes each; events.txt one line per event: its letter and the clock.
-//   p, l: first and last pixel of a frame taken       d, e: first and last depth of a frame on m_axis
-//   c: first clock in which `contact` is up for the frame whose first depth has left
+// entries.bin holds entries of 32 bits, highest byte first; its kind is in bits 31:28.
+//   0  a pixel: 27 note the clock in which it is taken, 25 tuser, 24 tlast, 23:0 tdata. Offered until it is taken
+//   1  23:0 clocks without a pixel
+//   2  the sink: ready for 23:12 clocks, then 11:0 not, and so on; if 23:12 is zero not with probability 11:0 / 4096
+//   3  the source: pixels are offered so
+//   4  23:0 clocks of reset, one clock to come out of it
+//   5  23:0 clocks from here on, whatever stands on the pins then is withdrawn and the file goes on at the entry whose
+//      number comes next, a reset
+// It is played `passes` times. depth.bin receives the codes that leave, four bytes each; events.txt one line per event:
+//   t clock        a pixel with a note was taken
+//   d, e clock     first and last depth of a frame on m_axis
+//   c clock        `contact` is up, the first time since the frame's first depth left
+//   f fault clock  the guard flags a fault, by the number of its name in models/frame_guard.py
+//   r clock codes  a reset begins; codes written so far
+// A side-band signal out of place, a word that changes before it is taken, an unknown one: the run ends with an error.
 // Registers are reached through the AXI4-Lite ports. Simulation only.
 
 module frame_bench
@@ -39,11 +50,9 @@ module frame_bench
   input  logic                    clk,
   input  logic                    rst,
   input  logic                    go,
-  input  logic [31:0]             sequence_frames,  // frames in frames.bin
-  input  logic [31:0]             total_frames,     // frames to send, the sequence over and over
-  input  logic [31:0]             gap,              // probability of an idle input in a clock, of 2^32
-  input  logic [31:0]             stall,            // probability of a refusing sink in a clock
-  input  logic [31:0]             seed,             // not 0
+  input  logic [31:0]             passes,        // how often the file is played
+  input  logic [31:0]             total_frames,  // done when so many have left, and not before the file has ended
+  input  logic [31:0]             seed,          // not 0
   output logic                    done,
   output logic [31:0]             frames_received,
 
@@ -73,7 +82,7 @@ module frame_bench
   logic s_axis_tvalid, s_axis_tready, s_axis_tlast, s_axis_tuser;
   logic signed [DepthWidth-1:0] m_axis_tdata;
   logic m_axis_tvalid, m_axis_tready, m_axis_tlast, m_axis_tuser;
-  logic contact;
+  logic contact, resetting;
 
   tactile_depth #(
     .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Size(Size),
@@ -85,7 +94,7 @@ module frame_bench
     .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
     .MeanDrop(MeanDrop), .FrameLatency(FrameLatency)
   ) dut (
-    .clk, .rst,
+    .clk, .rst(rst | resetting),
     .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
     .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact,
     .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
@@ -101,89 +110,174 @@ module frame_bench
     return y ^ (y << 5);
   endfunction
 
-  logic [23:0] frame[Pixels];
-  logic [31:0] frames_sent, sequence_index, pixel, column, depths, clock, random_gap, random_stall;
-  logic fresh, open;  // a depth that was not there before; the frame's first depth has left
-  integer frames_file, depth_file, events_file, bytes;
+  localparam logic [3:0] Pixel = 4'd0, Idle = 4'd1, Sink = 4'd2, Source = 4'd3, Reset = 4'd4, Arm = 4'd5;
 
-  // The pixel that may be presented next is `frame[pixel]`; a new frame is read when its first pixel is wanted.
-  task automatic read_frame;
+  logic [31:0] clock, random_gap, random_stall, passes_left, wait_left, reset_left, deadline, target;
+  logic [23:0] source, sink, source_place, sink_place;
+  logic note, ended, offers, withdraw, was_resetting;
+  logic [31:0] depths, codes;
+  logic fresh, open;  // a depth that was not there before; the frame's first depth has left
+  logic refused;
+  logic [4:0] flagged;
+  logic [DepthWidth+1:0] leaving, held;
+  integer entries_file, depth_file, events_file, bytes;
+
+  function automatic logic accepts(input logic [23:0] turns, input logic [23:0] place, input logic [31:0] chance);
+    return turns[23:12] == 12'd0 ? chance >= {turns[11:0], 20'd0} : place < 24'(turns[23:12]);
+  endfunction
+
+  function automatic logic [23:0] step(input logic [23:0] turns, input logic [23:0] place);
+    return place + 24'd1 >= 24'(turns[23:12]) + 24'(turns[11:0]) ? 24'd0 : place + 24'd1;
+  endfunction
+
+  // Reads on up to an entry that takes time, and puts it on the pins; with `jump` from the target on.
+  task automatic read_entry(input logic jump);
+    logic [31:0] word;
+    logic at_once;
     begin
-      if (sequence_index == 32'd0) bytes = $rewind(frames_file);
-      bytes = $fread(frame, frames_file);
-      sequence_index <= sequence_index + 32'd1 == sequence_frames ? 32'd0 : sequence_index + 32'd1;
+      if (jump) bytes = $fseek(entries_file, 4 * target, 0);
+      s_axis_tvalid <= 1'b0;
+      at_once = 1'b1;
+      while (at_once) begin
+        bytes = $fread(word, entries_file);
+        at_once = 1'b0;
+        if (bytes != 4) begin
+          if (passes_left == 32'd1) begin
+            ended <= 1'b1;
+          end else begin
+            passes_left <= passes_left - 32'd1;
+            bytes = $rewind(entries_file);
+            at_once = 1'b1;
+          end
+        end else begin
+          case (word[31:28])
+            Pixel: begin
+              s_axis_tvalid <= 1'b1;
+              {note, s_axis_tuser, s_axis_tlast, s_axis_tdata} <= {word[27], word[25:0]};
+            end
+            Idle: wait_left <= 32'(word[23:0]) - 32'd1;
+            Sink: begin
+              {sink, sink_place} <= {word[23:0], 24'd0};
+              at_once = 1'b1;
+            end
+            Source: begin
+              {source, source_place} <= {word[23:0], 24'd0};
+              at_once = 1'b1;
+            end
+            Reset: begin
+              resetting <= 1'b1;
+              reset_left <= 32'(word[23:0]);
+              deadline <= 32'd0;
+            end
+            Arm: begin
+              deadline <= 32'(word[23:0]);
+              bytes = $fread(word, entries_file);
+              target <= word;
+              at_once = 1'b1;
+            end
+            default: $fatal(1, "%m: no such entry: 0x%h", word);
+          endcase
+        end
+      end
     end
   endtask
 
   initial begin
-    frames_file = $fopen("frames.bin", "rb");
+    entries_file = $fopen("entries.bin", "rb");
     depth_file = $fopen("depth.bin", "wb");
     events_file = $fopen("events.txt", "w");
   end
 
-  assign s_axis_tdata = frame[pixel];
-  assign s_axis_tlast = column == 32'(Size - 1);
-  assign s_axis_tuser = pixel == 32'd0;
+  assign offers = accepts(source, source_place, random_gap);
+  assign withdraw = deadline == 32'd1;
+  assign flagged = {dut.timed_out, dut.start_early, dut.start_missing, dut.row_long, dut.row_short};
+  assign leaving = {m_axis_tuser, m_axis_tlast, m_axis_tdata};
 
   always @(posedge clk) begin
     clock <= clock + 32'd1;
     random_gap <= xorshift(random_gap);
     random_stall <= xorshift(random_stall);
-    m_axis_tready <= random_stall >= stall;
+    source_place <= step(source, source_place);
+    sink_place <= step(sink, sink_place);
+    m_axis_tready <= accepts(sink, sink_place, random_stall);
+    if (deadline != 32'd0) deadline <= deadline - 32'd1;
 
-    if (go && frames_sent != total_frames && (s_axis_tready || !s_axis_tvalid)) begin
-      if (s_axis_tvalid) begin
-        if (pixel == 32'd0) $fwrite(events_file, "p %0d\n", clock);
-        column <= s_axis_tlast ? 32'd0 : column + 32'd1;
-        pixel <= pixel + 32'd1;
-        if (pixel == 32'(Pixels - 1)) begin
-          $fwrite(events_file, "l %0d\n", clock);
-          pixel <= 32'd0;
-          frames_sent <= frames_sent + 32'd1;
-          if (frames_sent + 32'd1 != total_frames) read_frame;
+    // In.
+
+    if (s_axis_tvalid && s_axis_tready && note && !resetting) $fwrite(events_file, "t %0d\n", clock);
+    if (resetting) begin
+      if (!rst && !was_resetting) $fwrite(events_file, "r %0d %0d\n", clock, codes);
+      reset_left <= reset_left - 32'd1;
+      if (reset_left == 32'd1) resetting <= 1'b0;
+    end else if (withdraw) begin
+      wait_left <= 32'd0;
+      read_entry(1'b1);
+    end else if (go && !ended && (s_axis_tready || !s_axis_tvalid)) begin
+      if (wait_left != 32'd0) begin
+        wait_left <= wait_left - 32'd1;
+        s_axis_tvalid <= 1'b0;
+      end else if (offers) begin
+        read_entry(1'b0);
+      end else begin
+        s_axis_tvalid <= 1'b0;
+      end
+    end
+
+    // Out.
+
+    if (!rst && !resetting) begin
+      if (^{s_axis_tready, m_axis_tvalid, contact} === 1'bx) $fatal(1, "%m: an unknown handshake");
+      if (m_axis_tvalid && ^leaving === 1'bx) $fatal(1, "%m: an unknown word");
+      if (refused && (!m_axis_tvalid || leaving != held)) $fatal(1, "%m: a word changed before it was taken");
+      for (int i = 0; i < 5; i++) begin
+        if (flagged[i]) $fwrite(events_file, "f %0d %0d\n", i, clock);
+      end
+      if (m_axis_tvalid) begin
+        if (fresh && m_axis_tuser) $fwrite(events_file, "d %0d\n", clock);
+        if (fresh && depths == 32'(Pixels - 1)) $fwrite(events_file, "e %0d\n", clock);
+        if (m_axis_tready) begin
+          $fwrite(depth_file, "%u", 32'(m_axis_tdata));
+          codes <= codes + 32'd1;
+          depths <= depths == 32'(Pixels - 1) ? 32'd0 : depths + 32'd1;
+          if (depths == 32'(Pixels - 1)) frames_received <= frames_received + 32'd1;
+          if (m_axis_tlast != ((depths + 32'd1) % 32'(Size) == 32'd0) || m_axis_tuser != (depths == 32'd0))
+            $fatal(1, "%m: a side-band signal is out of place");
         end
-      end else if (frames_sent == 32'd0 && pixel == 32'd0 && sequence_index == 32'd0) begin
-        read_frame;
       end
-      s_axis_tvalid <= random_gap >= gap
-          && !(s_axis_tvalid && pixel == 32'(Pixels - 1) && frames_sent + 32'd1 == total_frames);
+      if (m_axis_tvalid && m_axis_tready && m_axis_tuser) open <= 1'b1;
+      else if (open && contact) open <= 1'b0;
+      if (open && contact) $fwrite(events_file, "c %0d\n", clock);
     end
-
-    if (m_axis_tvalid) begin
-      if (fresh && m_axis_tuser) $fwrite(events_file, "d %0d\n", clock);
-      if (fresh && depths == 32'(Pixels - 1)) $fwrite(events_file, "e %0d\n", clock);
-      if (m_axis_tready) begin
-        $fwrite(depth_file, "%u", 32'(m_axis_tdata));
-        depths <= depths == 32'(Pixels - 1) ? 32'd0 : depths + 32'd1;
-        if (depths == 32'(Pixels - 1)) frames_received <= frames_received + 32'd1;
-      end
-    end
-    if (m_axis_tvalid && m_axis_tready && m_axis_tuser) open <= 1'b1;
-    else if (open && contact) open <= 1'b0;
-    if (open && contact) $fwrite(events_file, "c %0d\n", clock);
     fresh <= m_axis_tready || !m_axis_tvalid;
+    refused <= m_axis_tvalid && !m_axis_tready;
+    held <= leaving;
+    was_resetting <= resetting;
 
-    if (go && frames_received == total_frames && !done) begin
+    if (go && ended && frames_received >= total_frames && !done) begin
       $fflush(depth_file);
       $fflush(events_file);
       done <= 1'b1;
     end
-    if (m_axis_tvalid && m_axis_tready && (m_axis_tlast != ((depths + 32'd1) % 32'(Size) == 32'd0)
-        || m_axis_tuser != (depths == 32'd0))) $fatal(1, "%m: a side-band signal is out of place");
 
+    if (rst || resetting) begin
+      depths <= '0;
+      fresh <= 1'b1;
+      open <= 1'b0;
+      refused <= 1'b0;
+    end
     if (rst) begin
       clock <= '0;
       random_gap <= seed;
       random_stall <= ~seed;
+      passes_left <= passes;
+      {source, sink, source_place, sink_place} <= {24'd0, 24'd0, 24'd0, 24'd0};
+      {wait_left, reset_left, deadline} <= {32'd0, 32'd0, 32'd0};
+      resetting <= 1'b0;
+      ended <= 1'b0;
+      note <= 1'b0;
       m_axis_tready <= 1'b0;
       s_axis_tvalid <= 1'b0;
-      frames_sent <= '0;
-      sequence_index <= '0;
-      pixel <= '0;
-      column <= '0;
-      depths <= '0;
-      fresh <= 1'b1;
-      open <= 1'b0;
+      codes <= '0;
       frames_received <= '0;
       done <= 1'b0;
     end

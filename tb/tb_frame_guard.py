@@ -9,7 +9,7 @@ import random
 from itertools import chain, repeat
 
 import cocotb
-from axis import AxisMonitor, AxisSource, broken, positions, profile, video
+from axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, video
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from stream import CLOCK_NS, parameters
@@ -132,18 +132,19 @@ STALLS = {
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(fault=FAULTS, stalls=list(STALLS))
-async def faults(dut, fault, stalls):
-    """A good frame, a broken one, a good one, for every position of the fault."""
+@cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
+async def faults(dut, kind, stalls):
+    """A good frame, a broken one, a good one, for every position of the break."""
     bench = Bench(dut, *STALLS[stalls])
-    timeout = TIMEOUT if fault == "timed_out" else 0
+    timeout = TIMEOUT if kind in SILENT else 0
     await bench.start(timeout)
-    for position in bench.places(fault):
-        wrong = broken(bench.frame(), fault, position, bench.columns, timeout)
+    for position in bench.places(kind):
+        wrong = broken(bench.frame(), kind, position, bench.columns, timeout + (kind != "waited"))
         await bench.source.send([*bench.frame(), *wrong, *bench.frame()])
-        want = await bench.check(f"{fault} at {position}")
+        want = await bench.check(f"{kind} at {position}")
         if stalls == "none":
-            assert want.faults == [fault], f"not the stream it was meant to be: {want.faults} at {position}"
+            faults = faults_of(kind, position, bench.columns)
+            assert want.faults == list(faults), f"not the stream it was meant to be: {want.faults} at {position}"
         bench.forget()
 
 

@@ -1,17 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds tb/tb_<core>.py on each simulator. SIM=icarus or SIM=verilator narrows the run to one."""
 
+import itertools
 import json
 import os
 import re
 import shutil
+import time
+import zlib
+from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
+from hypothesis import settings
+from records import record
 
 from commands import simulator as simulation
 
 SEED = int(os.environ.get("SEED", "1"))
+REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
+POWER_UPS = int(os.environ.get("POWER_UPS", "8"))  # random states to begin from
+QUICK_CLOCKS = 5000
+CLOCK_NS = 6  # of the testbenches
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
+
+settings.register_profile("no deadline", deadline=None)  # a busy machine is no failure of a model
+settings.load_profile("no deadline")
 
 
 def pytest_configure(config):
@@ -24,7 +38,8 @@ def pytest_configure(config):
 
 def pytest_generate_tests(metafunc):
     """Every test that takes a simulator runs on each, but for what its `structures` leave to Icarus."""
-    if "simulator" not in metafunc.fixturenames:
+    given = [mark.args[0] for mark in metafunc.definition.iter_markers("parametrize")]
+    if "simulator" not in metafunc.fixturenames or "simulator" in given:
         return
     mark = metafunc.definition.get_closest_marker("structures")
     if mark is None:
@@ -37,6 +52,18 @@ def pytest_generate_tests(metafunc):
     metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"], ids=ids)
 
 
+def begins_at_random(item):
+    """Whether a test goes on to run from several random power-up states; see `run_tb`."""
+    callspec = getattr(item, "callspec", None)
+    first = callspec is not None and all(index == 0 for index in callspec.indices.values())
+    return first and "run_tb" in item.fixturenames and callspec.params["simulator"] == "verilator"
+
+
+def pytest_collection_modifyitems(items):
+    if os.environ.get("ONLY") == "power_ups":
+        items[:] = [item for item in items if begins_at_random(item)]
+
+
 def _label(value):
     return "-".join(f"{key}={choice}" for key, choice in value.items()) if isinstance(value, dict) else str(value)
 
@@ -46,25 +73,40 @@ def simulator(request):
     return request.param
 
 
+def shortest(results, clocks):
+    """A filter for the tests that took the least simulated time, up to so many clocks in all; one of them at least."""
+    cases = []
+    for case in ElementTree.parse(results).getroot().iter("testcase"):
+        properties = {entry.get("name"): entry.get("value") for entry in case.iter("property")}
+        cases.append((float(properties["sim_time_duration"]) / CLOCK_NS, case.get("name")))
+    cases.sort()
+    total = itertools.accumulate(duration for duration, _ in cases)
+    chosen = [
+        name for index, (so_far, (_, name)) in enumerate(zip(total, cases, strict=True)) if so_far < clocks or not index
+    ]
+    return f"({'|'.join(map(re.escape, chosen))})$"
+
+
 @pytest.fixture
 def run_tb(simulator, request):
     """Build `toplevel` from `sources` (names in hdl/) and run its testbench.
 
-    `roms`, called with the folder, writes the files that $readmemh reads there.
+    `roms`, called with the folder, writes the files that $readmemh reads there. The first structure of a core with a
+    reset is also run from several random power-up states, on Verilator, with the shortest of its tests.
     """
 
     def run(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.ROOT / "build" / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
-        structure = json.dumps([toplevel, [path.name for path in simulation.sources(sources)], parameters])
+        flags = zlib.crc32(Path(simulation.__file__).read_bytes())
+        structure = json.dumps([toplevel, [path.name for path in simulation.sources(sources)], parameters, flags])
         if not stamp.is_file() or stamp.read_text() != structure:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
         stamp.write_text(structure)
         if roms:
             roms(folder)
-        log = folder / "run.log"
         simulation.build(
             simulator,
             toplevel,
@@ -73,18 +115,32 @@ def run_tb(simulator, request):
             folder,
             log=folder / "build.log",
         )
-        count, failed = simulation.run(
-            toplevel,
-            test_module or f"tb_{toplevel}",
-            folder,
-            folder,
-            simulator=simulator,
-            seed=SEED,
-            environment=environment,
-            log=log,
+
+        def play(log, environment, **arguments):
+            count, failed = simulation.run(
+                toplevel,
+                test_module or f"tb_{toplevel}",
+                folder,
+                folder,
+                simulator=simulator,
+                seed=SEED,
+                environment=environment,
+                log=log,
+                **arguments,
+            )
+            if failed or not count:
+                lines = [line for line in log.read_text().splitlines() if not line.startswith("make")]
+                pytest.fail(f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False)
+
+        began = time.monotonic()
+        play(folder / "run.log", environment)
+        if not begins_at_random(request.node) or "rst" not in (simulation.HDL / f"{toplevel}.sv").read_text():
+            return
+        quick = {**(environment or {}), "COCOTB_TEST_FILTER": shortest(folder / "results.xml", QUICK_CLOCKS)}
+        for power_up in range(1, POWER_UPS):  # the run above was the first
+            play(folder / "power_up.log", quick, power_up=SEED * 1000 + power_up)
+        record(
+            part="power-up states", what=toplevel, simulator=simulator, runs=POWER_UPS, seconds=time.monotonic() - began
         )
-        if failed or not count:
-            lines = [line for line in log.read_text().splitlines() if not line.startswith("make")]
-            pytest.fail(f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False)
 
     return run

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calibrations: the built-in ones, files, and what is said of bad files."""
 
+import io
+import zipfile
+
 import numpy as np
 import pytest
 
@@ -229,3 +232,81 @@ def test_the_calibration_command_reports_and_changes_nothing(presses_folder, tmp
     assert "mean" in report.splitlines()[-1]
     fitted, shipped = (np.load(folder / "gelsight-mini.npz")["gradient"] for folder in (tmp_path, FOLDER))
     np.testing.assert_array_equal(fitted, shipped)
+
+
+# Files that are made to harm.
+
+
+def npy(shape, dtype="<f8", data=b"") -> bytes:
+    store = io.BytesIO()
+    np.lib.format.write_array_header_1_0(store, {"descr": dtype, "fortran_order": False, "shape": shape})
+    return store.getvalue() + data
+
+
+def archive(path, method=zipfile.ZIP_DEFLATED, **members: bytes):
+    with zipfile.ZipFile(path, "w", method, compresslevel=1) as store:
+        for name, content in {"gradient": npy((2, 2, 2, 2), data=bytes(128)), **members}.items():
+            store.writestr(f"{name}.npy", content)
+    return path
+
+
+@pytest.mark.parametrize("member", ["gradient", "pixel_pitch_mm"])
+def test_an_archive_that_unpacks_to_much_is_refused_before(tmp_path, member):
+    count = 1 << 21  # 16 MB
+    path = archive(tmp_path / "c.npz", **{member: npy((count,), data=bytes(8 * count))})
+    assert path.stat().st_size < 1 << 20
+    assert f"{member}.npy has 16,777,344 bytes" in refused(path)
+
+
+@pytest.mark.parametrize("shape", [(1 << 40,), (-1, 2, 2, 2), (1 << 62, 4, 4, 2), (64, 64, 64, 64)])
+def test_a_member_that_claims_too_much_is_refused(tmp_path, shape):
+    assert "gradient.npy is float64" in refused(archive(tmp_path / "c.npz", gradient=npy(shape)))
+
+
+def test_pickled_objects_are_refused(tmp_path):
+    path = tmp_path / "c.npz"
+    np.savez(path, gradient=np.array([print], dtype=object), pixel_pitch_mm=0.1)
+    assert "Object arrays cannot be loaded" in refused(path)
+
+
+def test_a_packing_that_numpy_does_not_write_is_refused(tmp_path):
+    assert "packed in a way" in refused(
+        archive(tmp_path / "c.npz", zipfile.ZIP_LZMA, pixel_pitch_mm=npy((), data=bytes(8)))
+    )
+
+
+def test_an_npy_in_place_of_an_npz_is_named(tmp_path):
+    path = tmp_path / "c.npz"
+    path.write_bytes(npy((2, 2, 2, 2), data=bytes(128)))
+    assert "not a readable .npz" in refused(path)
+
+
+@pytest.mark.parametrize("pitch", [1e-300, 1e300])
+def test_a_pitch_of_no_camera_is_named(tmp_path, pitch):
+    assert "accepted are 1e-06 to 1000" in refused(saved(tmp_path, pixel_pitch_mm=pitch))
+
+
+def test_a_path_too_long_for_the_system_is_named():
+    assert "too long" in refused("x" * 5000)
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        b"",
+        b"frame,centre_x_px\n1.png,3\n",
+        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,5\n",
+        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,5,x\n",
+        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,nan,4,5,6\n",
+        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,6,5\n",
+        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,5,inf\n",
+        b"\xff\xfe",
+    ],
+)
+def test_a_table_of_presses_that_is_none_is_named(tmp_path, table):
+    (tmp_path / "presses.csv").write_bytes(table)
+    if not table:
+        assert read_presses(tmp_path) == []
+        return
+    with pytest.raises(InputError, match=r"presses.csv: not a table of frame"):
+        read_presses(tmp_path)

@@ -2,9 +2,9 @@
 """frame_guard: RTL against the model, the model against the table of its header."""
 
 import pytest
-from axis import broken, positions, video
+from axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
 
-from models.frame_guard import FAULTS, Word, frame_guard
+from models.frame_guard import Word, frame_guard
 
 TIMEOUT = 5
 ROWS, COLUMNS = 4, 8  # of the model's frames
@@ -19,21 +19,22 @@ def frame(start):
     return video(range(start, start + ROWS * COLUMNS), COLUMNS)
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_model_flags_a_broken_frame_once_and_the_next_is_right(fault):
+@pytest.mark.parametrize("kind", BREAKS)
+def test_model_flags_a_broken_frame_once_and_the_next_is_right(kind):
     first, next_one = (frame(start) for start in (100, 300))
-    for position in positions(fault, ROWS, COLUMNS):
-        wrong = broken(frame(200), fault, position, COLUMNS, TIMEOUT)
+    for position in positions(kind, ROWS, COLUMNS):
+        wrong = broken(frame(200), kind, position, COLUMNS, TIMEOUT + (kind != "waited"))
         out = frame_guard([*first, *wrong, *next_one], ROWS, COLUMNS, TIMEOUT)
-        assert out.faults == [fault], position
+        assert out.faults == list(faults_of(kind, position, COLUMNS)), position
+        sent = [first, frame(200), next_one] if kind in ("whole", "waited") else [first, next_one]
         good = [list(f.pixels) for f in out.frames if not f.bad]
-        assert good == [[word.data for word in words] for words in (first, next_one)], position
+        assert good == [[word.data for word in words] for words in sent], position
         bad = [f for f in out.frames if f.bad]
-        assert len(bad) == (fault != "start_missing"), position
-        for f in bad:  # right up to the fault, then the last pixel over and over
-            kept = position + (fault in ("row_short", "row_long"))
+        assert len(bad) == len([fault for fault in out.faults if fault != "start_missing"]), position
+        if bad and kind not in WITHOUT_START:  # right up to the fault, then the last pixel over and over
+            kept = position + (kind in ("row_short", "end_extra", "row_long", "end_missing"))
             pixels = list(range(200, 200 + kept))
-            assert f.pixels == (*pixels, *[pixels[-1]] * (ROWS * COLUMNS - kept)), position
+            assert bad[0].pixels == (*pixels, *[pixels[-1]] * (ROWS * COLUMNS - kept)), position
         assert not out.open
 
 

@@ -14,6 +14,10 @@ FORMATS = "configuration|back_to_back|contact.*=none|every_fault|saturation|gaps
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=4"
 
 
+SECOND = (
+    "configuration|one_frame|gaps_and_stalls/offers=random|waits_for_long|contact|malformed|in_a_row|silence|"
+    "registers_written"
+)
 TRIDIAGONAL = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
@@ -36,4 +40,17 @@ def test_rtl(run_tb, choices, tests):
         top_parameters(config),
         roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         environment={"COCOTB_TEST_FILTER": tests, "CONFIGURATION": json.dumps(choices)},
+    )
+
+
+@pytest.mark.parametrize("choices", [TRIDIAGONAL | {"bits_per_channel": 2}], ids=["tridiagonal-8x16"])
+def test_a_second_client(run_tb, choices):
+    """The same tests through cocotbext-axi, but for those that break a stream off in mid row."""
+    config = Configuration(**choices)
+    run_tb(
+        "tactile_depth",
+        None,
+        top_parameters(config),
+        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+        environment={"COCOTB_TEST_FILTER": SECOND, "CONFIGURATION": json.dumps(choices), "CLIENT": "second"},
     )

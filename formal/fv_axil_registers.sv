@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
+//
+// Nothing is assumed of the master, the pipeline or reset. The registers of the specification change by what was seen on the
+// ports alone.
+
+module fv_axil_registers
+  import register_map_pkg::*;
+#(
+  parameter int Rows             = 8,
+  parameter int Columns          = 16,
+  parameter int DataWidth        = 24,
+  parameter int GradientWidth    = 21,
+  parameter int GradientFraction = 20,
+  parameter int BitsPerChannel   = 4,
+  localparam int IndexWidth = 3 * BitsPerChannel
+) (
+  input logic                    clk,
+  input logic                    rst,
+  input logic [AddressWidth-1:0] s_axil_awaddr,
+  input logic                    s_axil_awvalid,
+  input logic [31:0]             s_axil_wdata,
+  input logic [3:0]              s_axil_wstrb,
+  input logic                    s_axil_wvalid,
+  input logic                    s_axil_bready,
+  input logic [AddressWidth-1:0] s_axil_araddr,
+  input logic                    s_axil_arvalid,
+  input logic                    s_axil_rready,
+  input logic                    event_row_short,
+  input logic                    event_row_long,
+  input logic                    event_start_missing,
+  input logic                    event_start_early,
+  input logic                    event_timeout,
+  input logic                    event_out_of_step,
+  input logic                    event_frame_in,
+  input logic                    event_frame_out,
+  input logic                    event_frame_dropped,
+  input logic [7:0]              saturations,
+  input logic [31:0]             first_depth_latency,
+  input logic                    first_depth_latency_valid,
+  input logic                    busy,
+  input logic                    contact
+);
+
+  localparam logic [1:0] Okay = 2'b00;
+  localparam logic [1:0] SlaveError = 2'b10;
+
+  logic s_axil_awready, s_axil_wready, s_axil_bvalid, s_axil_arready, s_axil_rvalid;
+  logic [1:0] s_axil_bresp, s_axil_rresp;
+  logic [31:0] s_axil_rdata, timeout;
+  logic signed [31:0] threshold;
+  logic hold_contact, table_write;
+  logic [IndexWidth-1:0] table_index;
+  logic signed [GradientWidth-1:0] table_gx, table_gy;
+  axil_registers #(
+    .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
+    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel)
+  ) dut (.*);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  // What the bus carried.
+  logic aw, w, b, ar, r;
+  assign aw = s_axil_awvalid & s_axil_awready;
+  assign w = s_axil_wvalid & s_axil_wready;
+  assign b = s_axil_bvalid & s_axil_bready;
+  assign ar = s_axil_arvalid & s_axil_arready;
+  assign r = s_axil_rvalid & s_axil_rready;
+  logic has_address, has_data, answered, asked;  // of the write, of the read in flight
+  logic [AddressWidth-1:0] address;
+  logic [31:0] data;
+  logic [3:0] strobes;
+
+  // Effect of a write, in the clock before its answer.
+  logic effective, refused;
+  int offset;
+  logic [31:0] mask;
+  assign effective = has_address & has_data & ~answered;
+  assign offset = 32'(address) / 4 * 4;
+  always_comb begin
+    for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
+    refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset || offset == TimeoutOffset
+        || offset == TableIndexOffset || offset == TableGxOffset
+        || (offset == TableGyOffset && !busy && strobes == 4'b1111));
+  end
+  logic writes_control, writes_status, writes_threshold, writes_timeout, writes_index, writes_gx, writes_gy;
+  assign writes_control = effective & (offset == ControlOffset);
+  assign writes_status = effective & (offset == StatusOffset);
+  assign writes_threshold = effective & (offset == ThresholdOffset);
+  assign writes_timeout = effective & (offset == TimeoutOffset);
+  assign writes_index = effective & (offset == TableIndexOffset);
+  assign writes_gx = effective & (offset == TableGxOffset);
+  assign writes_gy = effective & (offset == TableGyOffset) & ~refused;
+
+  function automatic logic [31:0] written(input logic [31:0] word);
+    return (data & mask) | (word & ~mask);
+  endfunction
+  function automatic logic [31:0] counted(input logic [31:0] count, input int more);
+    logic [33:0] sum;
+    sum = 34'(count) + 34'(more);
+    return sum > 34'hffffffff ? 32'hffffffff : 32'(sum);
+  endfunction
+
+  logic hold;
+  logic [31:0] limit, silence, index, gx, frames_in, frames_out, frames_dropped, clipped, latency;
+  logic clears;
+  assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
+  logic [31:0] sticky, happened;
+  always_comb begin
+    happened = '0;
+    happened[StatusRowShortBit] = event_row_short;
+    happened[StatusRowLongBit] = event_row_long;
+    happened[StatusStartMissingBit] = event_start_missing;
+    happened[StatusStartEarlyBit] = event_start_early;
+    happened[StatusTimeoutBit] = event_timeout;
+    happened[StatusOutOfStepBit] = event_out_of_step;
+    happened[StatusSaturationBit] = saturations != 0;
+  end
+
+  // What a read of this clock shall return.
+  logic [31:0] word, word_q, now;
+  logic known, known_q;
+  int read_offset;
+  assign read_offset = 32'(s_axil_araddr) / 4 * 4;
+  always_comb begin
+    now = sticky;
+    now[StatusBusyBit] = busy;
+    now[StatusContactBit] = contact;
+    known = 1'b1;
+    word = '0;
+    if (read_offset == IdOffset) word = IdReset;
+    else if (read_offset == GridOffset) word = 32'(Columns * 65536 + Rows);
+    else if (read_offset == FormatOffset) begin
+      word = 32'(((BitsPerChannel * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
+    end
+    else if (read_offset == ControlOffset) word[ControlHoldContactBit] = hold;
+    else if (read_offset == StatusOffset) word = now;
+    else if (read_offset == ThresholdOffset) word = limit;
+    else if (read_offset == TimeoutOffset) word = silence;
+    else if (read_offset == FramesInOffset) word = frames_in;
+    else if (read_offset == FramesOutOffset) word = frames_out;
+    else if (read_offset == FramesDroppedOffset) word = frames_dropped;
+    else if (read_offset == SaturationsOffset) word = clipped;
+    else if (read_offset == FirstDepthLatencyOffset) word = latency;
+    else if (read_offset == TableIndexOffset) word = index;
+    else if (read_offset == TableGxOffset) word = gx;
+    else known = 1'b0;
+  end
+
+  logic b_stalled, r_stalled, refused_q, write_due, read_due;
+  logic [1:0] bresp_q, rresp_q;
+  logic [31:0] rdata_q;
+  logic [31:0] index_written, gx_written;
+  assign index_written = written(index);
+  assign gx_written = written(gx);
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (aw) address <= s_axil_awaddr;
+    if (w) {data, strobes} <= {s_axil_wdata, s_axil_wstrb};
+    has_address <= aw | (has_address & ~b);
+    has_data <= w | (has_data & ~b);
+    answered <= effective | (answered & ~b);
+    asked <= ar | (asked & ~r);
+    write_due <= effective;
+    refused_q <= refused;
+    read_due <= ar;
+    word_q <= word;
+    known_q <= known;
+    b_stalled <= s_axil_bvalid & ~s_axil_bready;
+    r_stalled <= s_axil_rvalid & ~s_axil_rready;
+    bresp_q <= s_axil_bresp;
+    rresp_q <= s_axil_rresp;
+    rdata_q <= s_axil_rdata;
+
+    if (writes_control && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
+    if (writes_threshold) limit <= written(limit);
+    if (writes_timeout) silence <= written(silence);
+    if (writes_index) index <= 32'(index_written[IndexWidth-1:0]);
+    if (writes_gy) index <= 32'(IndexWidth'(index + 32'd1));
+    if (writes_gx) gx <= 32'($signed(gx_written[GradientWidth-1:0]));
+    sticky <= (sticky & ~(writes_status ? data & mask : '0)) | happened;
+    frames_in <= counted(clears ? '0 : frames_in, 32'(event_frame_in));
+    frames_out <= counted(clears ? '0 : frames_out, 32'(event_frame_out));
+    frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(event_frame_dropped));
+    clipped <= counted(clears ? '0 : clipped, 32'(saturations));
+    if (first_depth_latency_valid) latency <= first_depth_latency;
+
+    if (rst) begin
+      {has_address, has_data, answered, asked, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
+      limit <= 32'h7fffffff;
+      {silence, index, gx, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      // The bus.
+      one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
+      one_read_in_flight: assert (s_axil_arready == !asked);
+      answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == asked);  // once each, never without request
+      if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
+      if (b_stalled) write_response_stable: assert (s_axil_bvalid && s_axil_bresp == bresp_q);
+      if (read_due) read_response: assert (s_axil_rvalid && s_axil_rdata == word_q && s_axil_rresp == (known_q ? Okay : SlaveError));
+      if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
+      // What leaves for the pipeline.
+      outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
+      table_written: assert (table_write == writes_gy);
+      never_while_busy: assert (!(table_write && busy));
+      if (table_write) table_word: assert (32'(table_index) == index && 32'(table_gx) == gx && table_gy == data[GradientWidth-1:0]);
+
+      read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
+      set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && event_row_long && sticky[StatusRowLongBit]);
+      refused_while_busy: cover (effective && offset == TableGyOffset && strobes == 4'b1111 && refused);
+      second_bin: cover (table_write && table_index == IndexWidth'(1));
+      data_first: cover (has_data && !has_address && aw);
+      cleared: cover (clears && frames_in != 0 && event_frame_in);
+    end
+  end
+
+endmodule

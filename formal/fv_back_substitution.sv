@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 6 enabled clocks behind
+// d[i], with the coefficient of its own row and column; start and frame_start with their burst. No word of the frame
+// before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
+// Rounding is proven of round_saturate.
+
+module fv_back_substitution #(
+  parameter int Rows  = 3,
+  parameter int Size  = 8,
+  parameter int Words = 16,
+  localparam int PositionWidth = $clog2(Size),
+  localparam int RowWidth = $clog2(Rows + 1)
+) (
+  input logic                     clk,
+  input logic                     rst,
+  input logic                     en,
+  input logic                     go,
+  input logic                     restart,
+  input logic signed [1:0]        in_data,
+  input logic [PositionWidth-1:0] chosen
+);
+
+  localparam int Latency = 6;
+  localparam int InWidth = 2;
+  localparam int Width = 3;
+  localparam int CoeffWidth = 3;
+  localparam int Lift = 1;
+  localparam int SettledWidth = 2;
+  localparam int LastShiftWidth = 1;
+  localparam int ExactWidth = (InWidth + Lift + CoeffWidth - 1 > Width + CoeffWidth ? InWidth + Lift + CoeffWidth - 1 : Width + CoeffWidth) + 1;
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic in_start, in_frame_start, active, last_burst;
+  logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
+  logic [RowWidth-1:0] burst;
+  burst_source #(.Size(Size), .Rows(Rows)) u_source (
+    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row(burst),
+    .last_row(last_burst)
+  );
+
+  logic out_start, out_frame_start, saturations;
+  logic signed [Width-1:0] out_data;
+  back_substitution #(
+    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .InWidth(InWidth), .Lift(Lift),
+    .TableWords(Words), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
+  ) dut (
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
+  );
+
+  // The last row comes first; there the coefficient meets zero, so its shift does not matter.
+  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
+  initial $readmemh("square.hex", square);
+
+  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier takes
+  // it. Bursts are longer than the way, so the next word of the column finds the last one done.
+  logic [Latency-1:0] start_q, frame_start_q, old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
+  logic signed [InWidth-1:0] d;
+  logic signed [CoeffWidth-1:0] c;
+  logic [LastShiftWidth-1:0] unused_shift;
+  logic signed [Width-1:0] below, below_q, z;  // below: z of the row below
+  logic signed [Width+CoeffWidth-1:0] product;
+  logic signed [ExactWidth-1:0] exact;
+  logic unused_clipped, of_last_row, of_first_row;
+  round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
+    .in(exact), .out(z), .clipped(unused_clipped)
+  );
+
+  logic held;
+  logic [Width+1:0] out_q;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_start, out_frame_start, out_data};
+    if (!started) column <= chosen;
+    if (en) begin
+      start_q <= Latency'({start_q, in_start});
+      frame_start_q <= Latency'({frame_start_q, in_frame_start});
+      old <= Latency'({old, active & (position == column)});
+      if (active && position == column) begin
+        d <= in_data;
+        {unused_shift, c} <= square[(Rows - 1 - 32'(burst)) * Size + 32'(column)];
+        of_last_row <= burst == '0;
+        of_first_row <= last_burst;
+      end
+      if (old[0]) below_q <= of_last_row ? '0 : below;
+      if (old[2]) product <= below_q * c;
+      if (old[3]) exact <= (ExactWidth'(d) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
+      if (old[4]) below <= z;
+    end
+    if (rst) begin
+      start_q <= '0;
+      frame_start_q <= '0;
+      old <= '0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      start_when_due: assert (out_start == start_q[Latency-1]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
+      if (old[Latency-1]) substituted: assert (out_data == below);
+      if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
+      last_out: cover (old[Latency-1] && of_first_row && below != '0 && held);
+    end
+  end
+
+  bind fv_back_substitution.dut.u_row_below ram_check #(.Depth(Depth), .Defined(0)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule

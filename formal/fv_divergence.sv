@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_divergence: f = gx - gx of the pixel to the left + gy - gy of the pixel above, nothing beyond the edge, for every pixel of
+// an arbitrary column; valid and frame_start with it, 2 enabled clocks later. Any gaps, any en, frames one behind another.
+//
+// In the first row the line is read before it has been written; that what is read there changes nothing is shown by f
+// itself, with a memory of any contents.
+
+module fv_divergence #(
+  parameter int Width   = 2,
+  parameter int Rows    = 3,
+  parameter int Columns = 4,
+  parameter int Neumann = 0,
+  localparam int ColumnWidth = $clog2(Columns),
+  localparam int RowWidth = $clog2(Rows)
+) (
+  input logic                    clk,
+  input logic                    rst,
+  input logic                    en,
+  input logic                    in_valid,
+  input logic signed [Width-1:0] in_gx,
+  input logic signed [Width-1:0] in_gy,
+  input logic [ColumnWidth-1:0]  chosen
+);
+
+  localparam int OutWidth = Width + 2;
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic [ColumnWidth-1:0] column, watched;  // watched: chosen in the first clock, then constant
+  logic [RowWidth-1:0] row;
+  logic first_row, first_column, last_row, last_column;
+  assign first_row = row == '0;
+  assign first_column = column == '0;
+  assign last_row = row == RowWidth'(Rows - 1);
+  assign last_column = column == ColumnWidth'(Columns - 1);
+
+  logic out_valid, out_frame_start;
+  logic signed [OutWidth-1:0] out_data;
+  divergence #(.Width(Width), .Columns(Columns), .Neumann(Neumann)) dut (
+    .clk, .rst, .en, .in_valid, .in_first_row(first_row), .in_first_column(first_column), .in_last_row(last_row),
+    .in_last_column(last_column), .in_gx, .in_gy, .out_valid, .out_frame_start, .out_data
+  );
+
+  int gx, gy, left, above;
+  assign gx = Neumann != 0 && last_column ? 0 : 32'(in_gx);
+  assign gy = Neumann != 0 && last_row ? 0 : 32'(in_gy);
+  logic signed [Width-1:0] gx_before, gy_before;
+  assign left = first_column ? 0 : 32'(gx_before);
+  assign above = first_row ? 0 : 32'(gy_before);
+  logic signed [OutWidth-1:0] f, f_q, f_q2;
+  assign f = OutWidth'(gx - left + gy - above);
+
+  logic [1:0] valid, frame_start, of_column;
+  logic held;
+  logic [OutWidth+1:0] out_q;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_valid, out_frame_start, out_data};
+    if (!started) watched <= chosen;
+    if (en) begin
+      if (in_valid) begin
+        column <= last_column ? '0 : column + ColumnWidth'(1);
+        if (last_column) row <= last_row ? '0 : row + RowWidth'(1);
+        gx_before <= Width'(gx);
+        if (column == watched) gy_before <= Width'(gy);
+      end
+      valid <= {valid[0], in_valid};
+      frame_start <= {frame_start[0], in_valid & first_row & first_column};
+      of_column <= {of_column[0], in_valid & (column == watched)};
+      f_q <= f;
+      f_q2 <= f_q;
+    end
+    if (rst) begin
+      column <= '0;
+      row <= '0;
+      valid <= '0;
+      frame_start <= '0;
+      of_column <= '0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      valid_when_due: assert (out_valid == valid[1]);
+      frame_start_when_due: assert (out_frame_start == frame_start[1]);
+      if (of_column[1]) difference: assert (out_data == f_q2);
+      if (held) holds: assert ({out_valid, out_frame_start, out_data} == out_q);
+      largest: cover (of_column[1] && f_q2 == (Neumann != 0 ? OutWidth'(4) : OutWidth'(6)) && last_row);
+      first_of_second_frame: cover (of_column[1] && out_frame_start && held && first_row && watched == '0);
+    end
+  end
+
+  bind fv_divergence.dut.u_line ram_check #(.Depth(Depth), .Defined(0)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule

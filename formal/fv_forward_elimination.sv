@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_forward_elimination: d[i] = c[i] (f[i] - d[i-1]) for every row of an arbitrary column, of any frame, 7 enabled clocks
+// behind f[i], with the coefficient of its own row and column; start and frame_start with their burst. Neumann: the last
+// row of column 0 is minus the mean. No word of the frame before, and none from power-up, enters: the specification has
+// none, and the memories begin with any contents. Rounding is proven of round_saturate.
+
+module fv_forward_elimination #(
+  parameter int Rows    = 3,
+  parameter int Size    = 8,
+  parameter int Neumann = 0,
+  parameter int Words   = 16,
+  localparam int PositionWidth = $clog2(Size),
+  localparam int RowWidth = $clog2(Rows + 1)
+) (
+  input logic                     clk,
+  input logic                     rst,
+  input logic                     en,
+  input logic                     go,
+  input logic                     restart,
+  input logic signed [2:0]        in_data,
+  input logic [PositionWidth-1:0] chosen
+);
+
+  localparam int Latency = 7;
+  localparam int Width = 3;
+  localparam int CoeffWidth = 3;
+  localparam int OutWidth = 2;
+  localparam int StoreDrop = 1;
+  localparam int SettledWidth = 2;
+  localparam int LastShiftWidth = 1;
+  localparam int MomentDrop = 1;
+  localparam int MeanReciprocal = 2;
+  localparam int MeanDrop = 1;
+  localparam int MeanLatency = 10;  // from f to the mean that it is in
+  localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic in_start, in_frame_start, active, last_row;
+  logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
+  logic [RowWidth-1:0] row;
+  burst_source #(.Size(Size), .Rows(Rows)) u_source (
+    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
+  );
+
+  logic out_start, out_frame_start;
+  logic signed [OutWidth-1:0] out_data;
+  logic [2:0] saturations;
+  forward_elimination #(
+    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .StoreDrop(StoreDrop), .OutWidth(OutWidth),
+    .Neumann(Neumann), .TableWords(Words), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth),
+    .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
+  ) dut (
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
+  );
+
+  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
+  initial $readmemh("square.hex", square);
+
+  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier takes
+  // it. Bursts are longer than the way, so the next word of the column finds the last one done.
+  logic [Latency-1:0] start_q, frame_start_q;
+  logic [MeanLatency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
+  logic signed [Width-1:0] f, above, difference, difference_q, rounded, d;  // above: d of the row above
+  logic signed [CoeffWidth-1:0] c;
+  logic [LastShiftWidth-1:0] by;
+  logic [RowWidth-1:0] row_q;
+  logic singular;  // the mean replaces this d
+  logic signed [Width+CoeffWidth-1:0] product;
+  logic signed [Width+CoeffWidth:0] shifted;
+  logic signed [OutWidth-1:0] stored, expected;
+  logic [2:0] unused_clipped;
+  round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
+    .in((Width + 1)'(f) - (row_q == '0 ? '0 : (Width + 1)'(above))), .out(difference), .clipped(unused_clipped[0])
+  );
+  round_saturate #(.InWidth(Width + CoeffWidth + 1), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_rounded (
+    .in(shifted), .out(rounded), .clipped(unused_clipped[1])
+  );
+  round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
+    .in(above), .out(stored), .clipped(unused_clipped[2])
+  );
+
+  logic signed [MomentWidth-1:0] addend, moment;
+  logic signed [Width-1:0] sum, sum_q, mean, mean_q;
+  logic signed [Width+CoeffWidth-1:0] scaled;
+  logic [1:0] unused_mean;
+  round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
+    .in(moment), .out(sum), .clipped(unused_mean[0])
+  );
+  round_saturate #(.InWidth(Width + CoeffWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
+    .in(scaled), .out(mean), .clipped(unused_mean[1])
+  );
+  assign d = singular ? mean_q : rounded;
+
+  logic held;
+  logic [OutWidth+1:0] out_q;
+  logic [RowWidth-1:0] row_of_addend;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_start, out_frame_start, out_data};
+    if (!started) column <= chosen;
+    if (en) begin
+      start_q <= Latency'({start_q, in_start});
+      frame_start_q <= Latency'({frame_start_q, in_frame_start});
+      old <= MeanLatency'({old, active & (position == column)});
+      if (active && position == column) begin
+        f <= in_data;
+        {by, c} <= square[32'(row) * Size + 32'(column)];
+        row_q <= row;
+        singular <= Neumann != 0 && column == '0 && last_row;
+      end
+      if (old[0]) difference_q <= difference;
+      if (old[2]) product <= difference_q * c;
+      if (old[3]) shifted <= (Width + CoeffWidth + 1)'(product) <<< by;
+      if (old[4]) above <= d;
+      if (old[5]) begin
+        expected <= stored;
+        addend <= MomentWidth'(32'(above) * (32'(row_q) + 1));
+        row_of_addend <= row_q;
+      end
+      if (old[6]) moment <= (row_of_addend == '0 ? '0 : moment) + addend;
+      if (old[7]) sum_q <= sum;
+      if (old[8]) scaled <= (Width + CoeffWidth)'(-MeanReciprocal * 32'(sum_q));
+      if (old[9]) mean_q <= mean;
+    end
+    if (rst) begin
+      start_q <= '0;
+      frame_start_q <= '0;
+      old <= '0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      start_when_due: assert (out_start == start_q[Latency-1]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
+      if (old[Latency-1]) eliminated: assert (out_data == expected);
+      if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
+      last_row_out: cover (old[Latency-1] && row_q == RowWidth'(Rows - 1) && expected != '0 && expected != '1);
+      if (Neumann != 0) mean_out: cover (old[Latency-1] && singular && expected != '0);
+    end
+  end
+
+  bind fv_forward_elimination.dut.u_state_row ram_check #(.Depth(Depth), .Defined(0)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule

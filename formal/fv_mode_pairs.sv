@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_mode_pairs: an arbitrary word leaves Size / 2 + 1 enabled clocks later as out_mode, and once as out_mirrored, beside the
+// mode whose number adds up to Size with its own; mode 0 has 0 beside it. start and frame_start with the first of a burst.
+
+module fv_mode_pairs #(
+  parameter int Width = 1,
+  parameter int Size  = 8,
+  localparam int PositionWidth = $clog2(Size)
+) (
+  input logic             clk,
+  input logic             rst,
+  input logic             en,
+  input logic             go,
+  input logic             restart,
+  input logic signed [Width-1:0] in_mode,
+  input logic             pick
+);
+
+  localparam int Latency = Size / 2 + 1;
+  localparam int AgeWidth = PositionWidth + 2;
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic in_start, in_frame_start, active, last_row;
+  logic [PositionWidth-1:0] position;
+  logic [1:0] row;
+  burst_source #(.Size(Size), .Rows(2)) u_source (
+    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
+  );
+
+  logic out_start, out_frame_start;
+  logic signed [Width-1:0] out_mode, out_mirrored;
+  mode_pairs #(.Width(Width), .Size(Size)) dut (
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_mode(in_mode), .out_start, .out_frame_start, .out_mode, .out_mirrored
+  );
+
+  // Position of a mode: its number with the bits reversed; its mirror is Size minus its number.
+  function automatic logic [PositionWidth-1:0] reversed(input logic [PositionWidth-1:0] word);
+    logic [PositionWidth-1:0] result;
+    for (int b = 0; b < PositionWidth; b++) result[b] = word[PositionWidth-1-b];
+    return result;
+  endfunction
+  logic [PositionWidth-1:0] mirror;
+  assign mirror = reversed(PositionWidth'(Size - 32'(reversed(position))));
+
+  logic following, has_mirror;
+  logic [AgeWidth-1:0] age, mirror_age;  // enabled clocks since the word was present; when it shall be beside another
+  logic signed [Width-1:0] value;
+  logic [Latency-1:0] start_q, frame_start_q;
+  logic held;
+  logic [2*Width+1:0] out_q;
+  logic done;
+  assign done = age >= AgeWidth'(Latency) && (!has_mirror || age >= mirror_age);
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_start, out_frame_start, out_mode, out_mirrored};
+    if (en) begin
+      start_q <= Latency'({start_q, in_start});
+      frame_start_q <= Latency'({frame_start_q, in_frame_start});
+      if (!following || done) begin
+        following <= pick & active;
+        age <= AgeWidth'(1);
+        value <= in_mode;
+        has_mirror <= position != '0;
+        mirror_age <= AgeWidth'(Latency) + AgeWidth'(mirror) - AgeWidth'(position);
+      end else begin
+        age <= age + AgeWidth'(1);
+      end
+    end
+    if (rst) begin
+      start_q <= '0;
+      frame_start_q <= '0;
+      following <= 1'b0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      start_when_due: assert (out_start == start_q[Latency-1]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
+      if (following && age == AgeWidth'(Latency)) mode_in_place: assert (out_mode == value);
+      if (following && has_mirror && age == mirror_age) mirror_in_place: assert (out_mirrored == value);
+      if (out_start) mode_0_alone: assert (out_mirrored == '0);
+      if (held) holds: assert ({out_start, out_frame_start, out_mode, out_mirrored} == out_q);
+      early_mirror: cover (following && age == mirror_age && mirror_age < AgeWidth'(Latency));
+      late_mirror: cover (following && age == mirror_age && mirror_age > AgeWidth'(Latency) && held);
+      own_mirror: cover (following && has_mirror && age == AgeWidth'(Latency) && age == mirror_age);
+    end
+  end
+
+  bind fv_mode_pairs.dut.u_ram ram_check #(.Depth(Depth)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule

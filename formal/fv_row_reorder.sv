@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_row_reorder: an arbitrary word leaves at its place, unchanged; a burst 2 enabled clocks behind the last word of its row;
+// frame_start with the burst of a frame's first row. Any gaps, any en, and frames that begin inside a row.
+
+module fv_row_reorder #(
+  parameter int Width   = 1,
+  parameter int Size    = 8,
+  parameter int ToBurst = 1,
+  localparam int PositionWidth = $clog2(Size)
+) (
+  input logic             clk,
+  input logic             rst,
+  input logic             en,
+  input logic             in_valid,
+  input logic             restart,
+  input logic [Width-1:0] in_data,
+  input logic             pick
+);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic out_start, out_frame_start, in_frame_start;
+  logic [Width-1:0] out_data;
+  row_reorder #(.Width(Width), .Size(Size), .ToBurst(ToBurst)) dut (
+    .clk, .rst, .en, .in_valid, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
+  );
+
+  // Place in the row; the first word of all begins a frame.
+  logic framed, of_first_row, of_first_row_q;
+  logic [PositionWidth-1:0] position, next_position;
+  assign in_frame_start = in_valid & (restart | ~framed);
+  assign position = in_frame_start ? '0 : next_position;
+  assign of_first_row = in_frame_start | (of_first_row_q & (position != '0));
+  logic row_end;
+  assign row_end = in_valid & (position == PositionWidth'(Size - 1));
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (en && in_valid) begin
+      framed <= 1'b1;
+      next_position <= position + PositionWidth'(1);
+      of_first_row_q <= of_first_row;
+    end
+    if (rst) framed <= 1'b0;
+  end
+
+  // Makhoul's order: even samples upwards, then odd samples downwards.
+  logic [PositionWidth-1:0] place_of_sample, sample_at_place;
+  assign place_of_sample = position % 2 == 0 ? position / 2 : PositionWidth'(Size - 1) - position / 2;
+  assign sample_at_place = 32'(position) < Size / 2 ? position * 2 : PositionWidth'(2 * (Size - 1 - 32'(position)) + 1);
+
+  logic due, present, watched;
+  logic [PositionWidth-1:0] place;
+  logic [Width-1:0] value;
+  follow_word #(.Width(Width), .Words(Size), .Latency(2)) u_follow (
+    .clk, .rst, .en, .pick, .in_word(in_valid), .in_first(in_valid & (position == '0)), .in_closed(1'b0),
+    .in_place(ToBurst != 0 ? place_of_sample : sample_at_place), .in_data, .close(row_end),
+    .due, .present, .place, .watched, .value
+  );
+  logic [1:0] first_row_ends;
+  logic held;
+  logic [Width-1:0] out_data_q;
+  always_ff @(posedge clk) begin
+    if (en) first_row_ends <= {first_row_ends[0], row_end & of_first_row};
+    if (rst) first_row_ends <= '0;
+    held <= ~en;
+    out_data_q <= out_data;
+  end
+
+  always_comb begin
+    if (started) begin
+      burst_when_due: assert (out_start == due);
+      frame_start_when_due: assert (out_frame_start == first_row_ends[1]);
+      if (watched) in_place: assert (out_data == value);
+      if (held) holds: assert (out_data == out_data_q);
+      last_word: cover (watched && place == PositionWidth'(Size - 1));
+      behind_restart: cover (watched && out_frame_start && restart && in_valid);
+      back_to_back: cover (due && next_position == '0 && in_valid && held);
+    end
+  end
+
+  bind fv_row_reorder.dut.u_ram ram_check #(.Depth(Depth)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_transpose: an arbitrary word leaves in its column at the place of its row, unchanged; the first column 2 enabled clocks
+// behind the first word of the last row, the others behind it without a pause; frame_start with the first.
+// Any gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
+
+module fv_transpose #(
+  parameter int Width      = 1,
+  parameter int Size       = 4,
+  parameter int MakhoulIn  = 0,
+  parameter int MakhoulOut = 0,
+  localparam int IndexWidth = $clog2(Size)
+) (
+  input logic             clk,
+  input logic             rst,
+  input logic             en,
+  input logic             go,
+  input logic             restart,
+  input logic [Width-1:0] in_data,
+  input logic             pick
+);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+  always_ff @(posedge clk) started <= 1'b1;
+
+  logic in_start, in_frame_start, active, last_row;
+  logic [IndexWidth-1:0] position;
+  logic [$clog2(Size+1)-1:0] row;
+  burst_source #(.Size(Size), .Rows(Size)) u_source (
+    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
+  );
+
+  logic out_start, out_frame_start;
+  logic [Width-1:0] out_data;
+  transpose #(.Width(Width), .Size(Size), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
+  );
+
+  // Makhoul's order: even samples upwards, then odd samples downwards.
+  function automatic logic [IndexWidth-1:0] place_of_sample(input logic [IndexWidth-1:0] n);
+    return n % 2 == 0 ? n / 2 : IndexWidth'(Size - 1) - n / 2;
+  endfunction
+  function automatic logic [IndexWidth-1:0] sample_at_place(input logic [IndexWidth-1:0] p);
+    return 32'(p) < Size / 2 ? p * 2 : IndexWidth'(2 * (Size - 1 - 32'(p)) + 1);
+  endfunction
+  logic [IndexWidth-1:0] column, row_place;
+  assign column = MakhoulIn != 0 ? sample_at_place(position) : position;
+  assign row_place = MakhoulOut != 0 ? place_of_sample(IndexWidth'(row)) : IndexWidth'(row);
+
+  logic due, present, watched;
+  logic [2*IndexWidth-1:0] place;
+  logic [Width-1:0] value;
+  follow_word #(.Width(Width), .Words(Size * Size), .Latency(2)) u_follow (
+    .clk, .rst, .en, .pick, .in_word(active), .in_first(in_frame_start), .in_closed(last_row & ~in_start),
+    .in_place({column, row_place}), .in_data, .close(in_start & last_row), .due, .present, .place, .watched, .value
+  );
+  logic held;
+  logic [Width-1:0] out_data_q;
+  always_ff @(posedge clk) begin
+    held <= ~en;
+    out_data_q <= out_data;
+  end
+
+  always_comb begin
+    if (started) begin
+      frame_when_due: assert (out_frame_start == due);
+      column_when_due: assert (out_start == (present && place[IndexWidth-1:0] == '0));
+      if (watched) in_place: assert (out_data == value);
+      if (held) holds: assert (out_data == out_data_q);
+      last_word: cover (watched && place == '1);
+      last_word_behind_next: cover (watched && place == '1 && active && held);
+    end
+  end
+
+  bind fv_transpose.dut.u_ram ram_check #(.Depth(Depth)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule

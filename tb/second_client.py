@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The AXI ports through cocotbext-axi: a client that shares no code with tb/axis.py and cocotb-bus.
+
+With the methods that tb_tactile_depth calls of its own drivers.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import cocotb
+from cocotb.triggers import RisingEdge
+from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiStreamBus, AxiStreamFrame, AxiStreamSink, AxiStreamSource
+
+from models.axil_registers import BYTES, Response
+from models.frame_guard import Word
+
+
+class SecondSource:
+    """Sends rows as packets; in a row None is a clock of pause."""
+
+    def __init__(self, dut, offers: Iterable[bool]):
+        self.dut, self.offers, self.held, self.taking = dut, iter(offers), False, None
+        self.source = AxiStreamSource(AxiStreamBus.from_prefix(dut, "s_axis"), dut.clk, dut.rst, byte_lanes=1)
+        self.source.log.setLevel("WARNING")
+        self.source.set_pause_generator(self.pauses())
+
+    def pauses(self):
+        for offer in self.offers:
+            yield self.held or not offer
+
+    def abort(self) -> None:
+        self.source.clear()
+        if self.taking:
+            self.taking.cancel()
+        self.held, self.taking = False, None
+
+    async def send(self, words: Sequence[Word | None]) -> None:
+        silences, packet, sent = {}, [], 0
+        for word in words:
+            if word is None:
+                silences[sent] = silences.get(sent, 0) + 1
+                continue
+            packet.append(word)
+            sent += 1
+            if word.last:
+                frame = AxiStreamFrame(tdata=[w.data for w in packet], tuser=[w.user for w in packet])
+                self.source.send_nowait(frame)
+                packet = []
+        assert not packet, "a packet ends with tlast: this client cannot break off in mid row"
+        self.taking = cocotb.start_soon(self.take(silences, sent))
+        await self.taking
+
+    async def take(self, silences: dict[int, int], sent: int) -> None:
+        """Until all words are taken; pause at each silence."""
+        dut, edge, taken = self.dut, RisingEdge(self.dut.clk), 0
+        while taken < sent:
+            self.held = taken + 1 in silences  # the word on the pins is the last before it
+            await edge
+            if dut.s_axis_tvalid.value and dut.s_axis_tready.value:
+                taken += 1
+                if taken in silences:
+                    for _ in range(silences[taken] - 1):  # what is decided here shows a clock later
+                        await edge
+                    self.held = False
+
+
+class SecondSink:
+    """Takes packets, pausing as a profile says."""
+
+    def __init__(self, dut, accepts: Iterable[bool]):
+        self.sink = AxiStreamSink(AxiStreamBus.from_prefix(dut, "m_axis"), dut.clk, dut.rst, byte_lanes=1)
+        self.sink.log.setLevel("WARNING")
+        self.stall(accepts)
+
+    def stall(self, accepts: Iterable[bool]) -> None:
+        self.sink.set_pause_generator(not accept for accept in accepts)
+
+    def words(self) -> list[Word]:
+        """What was taken since the last call."""
+        out = []
+        while not self.sink.empty():
+            frame = self.sink.recv_nowait(compact=False)
+            last = [0] * (len(frame.tdata) - 1) + [1]
+            out += map(Word, frame.tdata, last, frame.tuser)
+        return out
+
+
+class SecondMaster:
+    """Reads and writes registers."""
+
+    def __init__(self, dut):
+        self.master = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk, dut.rst)
+        for side in (self.master.write_if, self.master.read_if):
+            side.log.setLevel("WARNING")
+
+    async def write(self, address: int, value: int) -> Response:
+        return Response(int((await self.master.write(address, value.to_bytes(BYTES, "little"))).resp))
+
+    async def read(self, address: int) -> int:
+        answer = await self.master.read(address, BYTES)
+        assert int(answer.resp) == Response.OKAY
+        return int.from_bytes(answer.data, "little")

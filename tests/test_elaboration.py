@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters that a core cannot be built with stop it before it runs, by its own word."""
+
+import subprocess
+
+import pytest
+
+from commands import simulator
+
+INVALID = {
+    "burst_counter": ["Size=1"],
+    "delay_line": ["Delay=0"],
+    "row_reorder": ["Size=12", "Size=2"],
+    "transpose": ["Size=12", "Size=2"],
+    "mode_pairs": ["Size=12", "Size=2"],
+    "frame_stack": ["Size=12", "Rows=1"],
+    "frame_guard": ["Rows=1", "Columns=1"],
+    "frame_output": ["Columns=12", "Rows=1"],
+    "divergence": ["Columns=1"],
+    "threshold_comparator": ["Width=33"],
+    "ram": ["Depth=1"],
+    "round_saturate": ["Drop=46", "OutWidth=1"],
+    "sdf_butterfly": [
+        "Size=12",
+        "Delay=0",
+        "Delay=128",
+        "Delay=6",
+        "RotateBlock=2",
+        "RotateBlock=6",
+        "RotateBlock=256",
+    ],
+    "axil_registers": ["Rows=0", "Columns=65536", "GradientWidth=33"],
+}
+CASES = [(core, change) for core, changes in INVALID.items() for change in changes]
+
+
+def refused(core, change, folder) -> str:
+    """What Icarus says: it does not elaborate, or the simulation ends with $fatal at time 0."""
+    name, value = change.split("=")
+    sources = [str(path) for path in simulator.sources()]
+    built = folder / "built"
+    command = ["iverilog", "-g2012", "-o", built, "-s", core, f"-P{core}.{name}={value}", *sources]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    if result.returncode:
+        return result.stderr
+    result = subprocess.run(["vvp", "-n", built], capture_output=True, text=True, check=False, cwd=folder)
+    return result.stdout + result.stderr if result.returncode else ""
+
+
+@pytest.mark.parametrize(("core", "change"), CASES)
+def test_an_invalid_parameter_is_refused(tmp_path, core, change):
+    simulator.check("icarus")
+    assert "FATAL" in (said := refused(core, change, tmp_path)) or "error" in said.lower()
+
+
+VALID = ["burst_counter Size=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"]
+
+
+@pytest.mark.parametrize("case", VALID)
+def test_a_valid_parameter_is_not(tmp_path, case):
+    simulator.check("icarus")
+    assert not refused(*case.split(), tmp_path)

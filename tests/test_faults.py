@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The stream contract of tactile_depth under attack: every break at every position, resets in every phase.
+
+Icarus is a hundred times slower than Verilator, so on each grid:
+
+                make test                              REGRESS=1
+    Verilator   every break at every position, one     the full product of breaks, positions and what follows,
+                of what can follow drawn for each      with and without stalls
+    Icarus      the same on the smallest grid; on      every break at every position, one of what can follow
+                the others one in 32                   drawn for each; stalled half of them
+"""
+
+import random
+import time
+from itertools import groupby
+
+import pytest
+from attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
+from conftest import REGRESS, SEED
+from records import record
+
+from models.configuration import COLUMNS, Configuration
+
+TIMEOUT = 100
+GRIDS = {
+    "tridiagonal-8x16-neumann": {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True},
+    "spectral-16": {"columns": 16},
+    "spectral-16-neumann": {"columns": 16, "neumann": True},
+    "tridiagonal-16": {"columns": 16, "solver": "tridiagonal"},
+    "tridiagonal-16-neumann": {"columns": 16, "solver": "tridiagonal", "neumann": True},
+}
+SMALLEST = "tridiagonal-8x16-neumann"
+BOTH = [(grid,) for grid in GRIDS][: None if REGRESS else 2]  # on both simulators
+STRIDE = {"verilator": 1, "icarus": 32}
+PHASES = {"verilator": 3, "icarus": 64}  # one in so many; REGRESS: each, with each number of clocks
+CLOCKS = (1, 2, 16)  # of a reset
+SINKS = ("none", *(name for name in PROFILES if name != "none"), "full")
+
+
+@pytest.fixture
+def device(simulator, tmp_path):
+    return lambda config: Attack(simulator, config, tmp_path, SEED)
+
+
+def chosen(simulator, grid, stalled, silent):
+    """Cases in an order of their own for each device."""
+    rng = random.Random(f"{SEED} {simulator} {grid} {silent}")
+    config = Configuration(**GRIDS[grid])
+    out = cases(config.rows, config.columns, silent)
+    if not REGRESS or simulator == "icarus":  # of each break and position one
+        out = [rng.choice(list(alike)) for _, alike in groupby(out, lambda case: (case.kind, case.position))]
+    rng.shuffle(out)
+    if simulator == "icarus":
+        out = out[stalled::2]
+    return out[:: 1 if REGRESS or grid == SMALLEST else STRIDE[simulator]]
+
+
+def note(what, simulator, grid, out: Outcome, began):
+    record(
+        part="faults",
+        grid=grid,
+        what=f"{what}, {grid}",
+        simulator=simulator,
+        **out.__dict__,
+        seconds=time.monotonic() - began,
+    )
+
+
+@pytest.mark.structures("grid", both=BOTH, icarus=[(grid,) for grid in GRIDS][len(BOTH) :])
+@pytest.mark.parametrize("silent", [False, True], ids=["register-off", "register-on"])
+@pytest.mark.parametrize("stalled", [False, True], ids=["flowing", "stalled"])
+def test_every_break_at_every_position(device, simulator, grid, stalled, silent):
+    some, began = chosen(simulator, grid, stalled, silent), time.monotonic()
+    out = attack(device(Configuration(**GRIDS[grid])), some, stalled=stalled, timeout=TIMEOUT if silent else 0)
+    note(("stalled" if stalled else "flowing") + (", time-out on" if silent else ""), simulator, grid, out, began)
+
+
+@pytest.mark.structures("grid", both=BOTH)
+def test_resets_in_every_phase(device, simulator, grid):
+    config, began = Configuration(**GRIDS[grid]), time.monotonic()
+    every = phases(config)
+    full = REGRESS and simulator == "verilator"
+    stride = 1 if full else PHASES[simulator] // (8 if REGRESS else 1)
+    lengths = CLOCKS if full else (0,)
+    some = [
+        Reset(phase, clocks or CLOCKS[index % len(CLOCKS)], SINKS[(index // len(CLOCKS) + clocks) % len(SINKS)])
+        for index, phase in enumerate(every[SEED % stride :: stride])
+        for clocks in lengths
+    ]
+    note("resets", simulator, grid, resets(device(config), some), began)
+
+
+@pytest.mark.parametrize("simulator", ["verilator"], indirect=True)
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_a_sample_at_128(device, simulator, solver):
+    """Whole frames of 16,384 pixels: each kind of break at a place drawn for it, and resets."""
+    config, rng = Configuration(columns=128, solver=solver), random.Random(SEED)
+    for stalled, silent in ((False, False), (True, False), (False, True)):
+        began = time.monotonic()
+        every = cases(config.rows, config.columns, silent)
+        kinds = sorted({case.kind for case in every})
+        some = [rng.choice([c for c in every if c.kind == kind]) for kind in kinds for _ in range(8 if REGRESS else 1)]
+        out = attack(device(config), some, stalled=stalled, timeout=TIMEOUT if silent else 0)
+        note("sample", simulator, f"{solver}-128", out, began)
+    began = time.monotonic()
+    some = [Reset(rng.choice(phases(config)), clocks, rng.choice(SINKS)) for clocks in CLOCKS]
+    note("resets", simulator, f"{solver}-128", resets(device(config), some), began)

@@ -1,0 +1,403 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What holds of the models on any input: of those whose own tests state no property of this kind."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.fft import dctn, dstn
+from scipy.linalg import solve_banded
+
+from models import latency, reference
+from models.axil_registers import COUNTERS, WORD, AxilRegisters, Build, Events, Response, strobed_bits
+from models.axis_skid import CAPACITY, AxisSkid
+from models.back_substitution import back_substitution
+from models.calibration import Calibration, load, synthetic
+from models.configuration import COLUMNS, Configuration
+from models.forward_elimination import forward_elimination
+from models.frame_guard import Word, frame_guard
+from models.frame_output import Clock, frame_output
+from models.frame_stack import frame_stack
+from models.frame_tags import FrameTags
+from models.gradient_lookup import gradient_codes, gradient_lookup
+from models.mode_pairs import mode_pairs
+from models.orders import bit_reversed, eigenvalues, makhoul, mirror
+from models.register_map import MAP, REGISTERS
+from models.rom import rom
+from models.rom_files import pack, write_words
+from models.row_reorder import row_reorder
+from models.tactile_depth import solve, tactile_depth
+from models.thomas_table import thomas_table
+from models.threshold_comparator import ThresholdComparator
+from models.transpose import transpose
+from models.tridiagonal_solver import tridiagonal_solver
+
+SEED = st.integers(0, 2**32 - 1)
+SIZE = st.sampled_from([8, 16, 32, 64])
+WORDS = st.integers(0, 255)
+SOLVED = {
+    neumann: Configuration(columns=16, rows=12, solver="tridiagonal", neumann=neumann) for neumann in (False, True)
+}
+RELATIVE = 1e-4  # of the largest depth: 24-bit words and 18-bit coefficients on 16 columns
+
+
+def noise(seed, *shape, limit=1 << 12):
+    return np.random.default_rng(seed).integers(-limit, limit + 1, shape)
+
+
+# Orders.
+
+
+@given(SIZE)
+def test_orders_are_permutations(size):
+    for order in (bit_reversed(size), makhoul(size), mirror(size)):
+        assert sorted(order) == list(range(size))
+
+
+@given(SIZE, st.booleans())
+def test_eigenvalues_are_those_of_the_second_difference(size, neumann):
+    middle = -2 * np.eye(size) + np.eye(size, k=1) + np.eye(size, k=-1)
+    middle[0, 0] = middle[-1, -1] = -1 if neumann else -3
+    np.testing.assert_allclose(np.sort(eigenvalues(size, neumann)), np.linalg.eigvalsh(middle), atol=1e-12)
+
+
+@given(SEED, SIZE, st.booleans())
+def test_a_reordered_row_comes_back(seed, size, to_burst):
+    rows = noise(seed, 3, size)
+    np.testing.assert_array_equal(row_reorder(row_reorder(rows, to_burst), not to_burst), rows)
+
+
+@given(SEED, SIZE)
+def test_modes_are_mirrored_both_ways(seed, size):
+    modes = noise(seed, size)
+    once, mirrored = mode_pairs(modes)
+    np.testing.assert_array_equal(once, modes)
+    np.testing.assert_array_equal(mode_pairs(mirrored)[1][1:], modes[1:])
+    np.testing.assert_array_equal(mode_pairs(modes + mirrored)[1][1:], (modes + mirrored)[1:])  # a symmetric row
+
+
+@given(SEED, SIZE, st.booleans(), st.booleans())
+def test_transposing_back_gives_the_frame(seed, size, makhoul_in, makhoul_out):
+    frames = noise(seed, 2, size, size)
+    there = transpose(frames, makhoul_in, makhoul_out)
+    np.testing.assert_array_equal(transpose(there, makhoul_out, makhoul_in), frames)
+
+
+@given(SEED, st.integers(1, 9))
+def test_a_stack_turned_twice_is_the_frame(seed, rows):
+    frame = noise(seed, rows, 8)
+    np.testing.assert_array_equal(frame_stack(frame)[0], frame[-1])
+    np.testing.assert_array_equal(frame_stack(frame_stack(frame)), frame)
+
+
+# Thomas's algorithm.
+
+
+@settings(max_examples=30)
+@given(st.sampled_from([16, 32]), st.integers(8, 60), st.booleans(), st.integers(10, 24))
+def test_a_stored_coefficient_is_that_of_the_recurrence(columns, rows, neumann, width):
+    config = Configuration(
+        columns=columns, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=width, depth_range_px=4
+    )
+    table, diagonal = thomas_table(config), eigenvalues(columns, neumann) - 2
+    c = 1 / (diagonal + (1 if neumann else -1))
+    for row in table.rows(rows - 1):
+        assert np.abs(row / 2.0 ** (width - 1) - c).max() <= 2.0 ** (1 - width)  # half a step; 1 clips to a step less
+        c = 1 / (diagonal - c)
+
+
+def down_and_up(f, config):
+    d = forward_elimination(f, config)
+    return frame_stack(back_substitution(frame_stack(d), config))
+
+
+@settings(max_examples=30)
+@given(SEED, st.booleans())
+def test_elimination_and_substitution_solve_the_tridiagonal_systems(seed, neumann):
+    config = SOLVED[neumann]
+    rows, columns = config.rows, config.columns
+    # |z| is at most the sum of |f| over a column over the smallest pivot; stay well inside the word.
+    f = noise(seed, rows, columns, limit=1 << (config.arithmetic_width - 14))
+    f[:, 0] = 0  # the singular mode under Neumann has a test of its own
+    z = down_and_up(f, config)
+    for position, eigenvalue in enumerate(eigenvalues(columns, neumann)):
+        bands = np.ones((3, rows))
+        bands[1] = eigenvalue - 2
+        bands[1, [0, -1]] += 1 if neumann else -1
+        if position:
+            want = solve_banded((1, 1), bands, f[:, position].astype(float))
+            scale = max(np.abs(want).max(), 1)
+            # Steps: a stored word drops 3 bits, and a pivot near the smallest eigenvalue enlarges what is dropped.
+            assert np.abs(z[:, position] - want).max() <= RELATIVE * scale + 8 * rows
+
+
+@settings(max_examples=30)
+@given(SEED)
+def test_the_singular_mode_has_no_mean(seed):
+    config = SOLVED[True]
+    f = np.zeros((config.rows, config.columns), np.int64)
+    f[:, 0] = noise(seed, config.rows, limit=1 << 12)
+    f[-1, 0] -= f[:, 0].sum()  # the sum of a divergence is zero
+    z = down_and_up(f, config)[:, 0]
+    # The mean is taken before the rows are stored: each then errs by up to half a word, and counts (i + 1) / rows.
+    stored = 1 << (config.elimination.fraction - config.elimination_store.fraction)
+    assert abs(z.mean()) <= RELATIVE * np.abs(z).max() + stored / 2 * (config.rows + 1) / 2 + stored
+
+
+@settings(max_examples=30)
+@given(SEED, st.booleans())
+def test_negation_goes_through_elimination_and_substitution(seed, neumann):
+    config = SOLVED[neumann]
+    f = noise(seed, config.rows, config.columns)
+    np.testing.assert_array_equal(forward_elimination(-f, config), -forward_elimination(f, config))
+    np.testing.assert_array_equal(back_substitution(-f, config), -back_substitution(f, config))
+
+
+# The solvers.
+
+
+def divergence_like(seed, config):
+    """Divergence that a depth within a quarter of the range has, and so one that sums to zero under Neumann."""
+    limit = config.depth_limit_px / 4
+    depth = np.random.default_rng(seed).uniform(-limit, limit, (config.rows, config.columns))
+    shift = np.pad(depth, 1, mode="edge")
+    if not config.neumann:  # zero half a pixel outside: the pixel beyond the edge is minus the one inside
+        shift[0], shift[-1], shift[:, 0], shift[:, -1] = -shift[0], -shift[-1], -shift[:, 0], -shift[:, -1]
+    f = shift[2:, 1:-1] + shift[:-2, 1:-1] + shift[1:-1, 2:] + shift[1:-1, :-2] - 4 * depth
+    return f, depth - depth.mean() if config.neumann else depth
+
+
+CONFIGURATIONS = [
+    Configuration(columns=16, solver=solver, neumann=neumann, gradient_limit=8.0)
+    for solver in sorted(COLUMNS)
+    for neumann in (False, True)
+]
+
+
+@settings(max_examples=20)
+@given(SEED, st.sampled_from(CONFIGURATIONS))
+def test_the_laplacian_of_a_depth_gives_it_back(seed, config):
+    f, depth = divergence_like(seed, config)
+    np.testing.assert_allclose(reference.solve(f, config.neumann), depth, atol=1e-9)
+    codes = np.rint(f / config.gradient_lsb).astype(np.int64)
+    found = solve(codes, config) * config.depth_lsb_px
+    found = found[::-1] if config.solver == "tridiagonal" else found
+    assert np.abs(found - depth).max() <= 2e-4 * np.abs(depth).max()
+
+
+@settings(max_examples=20)
+@given(SEED, st.sampled_from(CONFIGURATIONS))
+def test_solvers_agree_with_scipy_mode_by_mode(seed, config):
+    f, _ = divergence_like(seed, config)
+    codes = np.rint(f / config.gradient_lsb).astype(np.int64)
+    found = solve(codes, config) * config.depth_lsb_px
+    found = found[::-1] if config.solver == "tridiagonal" else found
+    transform = dctn if config.neumann else dstn
+    want = transform(reference.solve(codes * config.gradient_lsb, config.neumann), type=2, norm="ortho")
+    assert np.abs(transform(found, type=2, norm="ortho") - want).max() <= 1e-3 * np.abs(want).max()
+
+
+@settings(max_examples=20)
+@given(SEED, st.booleans())
+def test_the_tridiagonal_solver_negates_and_mirrors(seed, neumann):
+    config = SOLVED[neumann]
+    f = np.rint(divergence_like(seed, config)[0] / 8 / config.gradient_lsb).astype(np.int64)
+    z = tridiagonal_solver(f, config)
+    np.testing.assert_array_equal(tridiagonal_solver(-f, config), -z)
+    assert np.abs(tridiagonal_solver(f[:, ::-1], config) - z[:, ::-1]).max() <= RELATIVE * (1 << config.data_width)
+
+
+@settings(max_examples=20)
+@given(SEED, SEED, st.booleans())
+def test_sums_go_through_the_tridiagonal_solver(seed, other, neumann):
+    config = SOLVED[neumann]
+    f, g = (np.rint(divergence_like(s, config)[0] / 8 / config.gradient_lsb).astype(np.int64) for s in (seed, other))
+    error = tridiagonal_solver(f + g, config) - tridiagonal_solver(f, config) - tridiagonal_solver(g, config)
+    assert np.abs(error).max() <= RELATIVE * (1 << config.data_width)
+
+
+@settings(max_examples=10)
+@given(SEED, st.sampled_from(sorted(COLUMNS)), st.booleans())
+def test_frames_of_a_sequence_do_not_mix(seed, solver, neumann):
+    config = Configuration(columns=16, solver=solver, neumann=neumann)
+    frames = np.random.default_rng(seed).integers(100, 156, (3, 16, 16, 3)).astype(np.uint8)
+    whole = tactile_depth(frames, synthetic(), config)
+    np.testing.assert_array_equal(whole, [tactile_depth(frame, synthetic(), config) for frame in frames])
+
+
+@given(st.sampled_from([16, 32, 64]), st.integers(8, 100), st.booleans())
+def test_latency_counts_pixels_and_nothing_else(columns, rows, neumann):
+    tall = Configuration(columns=columns, rows=rows, solver="tridiagonal", neumann=neumann)
+    square = Configuration(columns=columns, solver="tridiagonal", neumann=not neumann)
+    after = latency.last_pixel_to_first_depth(tall)
+    assert after == latency.last_pixel_to_first_depth(square)  # neither rows nor boundary count
+    assert latency.first_depth_latency(tall) - after == rows * columns - 1
+    assert after < 8 * columns + 64
+
+
+# Tables and files.
+
+
+@settings(max_examples=25)
+@given(SEED, st.integers(1, 4), st.sampled_from([0.25, 1.0, 8.0]))
+def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed, bits, largest):
+    chance = np.random.default_rng(seed)
+    table = chance.uniform(-0.9 * largest, 0.9 * largest, (1 << bits, 1 << bits, 1 << bits, 2))
+    calibration = Calibration("any", table, 0.1)
+    config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, bits_per_channel=bits)
+    frames = chance.integers(0, 256, (2, 5, 7, 3)).astype(np.uint8)
+    found = gradient_lookup(frames, gradient_codes(calibration, config), bits) * config.gradient_lsb
+    assert np.abs(found - reference.slopes(frames, calibration)).max() <= config.gradient_lsb / 2 * (1 + 1e-9)
+
+
+@settings(max_examples=25)
+@given(SEED, st.integers(1, 3), st.floats(1e-6, 1e3), st.sampled_from(["<f8", ">f8", "<f4", "<f2"]), st.booleans())
+def test_a_saved_calibration_is_loaded_as_it_was(tmp_path_factory, seed, bits, pitch, dtype, packed):
+    table = np.random.default_rng(seed).uniform(-2, 2, (1 << bits, 1 << bits, 1 << bits, 2)).astype(dtype)
+    path = tmp_path_factory.mktemp("calibration") / "mine.npz"
+    (np.savez_compressed if packed else np.savez)(path, gradient=table, pixel_pitch_mm=pitch)
+    found = load(str(path))
+    np.testing.assert_array_equal(found.gradient, table.astype(np.float64))
+    assert found.pixel_pitch_mm == pitch
+    assert found.bits_per_channel == bits
+    assert found.gradient_limit / 2 < np.abs(table.astype(float)).max() * (1 + 2.0**-7)
+    assert np.abs(table.astype(float)).max() < found.gradient_limit
+
+
+@given(st.lists(st.tuples(*[st.integers(-(1 << 26), (1 << 26) - 1)] * 3), min_size=1))
+def test_packed_fields_are_found_in_the_file(tmp_path_factory, rows):
+    path = tmp_path_factory.mktemp("rom") / "words.hex"
+    words = pack(np.array(rows).T, 27)
+    write_words(path, words, 81)
+    read = [int(line, 16) for line in path.read_text().split()]
+    assert rom(read, range(len(rows))) == words
+    for row, word in zip(rows, read, strict=True):
+        for place, value in enumerate(reversed(row)):
+            assert (word >> 27 * place) % (1 << 27) == value % (1 << 27)
+
+
+# Registers.
+
+
+@given(st.sampled_from(MAP), st.integers(0, WORD))
+def test_fields_of_any_word_pack_to_its_listed_bits(register, word):
+    listed = sum(field.mask for field in register.fields)
+    assert register.pack(**register.unpack(word)) == word & listed
+
+
+REGISTER_BUILD = Build(16, 16, 24, 20, 18, 4)
+WRITES = st.lists(st.tuples(st.integers(0, 127), st.integers(0, WORD), st.integers(0, 15), st.booleans()), max_size=12)
+
+
+@given(WRITES)
+def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes):
+    registers = AxilRegisters(REGISTER_BUILD)
+    for address, data, strobe, busy in writes:
+        before, written = dict(registers.values), len(registers.table_writes)
+        response = registers.write(address, data, strobe, busy)
+        changed = {name for name in before if registers.values[name] != before[name]}
+        if response is Response.SLVERR:
+            assert not changed
+            assert len(registers.table_writes) == written
+        for name in changed & {"THRESHOLD", "TIMEOUT"}:
+            assert (registers.values[name] ^ before[name]) & ~strobed_bits(strobe) == 0
+            assert registers.read(REGISTERS[name].offset) == (registers.values[name], Response.OKAY)
+        assert not changed & {"ID", "GRID", "FORMAT", "FIRST_DEPTH_LATENCY"}
+
+
+@given(st.lists(st.integers(0, 255), max_size=20), st.integers(0, WORD))
+def test_counters_only_grow_and_stay_at_the_top(saturations, start):
+    registers = AxilRegisters(REGISTER_BUILD)
+    registers.values["SATURATIONS"] = start
+    for count in saturations:
+        registers.clock(Events(frozenset({"frame_in"}), count))
+    assert registers.values["SATURATIONS"] == min(start + sum(saturations), WORD)
+    assert registers.values["FRAMES_IN"] == len(saturations)
+    registers.write(REGISTERS["CONTROL"].offset, 2)
+    assert not any(registers.values[name] for name in COUNTERS)
+
+
+# Streams.
+
+
+@given(st.lists(st.tuples(st.none() | WORDS, st.booleans()), max_size=60))
+def test_a_slice_neither_loses_nor_repeats_nor_reorders(clocks):
+    skid, taken, left = AxisSkid(), [], []
+    for word, ready in clocks:
+        if word is not None and skid.ready:
+            taken.append(word)
+        if skid.valid and ready:
+            left.append(skid.words[0])
+        skid.clock(word, ready)
+        assert len(skid.words) <= CAPACITY
+        assert [*left, *skid.words] == taken
+
+
+HEIGHT, WIDTH = 2, 3
+GOOD = [Word(100 + i, int(i % WIDTH == WIDTH - 1), int(i == 0)) for i in range(HEIGHT * WIDTH)]
+ANY_WORD = st.builds(Word, WORDS, st.integers(0, 1), st.integers(0, 1))
+
+
+@given(st.lists(st.none() | ANY_WORD, max_size=40), st.sampled_from([0, 1, 3]))
+def test_whatever_arrives_whole_frames_leave_and_the_next_good_one_is_right(stream, timeout):
+    found = frame_guard([*stream, *GOOD], HEIGHT, WIDTH, timeout)
+    words = [*stream, *GOOD]
+    assert not found.open
+    for frame in found.frames:
+        assert len(frame.pixels) == HEIGHT * WIDTH
+        if not frame.bad:
+            assert frame.pixels == tuple(word.data for word in words[frame.first : frame.last + 1] if word is not None)
+    assert found.frames[-1].pixels == tuple(word.data for word in GOOD)
+    assert not found.frames[-1].bad
+    # A broken frame has one fault; the others are of words between frames.
+    assert sum(frame.bad for frame in found.frames) == sum(name != "start_missing" for name in found.faults)
+
+
+@given(st.lists(st.tuples(st.booleans(), st.integers(0, 5)), max_size=5))
+def test_good_frames_leave_whole_and_in_step(frames):
+    inputs, wanted = [], []
+    for index, (bad, gap) in enumerate(frames):
+        for row in range(HEIGHT):
+            for column in range(WIDTH):
+                first = row == column == 0
+                data = 10 * index + row * WIDTH + column
+                inputs.append(Clock(column == 0, first, data, first, bad and first))
+                if not bad:
+                    wanted.append((data, int(column == WIDTH - 1), int(first)))
+        inputs += [Clock(False, False, 0, False, False)] * gap
+    found = frame_output(inputs, HEIGHT, WIDTH)
+    assert found.beats == wanted
+    assert not found.out_of_step
+    assert len(found.ends) == len(frames)
+
+
+@given(st.lists(st.tuples(st.booleans(), st.booleans(), st.booleans(), st.booleans()), max_size=60))
+def test_whatever_the_solver_does_rows_end_where_they_should(clocks):
+    found = frame_output([Clock(start, first, 0, due, bad) for start, first, due, bad in clocks], HEIGHT, WIDTH)
+    since = 0
+    for _, last, user in found.beats:
+        since = 0 if user else since + 1
+        assert last == (since % WIDTH == WIDTH - 1)
+        assert since < HEIGHT * WIDTH
+
+
+@given(st.lists(st.none() | WORDS, max_size=40), st.integers(1, 9))
+def test_a_tag_is_due_so_many_clocks_after_it_was_pushed(pushed, delay):
+    tags, seen = FrameTags(delay), []
+    for tag in [*pushed, *[None] * delay]:
+        seen.append(tags.due)
+        tags.clock(tag)
+    assert seen == ([None] * delay + pushed)[: len(seen)]
+    assert tags.held == (tags.due is not None)
+
+
+@given(st.lists(st.lists(st.integers(-50, 50), min_size=1, max_size=6), min_size=1, max_size=6), st.integers(-60, 60))
+def test_contact_is_that_some_depth_of_the_frame_so_far_is_above(frames, threshold):
+    comparator, held, ever = ThresholdComparator(), ThresholdComparator(), False
+    for frame in frames:
+        for index, data in enumerate(frame):
+            # The register changes inside the frame: only its first beat counts.
+            for one, hold in ((comparator, False), (held, True)):
+                one.beat(data, index == 0, threshold if index == 0 else -threshold, hold)
+            ever |= data > threshold
+            assert comparator.contact == any(depth > threshold for depth in frame[: index + 1])
+            assert held.contact == ever

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""That Verilator's registers and memories really come up at random, and Icarus' unknown: the suite rests on it."""
+
+import json
+
+from commands import simulator as simulation
+
+SEEDS = range(1, 9)
+
+
+def test_what_is_not_reset(simulator, tmp_path):
+    files = [*simulation.sources(["ram.sv"]), simulation.ROOT / "tb" / "power_up.sv"]
+    simulation.build(simulator, "power_up", files, {}, tmp_path, log=tmp_path / "build.log")
+
+    def seen(power_up):
+        count, failed = simulation.run(
+            "power_up",
+            "tb_power_up",
+            tmp_path,
+            tmp_path,
+            simulator=simulator,
+            seed=1,
+            power_up=power_up,
+            log=tmp_path / "run.log",
+        )
+        assert (count, failed) == (1, 0)
+        return tuple(json.loads((tmp_path / "seen.json").read_text()))
+
+    if simulator == "icarus":
+        assert all(set(value) == {"X"} for value in seen(1))
+        return
+    values = [seen(power_up) for power_up in SEEDS]
+    assert seen(SEEDS[0]) == values[0], "the seed does not say it all"
+    for place in range(17):  # within a memory Verilator gives all words the same value
+        assert len({held[place] for held in values}) == len(SEEDS), "a register or a word came up the same"
