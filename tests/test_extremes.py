@@ -22,35 +22,35 @@ QUIET_RMS_CODES = 75.0
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name.replace(" ", "-"))
-def test_row(tmp_path, extreme, solver):
-    row = measure(extreme, solver, SIZE, "icarus", tmp_path)
+def test_row(extreme, solver):
+    row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
     if not row.saturations:
         assert row.rms_codes < QUIET_RMS_CODES
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_smallest_grid(tmp_path, solver):
+def test_the_smallest_grid(solver):
     extreme = smallest(solver)
-    row = measure(extreme, solver, SIZE, "icarus", tmp_path)
+    row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
     assert row.grid == {"spectral": "16x16", "tridiagonal": "8x16"}[solver]
     assert row.rms_codes < QUIET_RMS_CODES
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_largest_grid(tmp_path, solver):
+def test_the_largest_grid(solver):
     extreme = largest(solver)
-    row = measure(extreme, solver, SIZE, "verilator", tmp_path)
+    row = measure(extreme, solver, SIZE, "verilator")
     assert faults(extreme, row) == []
     assert row.grid == {"spectral": "512x512", "tridiagonal": "1024x1024"}[solver]
     assert row.rms_percent < 0.1
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_frames_back_to_back_do_not_drift(tmp_path, solver):
+def test_frames_back_to_back_do_not_drift(solver):
     extreme = drift(64)
-    row = measure(extreme, solver, SIZE, "icarus", tmp_path)
+    row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
     assert row.frames == 64
 
@@ -98,9 +98,9 @@ def extremes_headroom(config):
     return config.depth_limit_px / config.depth_range_px
 
 
-def test_a_row_that_is_not_as_it_must_be_is_named(tmp_path):
+def test_a_row_that_is_not_as_it_must_be_is_named():
     extreme = EXTREMES[0]
-    row = measure(extreme, "tridiagonal", SIZE, "icarus", tmp_path)
+    row = measure(extreme, "tridiagonal", SIZE, "icarus")
     broken = type(row)(**{**vars(row), "bit_exact": False, "told": True, "wrapped": 3, "registers_agree": False})
     found = faults(extreme, broken)
     assert len(found) == 4
