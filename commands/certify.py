@@ -31,6 +31,7 @@ from models.gradient_lookup import gradient_codes
 from models.round_saturate import Monitor
 from models.tactile_depth import tactile_depth
 
+BATCH = 8  # frames that the model runs at a time
 ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: tests/test_dst_forward.py
 
 
@@ -58,6 +59,7 @@ class Peaks(Monitor):
     def __init__(self, widths: dict[str, int], frames: int) -> None:
         super().__init__()
         self.widths = widths
+        self.first = 0  # place of the first frame of those that the model runs now
         self.peaks = {node: np.zeros(frames, np.int64) for node in widths}
         self.clips = {node: np.zeros(frames, bool) for node in widths}
 
@@ -65,8 +67,9 @@ class Peaks(Monitor):
         flat = values.reshape(len(values), -1)
         high, low = flat.max(axis=1), flat.min(axis=1)
         limit = 1 << (self.widths[node] - 1)
-        self.peaks[node] = np.maximum(self.peaks[node], np.maximum(high, -low))
-        self.clips[node] |= (high >= limit) | (low < -limit)
+        now = slice(self.first, self.first + len(values))
+        self.peaks[node][now] = np.maximum(self.peaks[node][now], np.maximum(high, -low))
+        self.clips[node][now] |= (high >= limit) | (low < -limit)
 
 
 def worst_frames(
@@ -259,7 +262,8 @@ def run(request: sim.Request, rtl: bool = True) -> int:
     frames, attempts = worst_frames(nodes, calibration, config)
     np.save(out / "worst.npy", frames)
     peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
-    tactile_depth(frames, calibration, config, peaks)
+    for peaks.first in tqdm(range(0, len(frames), BATCH), desc="model", leave=False, disable=None, delay=3):
+        tactile_depth(frames[peaks.first : peaks.first + BATCH], calibration, config, peaks)
     faults = check_model(frames, attempts, nodes, peaks)
     clipping = sorted(node for node, clips in peaks.clips.items() if clips.any())
     if rtl:
