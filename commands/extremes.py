@@ -408,9 +408,8 @@ def compliance(config: Configuration, count: int) -> list[Compliance]:
     for core, (fixed, exact, dimensions) in transforms(config).items():
         size = config.columns
         zero = not np.any(fixed(np.zeros((1, *(size,) * dimensions), np.int64), Monitor()))
-        for name, amplitude, blocks in _blocks(
-            core, size, dimensions, config, count if dimensions == 1 else count // 32
-        ):
+        drawn = count if dimensions == 1 else max(2, count // 32)
+        for name, amplitude, blocks in _blocks(core, size, dimensions, config, drawn):
             monitor = Monitor()
             error = fixed(blocks, monitor) - exact(blocks.astype(float))
             square, mean = (error**2).mean(axis=0), error.mean(axis=0)
