@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | sweep | tune | upsets | calibration | setup | clean, see README.md
+# make sim | test | lint | sweep | tune | upsets | certify | extremes | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -12,7 +12,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint sweep tune upsets calibration setup clean
+.PHONY: sim test lint sweep tune upsets certify extremes calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -39,6 +39,14 @@ tune: $(STAMP)
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
 	@UPSETS='$(UPSETS)' SEED='$(SEED)' $(PY) -m commands.upsets
+
+# The largest value that each node can be asked to hold, and the frames that ask for it, run in model and RTL; RTL=0: model.
+certify: $(STAMP)
+	@$(PY) -m commands.certify $(foreach v,$(SIM_VARIABLES) RTL,$(if $($(v)),'$(v)=$($(v))'))
+
+# What happens at the edges, one row each: error, saturations, whether the status bit told; SHORT=1 without the long runs.
+extremes: $(STAMP)
+	@$(PY) -m commands.extremes $(foreach v,N SIM SHORT OUT,$(if $($(v)),'$(v)=$($(v))'))
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

@@ -26,6 +26,7 @@ from commands.draw import draw_depth
 from models import latency, reference
 from models.accuracy import errors
 from models.calibration import Calibration, load
+from models.certificate import deepest
 from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
@@ -37,6 +38,7 @@ from models.thomas_table import thomas_table
 
 BENCH = "frame_bench"
 DEFAULT_SCENE = "ball"
+WORST = "worst"  # a depth range that no slopes can leave
 SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
@@ -54,7 +56,7 @@ class Request:
     simulator: str
     data_width: int
     coefficient_width: int
-    depth_range_mm: float | None
+    depth_range_mm: float | None  # infinite: as deep as any slopes can make it
     frames: str
     press: Press
     reference: str | None
@@ -123,7 +125,9 @@ def parse(arguments: list[str]) -> Request:
         simulator=choice("SIM", simulation.SIMULATORS),
         data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
-        depth_range_mm=number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
+        depth_range_mm=math.inf
+        if given.get("DEPTH_RANGE") == WORST
+        else number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
         frames=given.get("FRAMES", DEFAULT_SCENE),
         press=Press(
             number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
@@ -143,15 +147,21 @@ def parse(arguments: list[str]) -> Request:
 
 def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float) -> Configuration:
     """The pipeline for a request; the depth range becomes grid pixels."""
+    neumann = request.boundary == "neumann"
     depth_range = request.depth_range_mm
+    if depth_range == math.inf:
+        Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
+        depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
+    else:
+        depth_range_px = None if depth_range is None else depth_range / pixel_pitch_mm
     return Configuration(
         columns=request.columns,
         rows=request.rows,
         solver=request.solver,
-        neumann=request.boundary == "neumann",
+        neumann=neumann,
         data_width=request.data_width,
         coefficient_width=request.coefficient_width,
-        depth_range_px=None if depth_range is None else depth_range / pixel_pitch_mm,
+        depth_range_px=depth_range_px,
         gradient_limit=calibration.gradient_limit,
         bits_per_channel=calibration.bits_per_channel,
     )
@@ -380,7 +390,8 @@ def run(request: Request) -> int:
             "bit_exact": bit_exact,
             "saturations": {node: count * request.repeat for node, count in sorted(monitor.saturations.items())},
         }
-        differences = check_registers(json.loads((work / "registers.json").read_text()), report, request.stalls)
+        report["registers"] = json.loads((work / "registers.json").read_text())
+        differences = check_registers(report["registers"], report, request.stalls)
         report["registers_agree"] = not differences
 
         result = work / "result"

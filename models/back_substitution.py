@@ -31,7 +31,7 @@ def back_substitution(
     state = np.zeros_like(d[..., 0, :])
     for step in range(rows):
         product = coefficients[rows - 1 - step] * state if step else state
-        exact = (d[..., step, :] << (lift + drop)) - product
+        exact = d[..., step, :] * 2 ** (lift + drop) - product
         state = round_saturate(exact, drop, config.arithmetic_width, monitor, node)
         z[..., step, :] = state
     return z

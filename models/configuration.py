@@ -19,7 +19,7 @@ import numpy as np
 from models.dst_forward import dst_forward
 from models.dst_inverse import dst_inverse
 from models.errors import InputError
-from models.orders import makhoul
+from models.orders import eigenvalues, makhoul
 from models.round_saturate import Monitor
 from models.sdf_fft import twiddle_stages
 from models.twiddle_multiply import coefficient_gain
@@ -144,6 +144,13 @@ class Configuration:
                 f"{self.depth_range_px:g} pixels (a mode would come in steps of {step:.3g} pixels, where depth reaches "
                 f"{deepest:.3g}): try {mend}a smaller DEPTH_RANGE"
             )
+        for node, (bound, form) in self.bounds_within_range().items():
+            if bound > form.limit - form.lsb:
+                raise InputError(
+                    f"{node} of N={self.columns}, DATA_WIDTH={self.data_width} holds up to {form.limit:g} and a depth "
+                    f"within the range of {self.depth_range_px:g} pixels can ask for {bound:.4g}: a fault in the "
+                    "derivation of formats, please report it"
+                )
 
     # Widths.
 
@@ -215,8 +222,8 @@ class Configuration:
 
     @cached_property
     def elimination(self) -> Format:
-        """The running rows of the tridiagonal solver: |d| = |z[i] + c z[i+1]| is at most twice the largest mode."""
-        return Format.holding(2 * self._bounds.depth_modes / DEPTH_HEADROOM, self.arithmetic_width)
+        """The running rows of the tridiagonal solver, and the modes that they start from."""
+        return Format.holding(max(self._elimination_bounds.values()), self.arithmetic_width)
 
     @property
     def elimination_store(self) -> Format:
@@ -268,9 +275,44 @@ class Configuration:
         transforms = 4 if self.solver == "spectral" else 2
         return coefficient_gain(self.coefficient_width) ** (transforms * (twiddle_stages(self.columns) + 1))
 
+    # Bounds.
+
     @property
     def _bounds(self) -> Bounds:
         return bounds(self.columns, self.neumann)
+
+    @property
+    def _elimination_bounds(self) -> dict[str, float]:
+        """Of the nodes that share `elimination`. |d| = |z[i] + c z[i+1]| is at most twice the largest mode of depth."""
+        by_slopes, by_depths = difference_bounds(self.rows, self.columns, self.neumann)
+        slope = self.gradient_limit / self.depth_limit_px
+        difference = float(np.minimum(by_slopes * slope, by_depths / DEPTH_HEADROOM).max())
+        depth = self._bounds.depth_modes / DEPTH_HEADROOM
+        return {
+            "forward_elimination.difference": difference,
+            "forward_elimination": 2 * depth,
+            "back_substitution": depth,
+        }
+
+    def bounds_within_range(self) -> dict[str, tuple[float, Format]]:
+        """Largest magnitude of each group of nodes for inputs within the gradient limit and the depth range."""
+        steep, deep = self.gradient_limit / self.unit_px, 1 / DEPTH_HEADROOM
+        found = {
+            "row_forward": (self._bounds.row_forward * steep, self.row_forward),
+            "row_inverse": (self._bounds.row_inverse * deep, self.row_inverse),
+            "row_inverse.output": (deep, self.depth),
+        }
+        if self.solver == "tridiagonal":
+            store = {"forward_elimination.store": self.elimination_store}
+            return found | {
+                node: (bound, store.get(node, self.elimination)) for node, bound in self._elimination_bounds.items()
+            }
+        return found | {
+            "row_forward.phase.re": (self._bounds.row_modes * steep, self.row_modes),
+            "column_forward": (self._bounds.column_forward * steep, self.column_forward),
+            "spectral_divide": (self._bounds.column_inverse * deep, self.column_inverse),
+            "column_inverse.output": (self._bounds.depth_modes * deep, self.depth_modes),
+        }
 
 
 @dataclass(frozen=True)
@@ -290,6 +332,41 @@ def _variation(response: np.ndarray) -> np.ndarray:
     return np.abs(np.diff(response, axis=0, append=0)).sum(axis=0)
 
 
+def wide_arithmetic(neumann: bool) -> dict[str, Any]:
+    """Of a transform that is all but ideal, fed with floats."""
+    return {
+        "alternate": not neumann,
+        "input_drop": 0,
+        "width": 62,
+        "coefficient_width": 50,
+        "output_drop": 0,
+        "output_width": 62,
+    }
+
+
+@cache
+def difference_bounds(rows: int, columns: int, neumann: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Largest f[i] - d[i-1] of each mode of a row, for slopes up to 1 and for depths up to 1, float64 (columns,).
+
+    It is the sum over rows r <= i of f[r] times the product of |c| over the rows from r up to i. These weights rise to
+    1 at r = i, so that their variation is below 2. In terms of depth it is z[i] / c[i] + z[i+1], and 1 / |c| is largest
+    in the first row. The same holds for f alone, the modes that come in.
+    """
+    eigenvalue = eigenvalues(columns, neumann)
+    modes = dst_forward(np.eye(columns)[:, makhoul(columns)], **wide_arithmetic(neumann))
+    length = np.abs(modes).sum(axis=0)
+    inner = np.diff(modes, axis=0, append=modes[-1:] if neumann else 0)  # Neumann: no slope across the edge
+    variation = np.abs(inner).sum(axis=0)
+    end = eigenvalue - (1 if neumann else 3)
+    weights = largest = np.ones(columns)
+    c = 1 / end
+    for _ in range(rows - 1):
+        weights = 1 + np.abs(c) * weights
+        largest = np.maximum(largest, weights)
+        c = 1 / (eigenvalue - 2 - c)
+    return 2 * length + variation * largest, (4 - eigenvalue) * length
+
+
 class _Responses(Monitor):
     """Keeps the whole response of each node instead of its norm."""
 
@@ -304,14 +381,7 @@ class _Responses(Monitor):
 @cache
 def bounds(size: int, neumann: bool = False) -> Bounds:
     """L1 norms of every node of the spectral solver, from the models run on unit vectors."""
-    wide: dict[str, Any] = {
-        "alternate": not neumann,
-        "input_drop": 0,
-        "width": 62,
-        "coefficient_width": 50,
-        "output_drop": 0,
-        "output_width": 62,
-    }
+    wide = wide_arithmetic(neumann)
     unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
     forward, inverse = _Responses(), _Responses()
     modes = dst_forward(unit, monitor=forward, node="forward", **wide)

@@ -38,7 +38,7 @@ def forward_elimination(
             state = round_saturate(x * coefficients[row], drop, width, monitor, node + ".state")
             moment = moment + (row + 1) * state[..., 0]
         else:
-            state = round_saturate((x * table.last) << table.last_shift, drop, width, monitor, node + ".state")
+            state = round_saturate(x * table.last * (1 << table.last_shift), drop, width, monitor, node + ".state")
             if config.neumann:
                 reciprocal, mean_drop = mean_reciprocal(config)
                 mean = round_saturate(moment, config.moment_drop, width, monitor, node + ".moment")

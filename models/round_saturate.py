@@ -29,6 +29,9 @@ class Monitor:
         if count:
             self.saturations[node] += count
 
+    def rounded(self, node: str, values: np.ndarray) -> None:
+        """Values of an integer model as they come to a node, before they are clipped."""
+
     def linear(self, node: str, response: np.ndarray) -> None:
         norm = float(np.abs(response).sum(axis=0).max())
         self.peak[node] = max(norm, self.peak.get(node, 0.0))
@@ -76,6 +79,8 @@ def round_saturate(
             monitor.linear(node, x)
         return x
     y = round_half_even(x, drop)
+    if monitor is not None:
+        monitor.rounded(node, y)
     limit = np.int64(1) << (width - 1)
     if not y.size or (y.min() >= -limit and y.max() < limit):  # as a rule
         return y

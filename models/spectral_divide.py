@@ -54,8 +54,8 @@ def spectral_divide(
     product = modes * table.mantissa
     # (product << shift) >> drop within 64 bits: shift left only where less than one bit would be dropped.
     drop = np.maximum(table.drop - table.shift, 1)
-    lift = drop - (table.drop - table.shift)
-    return round_saturate(product << lift, drop, config.arithmetic_width, monitor, node)
+    lift = np.int64(1) << drop - (table.drop - table.shift)
+    return round_saturate(product * lift, drop, config.arithmetic_width, monitor, node)
 
 
 def reciprocal_rom(config: Configuration) -> np.ndarray:

@@ -38,47 +38,69 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     -------
     int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
     """
-    arithmetic: dict[str, Any] = {
+    modes = row_forward(f, config, monitor)
+    modes = column_forward(transpose(modes, makhoul_in=False, makhoul_out=True), config, monitor)  # bursts are columns
+    modes = spectral_divide(modes, config, monitor)
+    modes = column_inverse(modes, config, monitor)
+    return row_inverse(transpose(modes, makhoul_in=True, makhoul_out=False), config, monitor)  # and rows again
+
+
+# The four transforms, of bursts (..., N).
+
+
+def _arithmetic(config: Configuration, monitor: Monitor | None) -> dict[str, Any]:
+    return {
         "width": config.arithmetic_width,
         "coefficient_width": config.coefficient_width,
         "alternate": not config.neumann,
+        "monitor": monitor,
     }
 
-    modes = dst_forward(
-        row_reorder(f, to_burst=True),
+
+def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Modes of rows in natural order, for the first frame store."""
+    return dst_forward(
+        row_reorder(rows, to_burst=True),
         input_drop=config.divergence.fraction - config.row_forward.fraction,
         output_drop=config.row_forward.fraction - config.row_modes.fraction,
         output_width=config.row_modes.width,
-        monitor=monitor,
         node="row_forward",
-        **arithmetic,
+        **_arithmetic(config, monitor),
     )
-    modes = dst_forward(
-        transpose(modes, makhoul_in=False, makhoul_out=True),  # from here a burst is a column
+
+
+def column_forward(columns: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Modes of columns in Makhoul order."""
+    return dst_forward(
+        columns,
         input_drop=config.row_modes.fraction - config.column_forward.fraction,
         output_drop=0,
         output_width=config.arithmetic_width,
-        monitor=monitor,
         node="column_forward",
-        **arithmetic,
+        **_arithmetic(config, monitor),
     )
-    modes = spectral_divide(modes, config, monitor)
-    modes = dst_inverse(
+
+
+def column_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Columns in Makhoul order, for the second frame store."""
+    return dst_inverse(
         modes,
         input_drop=0,
         output_drop=config.column_inverse.fraction - config.depth_modes.fraction,
         output_width=config.depth_modes.width,
-        monitor=monitor,
         node="column_inverse",
-        **arithmetic,
+        **_arithmetic(config, monitor),
     )
+
+
+def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Rows of depth in natural order."""
     depth = dst_inverse(
-        transpose(modes, makhoul_in=True, makhoul_out=False),  # a burst is a row again
+        modes,
         input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
         output_drop=config.row_inverse.fraction - config.depth.fraction,
         output_width=config.depth.width,
-        monitor=monitor,
         node="row_inverse",
-        **arithmetic,
+        **_arithmetic(config, monitor),
     )
     return row_reorder(depth, to_burst=False)

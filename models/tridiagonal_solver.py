@@ -53,31 +53,41 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
     -------
     int64 array (..., rows, columns), codes of `config.depth`, bottom row first
     """
-    arithmetic: dict[str, Any] = {
-        "width": config.arithmetic_width,
-        "coefficient_width": config.coefficient_width,
-        "alternate": not config.neumann,
-    }
-    parameters = solver_parameters(config)
-
-    modes = dst_forward(
-        row_reorder(f, to_burst=True),
-        input_drop=0,
-        output_drop=parameters["RowForwardOut"],
-        output_width=config.arithmetic_width,
-        monitor=monitor,
-        node="row_forward",
-        **arithmetic,
-    )
-    d = forward_elimination(modes, config, monitor)
+    d = forward_elimination(row_forward(f, config, monitor), config, monitor)
     z = back_substitution(frame_stack(d), config, monitor)
+    return row_inverse(z, config, monitor)
+
+
+def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Modes of rows (..., columns) in natural order, codes of `config.elimination`."""
+    return dst_forward(
+        row_reorder(rows, to_burst=True),
+        input_drop=0,
+        output_drop=solver_parameters(config)["RowForwardOut"],
+        output_width=config.arithmetic_width,
+        node="row_forward",
+        **_arithmetic(config, monitor),
+    )
+
+
+def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Rows of depth in natural order."""
+    parameters = solver_parameters(config)
     depth = dst_inverse(
-        z,
+        modes,
         input_drop=parameters["RowInverseIn"],
         output_drop=parameters["RowInverseOut"],
         output_width=config.depth.width,
-        monitor=monitor,
         node="row_inverse",
-        **arithmetic,
+        **_arithmetic(config, monitor),
     )
     return row_reorder(depth, to_burst=False)
+
+
+def _arithmetic(config: Configuration, monitor: Monitor | None) -> dict[str, Any]:
+    return {
+        "width": config.arithmetic_width,
+        "coefficient_width": config.coefficient_width,
+        "alternate": not config.neumann,
+        "monitor": monitor,
+    }

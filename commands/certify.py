@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make certify`: the largest value that each node can be asked to hold, and the frames that ask for it, run.
+
+Takes the variables of `make sim`, and RTL=0 to leave the simulation out. Exit status: 0 when model and RTL saturate
+where the certificate says they can, and nowhere else; 1 when not, 2 on bad input.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import io
+import json
+import math
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+from tqdm import tqdm
+
+from commands import sim
+from commands import simulator as simulation
+from models.calibration import Calibration, load
+from models.certificate import Node, certify, slope_response
+from models.configuration import Configuration
+from models.errors import InputError
+from models.frames import load_frames
+from models.gradient_lookup import gradient_codes
+from models.round_saturate import Monitor
+from models.scenes import AS_EVER
+from models.tactile_depth import tactile_depth
+
+ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: tests/test_dst_forward.py
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """The frame of a calibration's colours that drives a node as far as any of them can.
+
+    Attributes
+    ----------
+    node : Node
+    frame : int
+        Its place among the frames.
+    expected : float
+        Value that it drives the node to, in the node's codes, were arithmetic exact.
+    """
+
+    node: Node
+    frame: int
+    expected: float
+
+
+class Peaks(Monitor):
+    """The largest magnitude of each node in each frame, before it is clipped, and whether it was."""
+
+    def __init__(self, widths: dict[str, int], frames: int) -> None:
+        super().__init__()
+        self.widths = widths
+        self.peaks = {node: np.zeros(frames, np.int64) for node in widths}
+        self.clips = {node: np.zeros(frames, bool) for node in widths}
+
+    def rounded(self, node: str, values: np.ndarray) -> None:
+        flat = values.reshape(len(values), -1)
+        high, low = flat.max(axis=1), flat.min(axis=1)
+        limit = 1 << (self.widths[node] - 1)
+        self.peaks[node] = np.maximum(self.peaks[node], np.maximum(high, -low))
+        self.clips[node] |= (high >= limit) | (low < -limit)
+
+
+def worst_frames(
+    nodes: list[Node], calibration: Calibration, config: Configuration
+) -> tuple[np.ndarray, list[Attempt]]:
+    """For each node the frame that drives it furthest: every pixel takes the colour whose slopes add the most.
+
+    Returns
+    -------
+    frames : uint8 array (frames, rows, columns, 3), each once
+    attempts : list of Attempt, one for each node that any frame moves
+    """
+    codes = gradient_codes(calibration, config)
+    bins = _corners(codes)
+    bits = config.bits_per_channel
+    colours = np.stack([bins >> 2 * bits, bins >> bits & (1 << bits) - 1, bins & (1 << bits) - 1], axis=-1)
+    colours = (colours << (8 - bits)).astype(np.uint8)
+    found: dict[bytes, int] = {}
+    frames: list[np.ndarray] = []
+    attempts = []
+    for node in nodes:
+        if not node.reached:
+            continue
+        gain = slope_response(node.response, config.neumann) @ codes[bins].T  # of each corner at each pixel
+        choice = gain.argmax(axis=-1)
+        key = choice.astype(np.int32).tobytes()
+        if key not in found:
+            found[key] = len(frames)
+            frames.append(colours[choice])
+        attempts.append(Attempt(node, found[key], float(gain.max(axis=-1).sum())))
+    return np.stack(frames), attempts
+
+
+def _corners(codes: np.ndarray) -> np.ndarray:
+    """Bins on the hull of a table's slopes: one of them adds the most, whatever the response."""
+    slopes, bins = np.unique(codes, axis=0, return_index=True)
+    try:
+        return bins[ConvexHull(slopes).vertices]
+    except (QhullError, ValueError):  # all on one line, or fewer than three
+        return bins
+
+
+def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], peaks: Peaks) -> list[str]:
+    """What the model did with the frames, against the certificate; one line for each that differs."""
+    order = [node.name for node in nodes]
+    rounding = ROUNDING_STEPS * frames[0, ..., 0].size / (2 * math.pi**2)  # the solve amplifies the lowest mode so much
+    faults = []
+    for attempt in attempts:
+        name, frame = attempt.node.name, attempt.frame
+        before = order[: order.index(name)]
+        if any(peaks.clips[node][frame] for node in before):
+            continue  # the node never saw the input meant for it
+        peak, bound = int(peaks.peaks[name][frame]), attempt.node.slopes / attempt.node.form.lsb
+        if not attempt.expected - rounding <= peak <= bound + rounding:
+            faults.append(f"{name} reached {peak:,}, the certificate says {attempt.expected:,.1f} of {bound:,.1f}")
+    for node in nodes:
+        for frame in np.flatnonzero(peaks.clips[node.name]):
+            upstream = any(peaks.clips[name][frame] for name in order[: order.index(node.name)])
+            if node.slopes_headroom_bits >= 0 and not upstream:
+                faults.append(f"{node.name} saturated, and the certificate says that it cannot")
+    return faults
+
+
+def table(nodes: list[Node]) -> str:
+    """One line a node."""
+
+    def bits(headroom: float) -> str:
+        return "-" if headroom == math.inf else f"{headroom:+.2f}"
+
+    head = f"{'node':<34}{'width':>6}{'fraction':>9}{'holds':>11}"
+    lines = [head + f"{'slopes':>12}{'headroom':>10}{'depths':>12}{'headroom':>10}"]
+    for node in nodes:
+        lines.append(
+            f"{node.name:<34}{node.form.width:>6}{node.form.fraction:>9}{node.form.limit:>11.5g}"
+            f"{node.slopes:>12.5g}{bits(node.slopes_headroom_bits):>10}"
+            f"{node.depths:>12.5g}{bits(node.depths_headroom_bits):>10}"
+        )
+    return "\n".join(lines)
+
+
+def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
+    """What the table says, in sentences."""
+    mm = config.depth_range_px * pixel_pitch_mm  # type: ignore[operator]
+    steep = [node for node in nodes if node.slopes_headroom_bits < 0]
+    deep = [node for node in nodes if node.depths_headroom_bits < 0]
+    lines = [
+        f"depth range {mm:.4g} mm, slopes up to {config.gradient_limit:g}; headroom in bits, negative: it saturates"
+    ]
+    if deep:
+        lines.append(f"a depth within the range can saturate {', '.join(node.name for node in deep)}")
+    else:
+        lines.append("no depth within the range saturates a node")
+    if steep:
+        first = steep[0].name
+        lines.append(f"{len(steep)} of {len(nodes)} nodes saturate for some slopes, {first} first in the stream")
+    else:
+        lines.append("no slopes at all saturate a node")
+    lowest = min(nodes, key=lambda node: node.reached / node.slopes if node.slopes else 1)
+    if lowest.slopes and lowest.reached < (1 - 1e-9) * lowest.slopes:
+        lines.append(
+            f"every bound is attained to {100 * lowest.reached / lowest.slopes:.3f} % ({lowest.name}) or better"
+        )
+    else:
+        lines.append("every bound is attained")
+    return lines
+
+
+def cost_of_worst(config: Configuration, pixel_pitch_mm: float) -> str:
+    """What a depth range that nothing leaves costs against the default one."""
+    default = dataclasses.replace(config, depth_range_px=None)
+    bits = math.log2(config.depth_lsb_px / default.depth_lsb_px)
+    nm = [1e6 * pixel_pitch_mm * each.depth_lsb_px for each in (config, default)]
+    return f"depth comes in steps of {nm[0]:.3g} nm, by default {nm[1]:.3g} nm: {bits:.2f} bits of resolution"
+
+
+def run_rtl(request: sim.Request, config: Configuration, calibration: Calibration, frames: Path, out: Path) -> dict:
+    """The report of `make sim` on the frames."""
+    assert config.depth_range_px is not None
+    meant = dataclasses.replace(
+        request,
+        frames=str(frames),
+        press=AS_EVER,
+        reference=None,
+        depth_range_mm=config.depth_range_px * calibration.pixel_pitch_mm,  # frames from a file come unscaled
+        out=out,
+    )
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        sim.run(meant)
+    report: dict = json.loads((out / "report.json").read_text())
+    return report
+
+
+def run(request: sim.Request, rtl: bool = True) -> int:
+    """Everything after parsing; returns the exit status."""
+    if rtl:
+        simulation.check(request.simulator)
+    calibration = load(request.calibration)
+    grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
+    scene = load_frames(request.frames, (grid.rows, grid.columns), request.reference, request.seed, request.press)
+    pixel_pitch_mm = calibration.pixel_pitch_mm * scene.pixel_scale
+    config = sim.configure(request, calibration, pixel_pitch_mm)
+    shape = f"{config.rows}x{config.columns}"
+    name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
+    if request.depth_range_mm == math.inf:
+        name += "-worst"
+    out = request.out or simulation.ROOT / "build" / "certify" / name
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+
+    with tqdm(
+        total=1.0,
+        desc="certifying",
+        leave=False,
+        disable=None,
+        delay=3,
+        bar_format="{desc} {percentage:.0f} % {bar} {remaining}",
+    ) as bar:
+        nodes = certify(config, bar.update)
+    print(table(nodes))
+    for line in summary(nodes, config, pixel_pitch_mm):
+        print(line)
+    if request.depth_range_mm == math.inf:
+        print(cost_of_worst(config, pixel_pitch_mm))
+
+    frames, attempts = worst_frames(nodes, calibration, config)
+    np.save(out / "worst.npy", frames)
+    peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
+    tactile_depth(frames, calibration, config, peaks)
+    faults = check_model(frames, attempts, nodes, peaks)
+    clipping = sorted(node for node, clips in peaks.clips.items() if clips.any())
+    print(f"{len(frames)} frames that drive every node furthest, in the colours of {calibration.name}: model", end="")
+    if rtl:
+        report = run_rtl(request, config, calibration, out / "worst.npy", out / "rtl")
+        if not report["bit_exact"] or not report["registers_agree"]:
+            faults.append(f"RTL differs from the model: see {os.path.relpath(out / 'rtl')}")
+        if sorted(report["saturations"]) != clipping:
+            faults.append(f"saturated in make sim: {', '.join(report['saturations']) or 'nothing'}, here {clipping}")
+        print(f" and RTL saturate {', '.join(clipping) or 'nothing'}")
+    else:
+        print(f" saturates {', '.join(clipping) or 'nothing'}")
+    document = {
+        "grid": [config.rows, config.columns],
+        "solver": request.solver,
+        "boundary": request.boundary,
+        "data_width": config.data_width,
+        "coeff_width": config.coefficient_width,
+        "depth_range_mm": config.depth_range_px * pixel_pitch_mm,  # type: ignore[operator]
+        "gradient_limit": config.gradient_limit,
+        "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
+        "calibration": calibration.name,
+        "nodes": [_record(node, attempts) for node in nodes],
+        "saturated": clipping,
+        "faults": faults,
+    }
+    (out / "certificate.json").write_text(json.dumps(document, indent=1) + "\n")
+    for fault in faults:
+        print(fault)
+    print(f"results: {os.path.relpath(out)}")
+    return 1 if faults else 0
+
+
+def _record(node: Node, attempts: list[Attempt]) -> dict:
+    own = next((attempt for attempt in attempts if attempt.node is node), None)
+
+    def finite(headroom: float) -> float | None:
+        return None if headroom == math.inf else headroom
+
+    return {
+        "node": node.name,
+        "width": node.form.width,
+        "fraction": node.form.fraction,
+        "holds": node.form.limit,
+        "worst_over_slopes": node.slopes,
+        "attained_over_slopes": node.reached,
+        "slopes_headroom_bits": finite(node.slopes_headroom_bits),
+        "worst_over_depths": node.depths,
+        "depths_headroom_bits": finite(node.depths_headroom_bits),
+        "worst_frame": None if own is None else own.frame,
+        "reached_by_frame": None if own is None else own.expected * node.form.lsb,
+    }
+
+
+def main() -> None:
+    arguments = [argument for argument in sys.argv[1:] if not argument.startswith("RTL=")]
+    rtl = [argument.partition("=")[2] for argument in sys.argv[1:] if argument.startswith("RTL=")]
+    try:
+        if any(value not in ("", "0", "1") for value in rtl):
+            raise InputError(f"RTL={rtl[-1]}: accepted are 0 and 1")
+        sys.exit(run(sim.parse(arguments), "0" not in rtl))
+    except InputError as error:
+        print(f"make certify: {error}", file=sys.stderr)
+        sys.exit(2)
+    except RuntimeError as error:
+        print(f"make certify: {error}", file=sys.stderr)
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

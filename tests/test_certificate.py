@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The certificate: its norms are those of the whole linear map, its frames attain them in model and RTL."""
+
+import json
+
+import numpy as np
+import pytest
+
+from commands import certify as command
+from commands import sim
+from models import reference
+from models.certificate import certify, deepest, node_format, slope_response
+from models.configuration import DEPTH_HEADROOM, Configuration, Format, difference_bounds
+from models.divergence import divergence
+from models.errors import InputError
+from models.round_saturate import Monitor
+from models.tactile_depth import solve
+
+WHOLE = [
+    {"columns": 16},
+    {"columns": 16, "neumann": True, "coefficient_width": 10, "data_width": 12},
+    {"columns": 16, "rows": 9, "solver": "tridiagonal"},
+    {"columns": 16, "rows": 12, "solver": "tridiagonal", "neumann": True, "coefficient_width": 12},
+    {"columns": 16, "rows": 8, "solver": "tridiagonal", "depth_range_px": 0.5},
+]
+each_whole = pytest.mark.parametrize("choices", WHOLE, ids=lambda c: "-".join(map(str, c.values())))
+
+
+class Words(Monitor):
+    """Every word of every node: (lone samples, words)."""
+
+    def __init__(self):
+        super().__init__()
+        self.words = {}
+
+    def linear(self, node, response):
+        self.words.setdefault(node, []).append(response.reshape(len(response), -1))
+
+
+def whole_map(config):
+    """Responses of every word to each pixel of the divergence, and of the depth, by running the solver on floats."""
+    shape = (config.rows, config.columns)
+    count = config.rows * config.columns
+    monitor = Words()
+    depth = solve(np.eye(count).reshape(count, *shape), config, monitor).reshape(count, count)
+    return {node: np.concatenate(words, axis=1) for node, words in monitor.words.items()}, depth
+
+
+def over_slopes(words, config):
+    """Norm of each word over slopes up to the limit, in its codes."""
+    maps = np.moveaxis(words.reshape(config.rows, config.columns, -1), -1, 0)
+    norms = [np.abs(slope_response(word, config.neumann)).sum() for word in maps]
+    return np.array(norms) * config.gradient_limit / config.gradient_lsb
+
+
+@each_whole
+def test_slopes_are_the_norms_of_the_whole_map(choices):
+    config = Configuration(**choices)
+    words, _ = whole_map(config)
+    nodes = certify(config)
+    assert [node.name for node in nodes] == list(words)
+    for node in nodes:
+        norm = over_slopes(words[node.name], config).max() * node.form.lsb
+        assert node.slopes == pytest.approx(norm, rel=1e-9, abs=1e-9), node.name
+        assert node.reached == node.slopes
+        own = np.abs(slope_response(node.response, config.neumann)).sum() * config.gradient_limit / config.gradient_lsb
+        assert own * node.form.lsb == pytest.approx(node.reached, rel=1e-9, abs=1e-9), node.name
+
+
+@pytest.mark.parametrize("choices", [choices for choices in WHOLE if not choices.get("neumann")], ids=str)
+def test_depths_are_the_norms_of_the_whole_map(choices):
+    """By the inverse of the map to depth. The certificate may say a little more: see below."""
+    config = Configuration(**choices)
+    words, depth = whole_map(config)
+    from_depth = np.linalg.inv(depth)
+    for node in certify(config):
+        over_depths = np.abs(from_depth @ words[node.name]).sum(axis=0) * config.depth_range_px / config.depth_lsb_px
+        bound = np.minimum(over_depths, over_slopes(words[node.name], config)).max() * node.form.lsb
+        assert node.depths >= bound * (1 - 1e-3), node.name
+        if node.name.startswith("row_inverse"):  # not every word's norm over slopes is computed
+            assert node.depths <= over_depths.max() * node.form.lsb * (1 + 1e-9), node.name
+        elif not node.name.startswith(("row_forward", "column_forward")):  # ahead of the solve: by the Laplacian
+            assert node.depths == pytest.approx(bound, rel=1e-9), node.name
+
+
+@pytest.mark.parametrize("neumann", [False, True])
+@pytest.mark.parametrize(("rows", "columns"), [(16, 16), (11, 16), (32, 16)])
+def test_the_deepest_point_is_where_it_is_looked_for(rows, columns, neumann):
+    lone = np.eye(rows * columns).reshape(-1, rows, columns)
+    depths = [np.abs(slope_response(z, neumann)).sum() for z in reference.solve(lone, neumann)]
+    assert deepest(rows, columns, neumann) == pytest.approx(max(depths), rel=1e-12)
+
+
+@pytest.mark.parametrize("neumann", [False, True])
+@pytest.mark.parametrize("rows", [8, 21, 32])
+def test_the_bound_of_a_difference_holds_and_is_close(rows, neumann):
+    """The configuration computes it without the whole survey: ideal coefficients, the variation of weights as 2."""
+    config = Configuration(columns=32, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=24)
+    found = {node.name: node for node in certify(config)}["forward_elimination.difference"].slopes
+    by_slopes = difference_bounds(rows, 32, neumann)[0].max() / config.depth_limit_px
+    assert found * (1 - 1e-4) <= by_slopes <= 1.3 * found
+
+
+def laplacian(z, neumann):
+    """Five-point; the neighbour outside the frame is the mirrored negative, or (Neumann) the pixel itself."""
+    f = np.zeros_like(z)
+    for axis in (-1, -2):
+        ends = [np.take(z, [at], axis) * (1 if neumann else -1) for at in (0, -1)]
+        f += np.diff(np.concatenate((ends[0], z, ends[1]), axis), n=2, axis=axis)
+    return f
+
+
+@pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
+@pytest.mark.parametrize("depth_range_px", [0.25, 1.0, 4.0])
+def test_depths_at_their_bounds_saturate_no_node(solver, depth_range_px):
+    """Of each node the depths that drive it furthest, from limit to limit: only the widest slope limit lets them in."""
+    config = Configuration(columns=16, solver=solver, depth_range_px=depth_range_px, gradient_limit=64.0)
+    words, depth = whole_map(config)
+    from_depth = np.linalg.inv(depth)
+    worst = []
+    for name in words:
+        response = from_depth @ words[name]
+        worst.append(np.sign(response[:, np.abs(response).sum(axis=0).argmax()]).reshape(16, 16))
+    z = np.stack(worst)[:, ::-1] if solver == "tridiagonal" else np.stack(worst)  # its depth leaves bottom row first
+    f = np.rint(laplacian(depth_range_px * z, False) / config.gradient_lsb).astype(np.int64)
+    monitor = Monitor()
+    codes = solve(f, config, monitor)
+    assert not monitor.saturations
+    assert np.abs(codes).max() * config.depth_lsb_px == pytest.approx(depth_range_px, rel=0.01)
+
+
+@pytest.mark.parametrize("depth_range_px", [1.0, 2.0])
+def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_px):
+    """Steep and shallow at once: what comes into the elimination is then larger than any mode of the depth."""
+    config = Configuration(columns=32, solver="tridiagonal", depth_range_px=depth_range_px)
+    node = {node.name: node for node in certify(config)}["row_forward.phase.re"]
+    slopes = np.sign(slope_response(node.response, False))
+    depth = reference.solve(divergence(slopes), False)
+    assert np.abs(depth).max() <= depth_range_px
+    monitor = Monitor()
+    solve(divergence(np.rint(0.99 * slopes / config.gradient_lsb).astype(np.int64)), config, monitor)
+    assert not monitor.saturations
+
+
+def test_a_format_too_narrow_for_the_range_is_refused_with_its_node():
+    class Narrow(Configuration):
+        @property
+        def column_inverse(self):
+            form = super().column_inverse
+            return Format(form.width, form.fraction + 1)
+
+    with pytest.raises(InputError, match=r"spectral_divide .* a depth within the range of 4 pixels") as caught:
+        Narrow(columns=16)
+    assert "\n" not in str(caught.value)
+
+    class Shallow(Configuration):
+        @property
+        def elimination(self):  # as for modes of the depth alone
+            return Format.holding(2 * self._bounds.depth_modes / DEPTH_HEADROOM, self.arithmetic_width)
+
+    Shallow(columns=32, solver="tridiagonal")
+    with pytest.raises(InputError, match=r"forward_elimination\.difference"):
+        Shallow(columns=32, solver="tridiagonal", depth_range_px=1.0)
+
+
+@pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
+@pytest.mark.parametrize("neumann", [False, True])
+@pytest.mark.parametrize("depth_range_px", [None, 0.3, 3.0])
+@pytest.mark.parametrize(("columns", "data_width", "coefficient_width"), [(16, 12, 10), (32, 24, 18), (32, 32, 24)])
+def test_no_derived_format_saturates_within_the_range(
+    solver, neumann, depth_range_px, columns, data_width, coefficient_width
+):
+    config = Configuration(columns, 0, solver, neumann, data_width, coefficient_width, depth_range_px)
+    assert {node.name for node in certify(config) if node.depths_headroom_bits < 0} == set()
+
+
+def test_every_node_has_its_format():
+    """Widths as the model saturates to: a full-scale frame clips at them."""
+    for choices in WHOLE:
+        config = Configuration(**choices)
+
+        class Limits(Monitor):
+            def rounded(self, node, values, config=config):
+                assert node_format(node, config).width in (config.data_width, config.arithmetic_width)
+                self.clipped_to = node_format(node, config)
+
+        solve(np.ones((config.rows, config.columns), np.int64), config, Limits())
+
+
+def run(tmp_path, *arguments, rtl=True):
+    out = tmp_path / "out"
+    assert command.run(sim.parse([*arguments, f"OUT={out}"]), rtl) == 0
+    return json.loads((out / "certificate.json").read_text())
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        "N=16",
+        "N=16 BOUNDARY=neumann CALIBRATION=gelsight-mini",
+        "ROWS=9 COLS=16 SOLVER=tridiagonal",
+        "ROWS=12 COLS=32 SOLVER=tridiagonal BOUNDARY=neumann DATA_WIDTH=16 COEFF_WIDTH=12",
+    ],
+)
+@pytest.mark.parametrize("depth_range", ["", "worst"])
+def test_rtl_and_model_saturate_where_the_certificate_says(tmp_path, capsys, given, depth_range):
+    document = run(tmp_path, *given.split(), "SIM=icarus", f"DEPTH_RANGE={depth_range}")
+    report = json.loads((tmp_path / "out" / "rtl" / "report.json").read_text())
+    assert report["bit_exact"]
+    assert report["registers_agree"]
+    assert sorted(report["saturations"]) == document["saturated"]
+    assert "no depth within the range saturates a node" in capsys.readouterr().out
+    if depth_range:
+        assert document["saturated"] == []
+        assert min(node["slopes_headroom_bits"] or 0 for node in document["nodes"]) >= 0
+    else:
+        assert "row_inverse.output" in document["saturated"]
+
+
+@pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
+def test_the_worst_depth_range_and_its_price(tmp_path, capsys, solver):
+    run(tmp_path, "N=32", f"SOLVER={solver}", "DEPTH_RANGE=worst", rtl=False)
+    said = capsys.readouterr().out
+    assert "no slopes at all saturate a node" in said
+    assert "bits of resolution" in said
+
+
+def test_a_certificate_that_is_wrong_is_found_out(tmp_path):
+    config = Configuration(columns=16)
+    nodes = certify(config)
+    calibration = command.load("synthetic")
+    frames, attempts = command.worst_frames(nodes, calibration, config)
+    peaks = command.Peaks({node.name: node.form.width for node in nodes}, len(frames))
+    command.tactile_depth(frames, calibration, config, peaks)
+    assert command.check_model(frames, attempts, nodes, peaks) == []
+    output = next(node for node in nodes if node.name == "column_inverse.output")
+    peaks.peaks["spectral_divide"] //= 2
+    peaks.clips["column_forward.input"][0] = True
+    faults = command.check_model(frames, attempts, nodes, peaks)
+    assert any(fault.startswith("spectral_divide reached") for fault in faults)
+    assert any(fault.startswith("column_forward.input saturated") for fault in faults)
+    assert output.slopes_headroom_bits < 0
+
+
+@pytest.mark.parametrize(
+    ("given", "named"), [("N=100", "N=100"), ("DEPTH_RANGE=deep", "DEPTH_RANGE=deep"), ("RTL=2", "RTL=2")]
+)
+def test_bad_input(monkeypatch, capsys, tmp_path, given, named):
+    monkeypatch.setattr("sys.argv", ["certify", given, f"OUT={tmp_path / 'out'}"])
+    with pytest.raises(SystemExit) as stop:
+        command.main()
+    assert stop.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert named in said[0]
+    assert not (tmp_path / "out").exists()
