@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | sweep | tune | upsets | certify | extremes | calibration | setup | clean, see README.md
+# make sim | test | lint | sweep | tune | upsets | certify | extremes | frontends | fuzz | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -12,7 +12,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint sweep tune upsets certify extremes calibration setup clean
+.PHONY: sim test lint sweep tune upsets certify extremes frontends fuzz calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -21,11 +21,11 @@ sim: $(STAMP)
 
 # The whole suite: lint, models, every core on every simulator.
 test: lint
-	@sh commands/icarus.sh
 	@$(PY) -m pytest -n auto --dist worksteal
 
-# Verilator -Wall on every module, ruff, mypy.
+# Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
 lint: $(TOOLS)
+	@sh commands/icarus.sh
 	@$(PY) -m commands.lint
 
 # Accuracy against latency, multipliers and memory, by the models, into a CSV; goes on where it was interrupted.
@@ -47,6 +47,10 @@ certify: $(STAMP)
 # What happens at the edges, one row each: error, saturations, whether the status bit told; SHORT=1 without the long runs.
 extremes: $(STAMP)
 	@$(PY) -m commands.extremes $(foreach v,N SIM SHORT OUT,$(if $($(v)),'$(v)=$($(v))'))
+
+# Two Verilog front ends read every core as the same circuit: a few minutes.
+frontends: $(TOOLS)
+	@$(PY) -m commands.frontends
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

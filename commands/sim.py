@@ -78,7 +78,7 @@ def parse(arguments: list[str]) -> Request:
     """
     accepted = (
         "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE "
-        "CALIBRATION REPEAT SEED GAPS STALLS WAVES OUT"
+        "CALIBRATION REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
     )
     given: dict[str, str] = {}
     for argument in arguments:
@@ -87,6 +87,8 @@ def parse(arguments: list[str]) -> Request:
             raise InputError(f"{argument}: unknown variable: accepted are {accepted.replace(' ', ', ')}")
         if value:
             given[key] = value
+    if "CONFIG" in given:
+        given = from_file(Path(given.pop("CONFIG")), given, accepted.replace("CONFIG ", "").split()) | given
 
     def number(key: str, default: float, low: float, high: float, kind: type = int) -> float:
         if key not in given:
@@ -143,6 +145,29 @@ def parse(arguments: list[str]) -> Request:
         waves=bool(number("WAVES", 0, 0, 1)),
         out=Path(given["OUT"]) if "OUT" in given else None,
     )
+
+
+def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[str, str]:
+    """Variables of a configuration file, a JSON object; an N that is `given` replaces rows and columns of the file.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        values = json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or "not JSON"
+        raise InputError(f"CONFIG={path}: cannot be read ({reason}): give a file of `make tune`") from error
+    if not isinstance(values, dict):
+        raise InputError(f"CONFIG={path}: accepted is one JSON object of variables")
+    for key, value in values.items():
+        if key not in accepted:
+            raise InputError(f"CONFIG={path}: unknown variable {key}: accepted are {', '.join(accepted)}")
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: accepted is a number or a string")
+    replaced = ("ROWS", "COLS") if "N" in given else ()
+    return {key: str(value) for key, value in values.items() if key not in replaced}
 
 
 def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float) -> Configuration:
@@ -336,14 +361,15 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
     return "\n".join(lines)
 
 
-def run(request: Request) -> int:
-    """Everything after parsing; returns the exit status."""
+def run(request: Request, frames: Frames | None = None) -> int:
+    """Everything after parsing; returns the exit status. `frames`: in place of those that the request names."""
     simulation.check(request.simulator)
     calibration = load(request.calibration)
     # Refuse a grid before frames are read.
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
     grid = (request.rows, request.columns)
-    frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
+    if frames is None:
+        frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
     pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
     config = configure(request, calibration, pixel_pitch_mm)
     shape = f"{config.rows}x{config.columns}"

@@ -103,14 +103,14 @@ module axil_registers
 
   // A register after this write: its bytes without strobe stay.
   function automatic logic [31:0] merged(input logic [31:0] word);
-    return write_ones | (word & ~write_mask);
+    merged = write_ones | (word & ~write_mask);
   endfunction
 
   // A counter that counts on, from 0 if it is cleared now, and stays at all ones.
   function automatic logic [31:0] counted(input logic [31:0] count, input logic [7:0] more);
     logic [32:0] sum;
     sum = {1'b0, counters_cleared ? 32'd0 : count} + 33'(more);
-    return sum[32] ? AllOnes : sum[31:0];
+    counted = sum[32] ? AllOnes : sum[31:0];
   endfunction
 
   assign s_axil_awready = !aw_held;

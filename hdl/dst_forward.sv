@@ -40,7 +40,8 @@ module dst_forward #(
     .clk, .rst, .en, .start(in_start), .position, .active
   );
   logic signed [InWidth:0] signed_in;
-  assign signed_in = Alternate != 0 && position[$clog2(Size)-1] ? -(InWidth + 1)'(in_data) : (InWidth + 1)'(in_data);
+  assign signed_in = Alternate != 0 && position[$clog2(Size)-1] ? -$signed({in_data[InWidth-1], in_data})
+      : (InWidth + 1)'(in_data);
 
   logic signed [Width-1:0] x, x_q;
   logic clipped, clipped_q, start_q, frame_start_q;

@@ -69,7 +69,7 @@ module dst_inverse #(
     .clk, .rst, .en, .start(fft_start), .position, .active
   );
   logic signed [Width:0] signed_x;
-  assign signed_x = Alternate != 0 && position[$clog2(Size)-1] ? -(Width + 1)'(x) : (Width + 1)'(x);
+  assign signed_x = Alternate != 0 && position[$clog2(Size)-1] ? -$signed({x[Width-1], x}) : (Width + 1)'(x);
 
   logic signed [OutWidth-1:0] rounded;
   logic clipped, clipped_q;

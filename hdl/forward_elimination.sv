@@ -2,11 +2,11 @@
 // forward_elimination: the way down of Thomas's algorithm, all modes of a row in turn.
 //
 //   d[i] = c[i] (f[i] - d[i-1]),  d[-1] = 0
-//   Neumann: the column of position 0 is singular; its last row is minus the mean sum over i of (i + 1) d[i] / Rows, which
-//   gives it zero mean after the substitution.
+//   Neumann: the column of position 0 is singular; its last row is minus the mean sum over i of (i + 1) d[i] / Rows,
+//   which gives it zero mean after the substitution.
 //
-// Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of d,
-// rounded to the stored word. Latency: 7 cycles. The running row keeps Width bits. One multiplier; between dependent
+// Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of
+// d, rounded to the stored word. Latency: 7 cycles. The running row keeps Width bits. One multiplier; between dependent
 // values lie at least Size clocks, so it pipelines freely. Bit-accurate model: models/forward_elimination.py.
 
 module forward_elimination #(
@@ -136,7 +136,8 @@ module forward_elimination #(
 
   logic [1:0] clipped_mean;
   if (Neumann != 0) begin : g_mean
-    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its use.
+    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its
+    // use.
     localparam int MomentWidth = Width + 2 * RowWidth + 2;
     logic [RowWidth:0] weight, weight_q;  // of d, row + 1
     assign weight = frame_start_q[ToState-1] ? (RowWidth + 1)'(1) : weight_q;

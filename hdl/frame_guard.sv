@@ -5,12 +5,12 @@
 //   row_short      tlast before the last column  marked, filled up
 //   row_long       no tlast in the last column   marked, filled up
 //   start_early    tuser inside a frame          marked, filled up; the early start waits, then begins the next frame
-//   timed_out      silence of `timeout` clocks   marked, filled up                               (timeout 0: wait for ever)
+//   timed_out      silence of `timeout` clocks   marked, filled up                           (timeout 0: wait for ever)
 //   start_missing  no tuser where a frame begins dropped up to the next tuser
 //
-// Each fault is one clock of its output, once a broken frame. What is left of a broken frame on the input is dropped; the
-// filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order; with the
-// last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
+// Each fault is one clock of its output, once a broken frame. What is left of a broken frame on the input is dropped;
+// the filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order;
+// with the last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
 // Bit-accurate model: models/frame_guard.py.
 
 module frame_guard #(

@@ -5,8 +5,9 @@
 // Stream out: Rows bursts without a pause. Latency: 2 cycles from the first word of the last row to the first word out;
 // nothing need follow, the reader runs by itself.
 //
-// In place: while row Rows - 1 - r of a frame is read, row r of the next frame cannot have begun; it is written into the
-// freed place. So the order of rows in the memory is the reverse of the frame read last. Bit-accurate model: models/frame_stack.py.
+// In place: while row Rows - 1 - r of a frame is read, row r of the next frame cannot have begun; it is written into
+// the freed place. So the order of rows in the memory is the reverse of the frame read last. Bit-accurate model:
+// models/frame_stack.py.
 
 module frame_stack #(
   parameter int Width = 24,

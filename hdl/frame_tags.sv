@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // frame_tags: what is known of each frame waits beside the solver until its first depth is due.
 //
-// A tag is pushed with the last pixel of a frame. Latency enabled clocks later `due` is high for one enabled clock, with the
-// tag on due_tag. No order is kept: each place compares the clock with its own, so an upset costs the frame it hits and no
-// other. Pushes lie at least Pixels enabled clocks apart, so there are never more tags than places.
+// A tag is pushed with the last pixel of a frame. Latency enabled clocks later `due` is high for one enabled clock,
+// with the tag on due_tag. No order is kept: each place compares the clock with its own, so an upset costs the frame it
+// hits and no other. Pushes lie at least Pixels enabled clocks apart, so there are never more tags than places.
 // Cycle-accurate model: models/frame_tags.py.
 
 module frame_tags #(

@@ -3,8 +3,8 @@
 //
 //   {gx, gy} = table[ top bits of R | top bits of G | top bits of B ],  BitsPerChannel of each
 //
-// Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy, z
-// positive into the gel. Latency: 2 cycles. The table has its calibration at power-up and may be written while no
+// Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy,
+// z positive into the gel. Latency: 2 cycles. The table has its calibration at power-up and may be written while no
 // frame is in flight. Bit-accurate model: models/gradient_lookup.py, which also writes the table.
 
 module gradient_lookup #(

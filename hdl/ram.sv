@@ -21,31 +21,35 @@ module ram #(
   output logic [Width-1:0]        read_data
 );
 
-  if (Style == 0) begin : g_distributed
-    (* ram_style = "distributed", no_rw_check *) logic [Width-1:0] words[Depth];
-    if (File != "") begin : g_file
-      initial $readmemh(File, words);
+  case (Style)  // not else if: Yosys' own front end would count that as a scope
+    0: begin : g_distributed
+      (* ram_style = "distributed", no_rw_check *) logic [Width-1:0] words[Depth];
+      if (File != "") begin : g_file
+        initial $readmemh(File, words);
+      end
+      always_ff @(posedge clk) begin
+        if (write_en) words[write_address] <= write_data;
+        if (read_en) read_data <= words[read_address];
+      end
     end
-    always_ff @(posedge clk) begin
-      if (write_en) words[write_address] <= write_data;
-      if (read_en) read_data <= words[read_address];
+    1: begin : g_block
+      (* ram_style = "block", no_rw_check *) logic [Width-1:0] words[Depth];
+      if (File != "") begin : g_file
+        initial $readmemh(File, words);
+      end
+      always_ff @(posedge clk) begin
+        if (write_en) words[write_address] <= write_data;
+        if (read_en) read_data <= words[read_address];
+      end
     end
-  end else if (Style == 1) begin : g_block
-    (* ram_style = "block", no_rw_check *) logic [Width-1:0] words[Depth];
-    if (File != "") begin : g_file
-      initial $readmemh(File, words);
+    default: begin : g_ultra
+      (* ram_style = "ultra", no_rw_check *) logic [Width-1:0] words[Depth];
+      always_ff @(posedge clk) begin
+        if (write_en) words[write_address] <= write_data;
+        if (read_en) read_data <= words[read_address];
+      end
     end
-    always_ff @(posedge clk) begin
-      if (write_en) words[write_address] <= write_data;
-      if (read_en) read_data <= words[read_address];
-    end
-  end else begin : g_ultra
-    (* ram_style = "ultra", no_rw_check *) logic [Width-1:0] words[Depth];
-    always_ff @(posedge clk) begin
-      if (write_en) words[write_address] <= write_data;
-      if (read_en) read_data <= words[read_address];
-    end
-  end
+  endcase
 
 `ifndef SYNTHESIS
   initial if (Style == 2 && File != "") $fatal(1, "%m: an ultra memory has no contents at power-up");

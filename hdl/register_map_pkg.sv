@@ -6,44 +6,44 @@
 package register_map_pkg;
 
   // Byte offsets.
-  parameter int AddressWidth = 7;
-  parameter int IdOffset = 32'h00;
-  parameter int GridOffset = 32'h04;
-  parameter int FormatOffset = 32'h08;
-  parameter int ControlOffset = 32'h0c;
-  parameter int StatusOffset = 32'h10;
-  parameter int ThresholdOffset = 32'h14;
-  parameter int TimeoutOffset = 32'h18;
-  parameter int FramesInOffset = 32'h1c;
-  parameter int FramesOutOffset = 32'h20;
-  parameter int FramesDroppedOffset = 32'h24;
-  parameter int SaturationsOffset = 32'h28;
-  parameter int FirstDepthLatencyOffset = 32'h2c;
-  parameter int TableIndexOffset = 32'h30;
-  parameter int TableGxOffset = 32'h34;
-  parameter int TableGyOffset = 32'h38;
+  localparam int AddressWidth = 7;
+  localparam int IdOffset = 32'h00;
+  localparam int GridOffset = 32'h04;
+  localparam int FormatOffset = 32'h08;
+  localparam int ControlOffset = 32'h0c;
+  localparam int StatusOffset = 32'h10;
+  localparam int ThresholdOffset = 32'h14;
+  localparam int TimeoutOffset = 32'h18;
+  localparam int FramesInOffset = 32'h1c;
+  localparam int FramesOutOffset = 32'h20;
+  localparam int FramesDroppedOffset = 32'h24;
+  localparam int SaturationsOffset = 32'h28;
+  localparam int FirstDepthLatencyOffset = 32'h2c;
+  localparam int TableIndexOffset = 32'h30;
+  localparam int TableGxOffset = 32'h34;
+  localparam int TableGyOffset = 32'h38;
 
   // Values after reset that are not zero.
-  parameter int IdReset = 32'h54444550;
-  parameter int ThresholdReset = 32'h7fffffff;
+  localparam int IdReset = 32'h54444550;
+  localparam int ThresholdReset = 32'h7fffffff;
 
   // Bits: number of a flag, lowest of a wider field.
-  parameter int GridRowsLsb = 0;
-  parameter int GridColumnsLsb = 16;
-  parameter int FormatDataWidthLsb = 0;
-  parameter int FormatGradientWidthLsb = 8;
-  parameter int FormatGradientFractionLsb = 16;
-  parameter int FormatBitsPerChannelLsb = 24;
-  parameter int ControlHoldContactBit = 0;
-  parameter int ControlClearCountersBit = 1;
-  parameter int StatusRowShortBit = 0;
-  parameter int StatusRowLongBit = 1;
-  parameter int StatusStartMissingBit = 2;
-  parameter int StatusStartEarlyBit = 3;
-  parameter int StatusTimeoutBit = 4;
-  parameter int StatusSaturationBit = 5;
-  parameter int StatusOutOfStepBit = 6;
-  parameter int StatusBusyBit = 8;
-  parameter int StatusContactBit = 9;
+  localparam int GridRowsLsb = 0;
+  localparam int GridColumnsLsb = 16;
+  localparam int FormatDataWidthLsb = 0;
+  localparam int FormatGradientWidthLsb = 8;
+  localparam int FormatGradientFractionLsb = 16;
+  localparam int FormatBitsPerChannelLsb = 24;
+  localparam int ControlHoldContactBit = 0;
+  localparam int ControlClearCountersBit = 1;
+  localparam int StatusRowShortBit = 0;
+  localparam int StatusRowLongBit = 1;
+  localparam int StatusStartMissingBit = 2;
+  localparam int StatusStartEarlyBit = 3;
+  localparam int StatusTimeoutBit = 4;
+  localparam int StatusSaturationBit = 5;
+  localparam int StatusOutOfStepBit = 6;
+  localparam int StatusBusyBit = 8;
+  localparam int StatusContactBit = 9;
 
 endpackage

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // row_reorder: collect a row, then send it as one burst in another order.
 //
-// Stream in: words with gaps anywhere; a row begins afresh at a frame's first word. Stream out: bursts of Size words, one a
-// row, begun when the row is complete, so what follows never sees a gap.
+// Stream in: words with gaps anywhere; a row begins afresh at a frame's first word. Stream out: bursts of Size words,
+// one a row, begun when the row is complete, so what follows never sees a gap.
 //   ToBurst = 1: natural order in, Makhoul order out (0, 2, 4, .., 5, 3, 1).  ToBurst = 0: the reverse.
 // Latency: 2 cycles from the last word of a row to its first word out. Two rows of memory, written and read in turn.
 // Bit-accurate model: models/row_reorder.py.
@@ -27,7 +27,7 @@ module row_reorder #(
 
   // Sample at position p of a burst: 2 p in the first half, counted back from Size - 1 in the second.
   function automatic logic [PositionWidth-1:0] makhoul(input logic [PositionWidth-1:0] p);
-    return {p[PositionWidth-2:0] ^ {(PositionWidth - 1){p[PositionWidth-1]}}, p[PositionWidth-1]};
+    makhoul = {p[PositionWidth-2:0] ^ {(PositionWidth - 1){p[PositionWidth-1]}}, p[PositionWidth-1]};
   endfunction
 
   logic write_bank, read_bank, read_start, read_active, frame_start, frame_start_q, read_frame_start;

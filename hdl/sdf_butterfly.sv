@@ -48,11 +48,11 @@ module sdf_butterfly #(
     logic turn;
     assign turn = &position[QuarterBit+:2];
     if (Inverse != 0) begin : g_plus_j
-      assign b_re = turn ? -(Width + 1)'(in_im) : (Width + 1)'(in_re);
+      assign b_re = turn ? -$signed({in_im[Width-1], in_im}) : (Width + 1)'(in_re);
       assign b_im = turn ? (Width + 1)'(in_re) : (Width + 1)'(in_im);
     end else begin : g_minus_j
       assign b_re = turn ? (Width + 1)'(in_im) : (Width + 1)'(in_re);
-      assign b_im = turn ? -(Width + 1)'(in_re) : (Width + 1)'(in_im);
+      assign b_im = turn ? -$signed({in_re[Width-1], in_re}) : (Width + 1)'(in_im);
     end
   end else begin : g_straight
     assign b_re = (Width + 1)'(in_re);

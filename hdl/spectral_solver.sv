@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // spectral_solver: Poisson solver for one frame after another, by sine transforms along both directions.
 //
-//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge and zero mean
+//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
 //   row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
 //               -> dst_inverse -> transpose -> dst_inverse -> row_reorder
 //
-// Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order, one
-// burst of Size words a row. Latency: fixed; models/latency.py. Formats: models/configuration.py.
+// Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
+// one burst of Size words a row. Latency: fixed; models/latency.py. Formats: models/configuration.py.
 // Bit-accurate model: models/spectral_solver.py.
 
 module spectral_solver #(

@@ -4,8 +4,9 @@
 //   c[0] = 1 / b[0], c[i] = 1 / (b[i] - c[i-1]) = coefficient 2^(shift + 1 - CoeffWidth)
 //
 // A position and a row in, its coefficient out 3 enabled clocks later. Down the rows a coefficient soon settles; what
-// follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a shift,
-// since its coefficients exceed 1 under Neumann. Bit-accurate model: models/thomas_table.py, which also writes the ROMs.
+// follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
+// shift, since its coefficients exceed 1 under Neumann. Bit-accurate model: models/thomas_table.py, which also writes
+// the ROMs.
 
 module thomas_table #(
   parameter int CoeffWidth     = 18,

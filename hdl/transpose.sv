@@ -8,8 +8,8 @@
 //   MakhoulOut = 1: the words of a column leave in Makhoul order
 //
 // In place: column c of a frame is read in the Size cycles before row c of the next frame can arrive, which is written
-// into the freed places. So rows and columns of the memory change roles from the frame read last. A column is read out wholly
-// before the first word is written over it, so the order inside a column is free.
+// into the freed places. So rows and columns of the memory change roles from the frame read last. A column is read out
+// wholly before the first word is written over it, so the order inside a column is free.
 // Bit-accurate model: models/transpose.py.
 
 module transpose #(
@@ -33,7 +33,7 @@ module transpose #(
   localparam int UltraBits = 16 * 36864;  // from here a frame store is cheaper in ultra than in block RAM
 
   function automatic logic [IndexWidth-1:0] makhoul(input logic [IndexWidth-1:0] p);
-    return {p[IndexWidth-2:0] ^ {(IndexWidth - 1){p[IndexWidth-1]}}, p[IndexWidth-1]};
+    makhoul = {p[IndexWidth-2:0] ^ {(IndexWidth - 1){p[IndexWidth-1]}}, p[IndexWidth-1]};
   endfunction
 
   // Writer: row counts bursts, turned says whether rows of this frame lie along the memory's columns.

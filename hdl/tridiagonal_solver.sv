@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tridiagonal_solver: Poisson solver by sine transforms along the rows and Thomas's algorithm down the columns.
 //
-//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge and zero mean
+//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
 //   row_reorder -> dst_forward -> forward_elimination -> frame_stack -> back_substitution -> dst_inverse -> row_reorder
 //
-// Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first, one
-// burst of Size words a row. Latency: fixed, 3.5 Size and a few registers behind the last pixel; models/latency.py.
+// Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
+// one burst of Size words a row. Latency: fixed, 3.5 Size and a few registers behind the last pixel; models/latency.py.
 // Formats: models/configuration.py. Bit-accurate model: models/tridiagonal_solver.py.
 
 module tridiagonal_solver #(

@@ -249,14 +249,14 @@ def package() -> str:
     offsets, resets, bits = [], [], []
     for register in MAP:
         name = _camel(register.name)
-        offsets.append(f"parameter int {name}Offset = 32'h{register.offset:02x};")
+        offsets.append(f"localparam int {name}Offset = 32'h{register.offset:02x};")
         if register.reset:
-            resets.append(f"parameter int {name}Reset = 32'h{register.reset:08x};")
+            resets.append(f"localparam int {name}Reset = 32'h{register.reset:08x};")
         for field in register.fields:
             position = "Bit" if field.width == 1 else "Lsb"
-            bits.append(f"parameter int {name}{_camel(field.name)}{position} = {field.low};")
+            bits.append(f"localparam int {name}{_camel(field.name)}{position} = {field.low};")
     sections = {
-        "Byte offsets.": [f"parameter int AddressWidth = {ADDRESS_WIDTH};", *offsets],
+        "Byte offsets.": [f"localparam int AddressWidth = {ADDRESS_WIDTH};", *offsets],
         "Values after reset that are not zero.": resets,
         "Bits: number of a flag, lowest of a wider field.": bits,
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // frame_bench: streams whole frames through tactile_depth without a coroutine step a pixel.
 //
-// frames.bin holds the frames of a sequence, three bytes a pixel (R, B, G, so that a word is tdata); depth.bin receives the
-// codes that leave, four bytes each; events.txt one line per event: its letter and the clock.
+// frames.bin holds the frames of a sequence, three bytes a pixel (R, B, G, so that a word is tdata); depth.bin receives
+// the codes that leave, four bytes each; events.txt one line per event: its letter and the clock.
 //   p, l: first and last pixel of a frame taken       d, e: first and last depth of a frame on m_axis
 //   c: first clock in which `contact` is up for the frame whose first depth has left
 // Registers are reached through the AXI4-Lite ports. Simulation only.

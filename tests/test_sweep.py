@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from commands import sim, sweep
 from commands import simulator as simulation
-from commands import sweep
 from models import accuracy
 from models.configuration import COLUMNS, Configuration
 from models.cost import cost
@@ -77,6 +77,25 @@ def test_bench_at_the_default_and_at_twenty_bits(solver):
     assert float(row["rms_percent_worst"]) <= 0.015
     narrow = accuracy.measure({"solver": solver, "data_width": 20})
     assert float(narrow["rms_percent_mean"]) <= sweep.NARROW_ENOUGH_PERCENT
+
+
+@pytest.mark.parametrize(
+    ("solver", "data_width", "coefficient_width", "boundary"),
+    [("spectral", 24, 18, "dirichlet"), ("spectral", 14, 10, "neumann"), ("tridiagonal", 32, 24, "dirichlet")],
+)
+def test_a_row_is_what_the_rtl_does(tmp_path, solver, data_width, coefficient_width, boundary):
+    given = [f"SOLVER={solver}", f"DATA_WIDTH={data_width}", f"COEFF_WIDTH={coefficient_width}", f"BOUNDARY={boundary}"]
+    assert sim.run(sim.parse(["N=32", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *given])) == 0
+    seen = json.loads((tmp_path / "out" / "report.json").read_text())
+    choices = {"solver": solver, "data_width": data_width, "coefficient_width": coefficient_width}
+    row = accuracy.measure({"columns": 32, "neumann": boundary == "neumann", **choices})
+    for name in ("rms", "max"):
+        percent = seen[f"{name}_percent_of_peak"]
+        assert float(row[f"{name}_percent_mean"]) == pytest.approx(sum(percent) / len(percent), rel=1e-5)
+        assert float(row[f"{name}_percent_worst"]) == pytest.approx(max(percent), rel=1e-5)
+    assert {int(row["first_depth_cycles"])} == set(seen["first_depth_latency_cycles"])
+    assert {int(row["last_pixel_to_first_depth_cycles"])} == set(seen["last_pixel_to_first_depth_cycles"])
+    assert int(row["saturations"]) == sum(seen["saturations"].values())
 
 
 def test_a_configuration_that_cannot_be_built_is_a_row(tmp_path):
