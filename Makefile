@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# make sim | test | lint | sweep | tune | upsets | certify | extremes | frontends | fuzz | calibration | setup | clean, see README.md
+# make sim | test | lint | sweep | tune | upsets | certify | extremes | frontends | fuzz | report | calibration | setup | clean, see README.md
 
 PYTHON ?= python3
 VENV := .venv
@@ -12,7 +12,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint sweep tune upsets certify extremes frontends fuzz calibration setup clean
+.PHONY: sim test lint sweep tune upsets certify extremes frontends fuzz report calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -51,6 +51,10 @@ extremes: $(STAMP)
 # Two Verilog front ends read every core as the same circuit: a few minutes.
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
+
+# One HTML page with figures: runs a thousand frames through the RTL, the sweep and the extremes; OUT.
+report: $(STAMP)
+	@$(PY) -m commands.report $(if $(OUT),'OUT=$(OUT)')
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)

@@ -37,6 +37,8 @@ SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
 CLOCK_MHZ = 166  # of the published pipeline: cycles become microseconds
 UM_PER_MM = 1000
+EXTREMES_SIZE = 64
+EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
 
 # The published pipeline (XCZU7EV, 166 MHz, 24 bit): cycles from first pixel to first depth by grid, RMS to double
 # precision in % of peak over 15 contacts after a fitted scale and offset, memory of its UltraRAM at 128.
@@ -49,7 +51,13 @@ LOOKS: dict[str, dict[str, Any]] = {
     "spectral": {"color": "#08306b", "marker": "o", "linestyle": "-"},
     "tridiagonal": {"color": "#e6550d", "marker": "s", "linestyle": "--"},
 }
-PUBLISHED: dict[str, Any] = {"color": "black", "marker": "*", "markersize": 13, "linestyle": "none", "label": "published"}
+PUBLISHED: dict[str, Any] = {
+    "color": "black",
+    "marker": "*",
+    "markersize": 13,
+    "linestyle": "none",
+    "label": "published",
+}
 
 
 @dataclass(frozen=True)
@@ -114,6 +122,12 @@ def run_rtl(solver: str, folder: Path) -> Run:
     return Run("make sim " + " ".join(words), report, depth)
 
 
+def run_extremes(folder: Path) -> None:
+    """Raises RuntimeError when a row is not as it must be."""
+    if extremes.run(EXTREMES_SIZE, "verilator", folder, short=True):
+        raise RuntimeError(f"a row of the extremes is not as it must be: see {folder}")
+
+
 # Figures.
 
 
@@ -166,8 +180,8 @@ def latency_figure(runs: dict[str, Run], folder: Path) -> Figure:
     text = (
         f"{frames:,} consecutive frames without a pause, through the RTL. Different latencies seen: "
         + ", ".join(f"{solver} {count}" for solver, count in spread.items())
-        + f". One frame every {SIZE * SIZE:,} cycles is one pixel per clock, {CLOCK_MHZ * 1e6 / SIZE**2:,.0f} frames/s at "
-        f"{CLOCK_MHZ} MHz."
+        + f". One frame every {SIZE * SIZE:,} cycles is one pixel per clock, {CLOCK_MHZ * 1e6 / SIZE**2:,.0f} frames/s "
+        f"at {CLOCK_MHZ} MHz."
     )
     commands = "; ".join(run.command for run in runs.values())
     return Figure("latency", "Latency and throughput", text, commands, picture(figure, folder, "latency"))
@@ -178,16 +192,22 @@ def grid_figure(folder: Path) -> Figure:
     for solver, (low, high) in COLUMNS.items():
         grids = [1 << bits for bits in range(low.bit_length() - 1, high.bit_length())]
         configs = [Configuration(columns=columns, solver=solver) for columns in grids]
-        axis.plot(grids, [first_depth_latency(c) for c in configs], **LOOKS[solver], label=f"{solver}, from the first pixel")
+        axis.plot(
+            grids, [first_depth_latency(c) for c in configs], **LOOKS[solver], label=f"{solver}, from the first pixel"
+        )
         dotted = LOOKS[solver] | {"linestyle": ":", "fillstyle": "none"}
-        axis.plot(grids, [last_pixel_to_first_depth(c) for c in configs], **dotted, label=f"{solver}, from the last pixel")
+        axis.plot(
+            grids, [last_pixel_to_first_depth(c) for c in configs], **dotted, label=f"{solver}, from the last pixel"
+        )
     axis.plot(list(PUBLISHED_LATENCY), list(PUBLISHED_LATENCY.values()), **PUBLISHED)
     axis.set_xscale("log", base=2)
     axis.set_yscale("log")
     axis.set(xlabel="grid (N x N)", ylabel="cycles to the first depth")
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
-    text = "Fixed by the structure (models/latency.py), the same in every run of the RTL; gaps in the input do not change it."
+    text = (
+        "Fixed by the structure (models/latency.py), the same in every run of the RTL, whatever the gaps in the input."
+    )
     return Figure("grids", "Latency against grid", text, "make sim N=.. SOLVER=..", picture(figure, folder, "grids"))
 
 
@@ -223,14 +243,16 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
         rms = run.report["rms_percent_of_peak"][: len(BENCH)]
         at = places + 0.4 * (index - 0.5)
         axis.bar(at, rms, 0.38, color=LOOKS[solver]["color"], hatch=hatches[index], edgecolor="white", label=solver)
-    axis.axhline(PUBLISHED_RMS, color="black", linestyle=":", label=f"published, mean of 15 contacts: {PUBLISHED_RMS} %")
+    axis.axhline(
+        PUBLISHED_RMS, color="black", linestyle=":", label=f"published, mean of 15 contacts: {PUBLISHED_RMS} %"
+    )
     axis.set_yscale("log")
     axis.set_xticks(places, [name.replace("_", " ") for name in BENCH], rotation=35, ha="right")
     axis.set_ylabel("RMS, % of peak")
     axis.legend(fontsize=8)
     text = (
-        "Against double precision over the whole frame, no scale or offset fitted. The error itself is nearly the same for "
-        "all contacts, so a shallow one shows a larger percentage."
+        "Against double precision over the whole frame, no scale or offset fitted. The error itself is nearly the same "
+        "for all contacts, so a shallow one shows a larger percentage."
     )
     commands = "; ".join(run.command for run in runs.values())
     return Figure("errors", "Error of each contact", text, commands, picture(figure, folder, "errors"))
@@ -248,10 +270,17 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
             (left, "data_width", "coefficient_width"),
             (right, "coefficient_width", "data_width"),
         ):
-            wanted = {"solver": solver, "boundary": "dirichlet", "columns": str(SIZE), fixed: str(getattr(default, fixed))}
+            wanted = {
+                "solver": solver,
+                "boundary": "dirichlet",
+                "columns": str(SIZE),
+                fixed: str(getattr(default, fixed)),
+            }
             curve = sorted(buildable(rows, **wanted), key=lambda row: int(row[varied]))
             widths = [int(row[varied]) for row in curve]
-            axis.plot(widths, [float(row["rms_percent_mean"]) for row in curve], **LOOKS[solver], label=solver, markersize=4)
+            axis.plot(
+                widths, [float(row["rms_percent_mean"]) for row in curve], **LOOKS[solver], label=solver, markersize=4
+            )
             worst = LOOKS[solver] | {"marker": "", "linewidth": 0.7}
             axis.plot(widths, [float(row["rms_percent_worst"]) for row in curve], **worst)
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
@@ -281,7 +310,11 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
             y = [float(row["rms_percent_mean"]) for row in points]
             look = {"color": LOOKS[solver]["color"], "marker": LOOKS[solver]["marker"]}
             axis.scatter(x, y, s=9, alpha=0.35, linewidths=0, **look)
-            front = [p for p in sorted(zip(x, y, strict=True)) if p[1] <= min(b for a, b in zip(x, y, strict=True) if a <= p[0])]
+            front = [
+                p
+                for p in sorted(zip(x, y, strict=True))
+                if p[1] <= min(b for a, b in zip(x, y, strict=True) if a <= p[0])
+            ]
             axis.step(*zip(*front, strict=True), where="post", label=solver, **LOOKS[solver] | {"marker": ""})
         if published is not None:
             axis.plot([published], [PUBLISHED_RMS], **PUBLISHED)
@@ -292,11 +325,64 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     axes[0].set_ylabel("RMS, % of peak, mean of the contacts")
     axes[0].legend(fontsize=8)
     text = (
-        f"Every pair of word lengths at {SIZE}: stored words of 12 to 32 bits, coefficients of 10 to 24. Lines: the best that "
-        "so much latency, so many multipliers or so much memory buy. The published design's multipliers are told for 64 "
-        "(82) and 256 (108) only; its memory is its UltraRAM."
+        f"Every pair of word lengths at {SIZE}: stored words of 12 to 32 bits, coefficients of 10 to 24. Lines: the "
+        "best that so much latency, so many multipliers or so much memory buy. The published design's multipliers are told "
+        "for 64 (82) and 256 (108) only; its memory is its UltraRAM."
     )
     return Figure("front", "Accuracy against latency and area", text, "make sweep", picture(figure, folder, "front"))
+
+
+def extremes_figures(folder: Path) -> list[Figure]:
+    """Of what `make extremes` left in a folder."""
+    document = json.loads((folder / "extremes.json").read_text())
+
+    def percent(value: float | None) -> str:
+        return "-" if value is None else f"{value:.4f}"
+
+    rows = [
+        (
+            row["extreme"],
+            row["solver"],
+            row["grid"],
+            f"{row['frames']:,}",
+            percent(row["rms_percent"]),
+            percent(row["max_percent"]),
+            f"{row['max_codes']:,.0f}",
+            ", ".join(f"{node} {count:,}" for node, count in row["saturations"].items()) or "-",
+            "yes" if row["told"] else "no",
+            str(row["wrapped"]),
+        )
+        for row in document["extremes"]
+    ]
+    head = (
+        *("what comes in", "solver", "grid", "frames", "RMS, % of peak", "largest, %", "largest, codes"),
+        *("values clipped", "status bit told", "wrapped"),
+    )
+    text = (
+        "Errors against double precision; where there is no depth to speak of, in codes. Where values are clipped the "
+        "sticky status bit says so; none wraps."
+    )
+    edges = Figure("extremes", "At the extremes", text, EXTREMES_COMMAND, table(head, rows))
+    blocks = [
+        (
+            row["core"],
+            str(row["size"]),
+            row["input"],
+            f"{row['blocks']:,}",
+            f"{row['peak']:.2f}",
+            f"{row['mean_square']:.3f}",
+            f"{row['mean']:.5f}",
+        )
+        for row in document["compliance"]
+    ]
+    head = ("transform", "size", "input", "blocks", "peak error, codes", "mean square error", "mean error")
+    text = (
+        "Peak, mean square and mean error of the transform cores over blocks of random words, in codes of their output."
+    )
+    return [
+        edges,
+        Figure("transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, table(head, blocks)),
+    ]
 
 
 STYLE = """
@@ -312,7 +398,8 @@ def page(figures: Sequence[Figure]) -> str:
     sections = "".join(figure.section() for figure in figures)
     return (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'><title>tactile-depth: report</title>"
-        f"<style>{STYLE}</style></head><body><h1>tactile-depth: what it achieves</h1><nav>{links}</nav>{sections}</body></html>"
+        f"<style>{STYLE}</style></head><body><h1>tactile-depth: what it achieves</h1><nav>{links}</nav>{sections}"
+        "</body></html>"
     )
 
 
@@ -330,16 +417,19 @@ def build(folder: Path) -> Path:
     except OSError as error:
         raise InputError(f"OUT={folder} cannot be written ({error.strerror}): give a folder that can") from error
     steps: list[tuple[str, Callable[[], Any]]] = [
-        *((f"{solver}: {CONSECUTIVE} frames through the RTL", lambda s=solver: run_rtl(s, folder)) for solver in COLUMNS),
+        *(
+            (f"{solver}: {CONSECUTIVE} frames through the RTL", lambda s=solver: run_rtl(s, folder))
+            for solver in COLUMNS
+        ),
         ("sweep", lambda: sweep.sweep(sweep.plan(), sweep.DEFAULT_OUT)),
-        ("extremes", lambda: extremes.table(folder / "extremes")),
+        ("extremes", lambda: run_extremes(folder / "extremes")),
     ]
     done = []
     for number, (name, step) in enumerate(steps, start=1):
         print(f"[{number} of {len(steps)}] {name} ..", flush=True)
         done.append(step())
     runs = dict(zip(COLUMNS, done[: len(COLUMNS)], strict=True))
-    rows, edges = done[len(COLUMNS) :]
+    rows = done[len(COLUMNS)]
     figures = [
         headline(runs),
         latency_figure(runs, folder),
@@ -348,7 +438,7 @@ def build(folder: Path) -> Path:
         error_figure(runs, folder),
         word_figure(rows, folder),
         front_figure(rows, folder),
-        extremes_figure(edges),
+        *extremes_figures(folder / "extremes"),
     ]
     target, draft = folder / "report.html", folder / ".report.html"
     draft.write_text(page(figures))
