@@ -30,6 +30,7 @@ from models.scenes import BENCH, SENSOR_WIDTH_MM, render
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
+from matplotlib.ticker import MaxNLocator
 
 ROOT = Path(__file__).resolve().parent.parent
 DEFAULT_OUT = ROOT / "build" / "report"
@@ -202,6 +203,8 @@ def grid_figure(folder: Path) -> Figure:
     axis.plot(list(PUBLISHED_LATENCY), list(PUBLISHED_LATENCY.values()), **PUBLISHED)
     axis.set_xscale("log", base=2)
     axis.set_yscale("log")
+    shown = sorted({grid for line in axis.get_lines() for grid in line.get_xdata()})
+    axis.set_xticks(shown, [str(grid) for grid in shown])
     axis.set(xlabel="grid (N x N)", ylabel="cycles to the first depth")
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
@@ -286,6 +289,7 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
         axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
         axis.set(yscale="log", xlabel=name)
+        axis.xaxis.set_major_locator(MaxNLocator(integer=True))
         axis.grid(alpha=0.3)
     left.set_ylabel("RMS, % of peak")
     left.legend()
@@ -321,6 +325,7 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
         else:
             axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
         axis.set(xlabel=name, yscale="log")
+        axis.set_xlim(left=0)
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("RMS, % of peak, mean of the contacts")
     axes[0].legend(fontsize=8)
