@@ -12,7 +12,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes calibration setup clean
+.PHONY: sim test lint sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibration setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -73,6 +73,10 @@ formal: $(TOOLS)
 mutate: $(TOOLS)
 	@sh commands/icarus.sh
 	@$(PY) -m commands.mutate $(foreach v,CORE MUTANTS SEED JOBS SECONDS,$(if $($(v)),'$(v)=$($(v))'))
+
+# One HTML page with figures: runs a thousand frames through the RTL, the sweep and the extremes; OUT.
+report: $(STAMP)
+	@$(PY) -m commands.report $(if $(OUT),'OUT=$(OUT)')
 
 # Refits calibrations/gelsight-mini.npz from the ball presses.
 calibration: $(STAMP)
