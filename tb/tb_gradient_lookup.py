@@ -34,7 +34,7 @@ class Lookup:
         self.driver = StreamDriver(dut, "in", "valid", PIXEL)
         self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
         self.sink = StreamMonitor(dut, "out", "valid", SLOPES, unsigned=SLOPES[2:])
-        dut.write_en.value = 0
+        dut.write_en.setimmediatevalue(0)  # before the first edge: at random it would write to the table
 
     async def write(self, index, gx, gy):
         """One word of the table, in one clock, whether or not the pipeline moves."""
