@@ -36,6 +36,14 @@ class Lookup:
         self.sink = StreamMonitor(dut, "out", "valid", SLOPES, unsigned=SLOPES[2:])
         dut.write_en.value = 0
 
+    async def start(self):
+        """Verilator begins with random pins, so that a first edge may have written a word: there the table is written
+        anew, and what it holds at power-up is tested on Icarus and by the top."""
+        await self.bench.start()
+        if cocotb.SIM_NAME.lower().startswith("verilator"):
+            for index, slopes in enumerate(self.codes.tolist()):
+                await self.write(index, *slopes)
+
     async def write(self, index, gx, gy):
         """One word of the table, in one clock, whether or not the pipeline moves."""
         for pin, value in (("write_en", 1), ("write_index", index), ("write_gx", gx), ("write_gy", gy)):
@@ -65,7 +73,7 @@ class Lookup:
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 async def whole_table_then_rewritten(dut, gap, pause):
     lookup = Lookup(dut, gap, pause)
-    await lookup.bench.start()
+    await lookup.start()
     initial = lookup.codes.copy()
     await lookup.frame()
     for index, (gx, gy) in enumerate(uniform((len(initial), 2), lookup.width)):
@@ -79,7 +87,7 @@ async def whole_table_then_rewritten(dut, gap, pause):
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def reset_in_mid_frame_keeps_the_table(dut):
     lookup = Lookup(dut, 0.0, 0.0)
-    await lookup.bench.start()
+    await lookup.start()
     initial = lookup.codes[0].copy()
     await lookup.write(0, 1, -2)
     await send_apart(lookup.bench, lookup.driver, [(0, 15)] * 3, 0.0)
