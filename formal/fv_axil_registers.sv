@@ -194,6 +194,7 @@ module fv_axil_registers
   end
 
   always_comb begin
+    never_in_reset: assert (!(table_write && rst));
     if (started) begin
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
@@ -209,7 +210,7 @@ module fv_axil_registers
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
       // What leaves for the pipeline.
       outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
-      table_written: assert (table_write == writes_gy);
+      table_written: assert (table_write == (writes_gy && !rst));
       never_while_busy: assert (!(table_write && busy));
       if (table_write) begin
         table_word: assert (32'(table_index) == index && 32'(table_gx) == gx && table_gy == data[GradientWidth-1:0]);

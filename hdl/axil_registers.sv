@@ -8,7 +8,7 @@
 // before. Responses wait for their ready, readies wait for the response before to be taken.
 //
 // Events are levels: each clock in which one is high counts once. What they set wins over what a
-// write clears in the same clock. table_write is never high in a clock in which busy is.
+// write clears in the same clock. table_write is never high in a clock in which busy or rst is.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers
@@ -148,7 +148,7 @@ module axil_registers
       write_taken && write_offset == ControlOffset && write_ones[ControlClearCountersBit];
 
   // The bin written is the one that stands in TABLE_INDEX, which moves on at the end of the clock.
-  assign table_write = write_taken && write_offset == TableGyOffset;
+  assign table_write = write_taken && write_offset == TableGyOffset && !rst;
   assign table_gy = $signed(write_data[GradientWidth-1:0]);
 
   always_ff @(posedge clk) begin

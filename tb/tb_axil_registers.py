@@ -108,7 +108,7 @@ class Checker:
             self.read = None
         if self.fires("b"):
             self.address = self.data = self.written = None
-        elif self.address is not None and self.data is not None and self.written is None:
+        elif self.address is not None and self.data is not None and self.written is None and not self.pin("rst"):
             self.written = self.model.write(self.address, *self.data, busy=busy)
             self.responses["write"].append(self.written)
         if self.fires("aw"):
@@ -408,6 +408,15 @@ async def table_writes(dut) -> None:
         assert checker.model.table_writes == want
         assert await write(dut, OFFSET["TABLE_GY"], 7) == Response.OKAY
         assert checker.model.table_writes[len(want) :] == [(3 % size, 6, 7)]
+
+        # Taken in the clock before a reset, so that it would go out in the reset's first.
+        writing = cocotb.start_soon(write(dut, OFFSET["TABLE_GY"], 9))
+        while not (checker.fires("aw") and checker.fires("w")):
+            await RisingEdge(dut.clk)
+        dut.rst.value = 1
+        await RisingEdge(dut.clk)
+        assert not dut.table_write.value, "written in reset"
+        writing.cancel()
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
