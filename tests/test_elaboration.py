@@ -21,9 +21,9 @@ INVALID = {
     "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
     "rom": ["Depth=1"],
     "gradient_lookup": ["BitsPerChannel=0", "BitsPerChannel=9"],
-    "spectral_divide": ["Size=12", "Size=2"],
+    "spectral_divide": ["Size=12", "Size=1"],
     "thomas_table": ["Size=12", "Rows=1"],
-    "twiddle_multiply": ["Size=12", "Size=2", "Block=12", "Block=1", "Block=256"],
+    "twiddle_multiply": ["Size=12", "Size=1", "Block=12", "Block=1", "Block=256"],
     "tactile_depth": ["Rows=64", "DataWidth=33"],
     "round_saturate": ["Drop=46", "OutWidth=1"],
     "sdf_butterfly": [
