@@ -167,13 +167,16 @@ def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> 
         lines.append(f"{len(steep)} of {len(nodes)} nodes saturate for some slopes, {first} first in the stream")
     else:
         lines.append("no slopes at all saturate a node")
-    lowest = min(nodes, key=lambda node: node.reached / node.slopes if node.slopes else 1)
-    if lowest.slopes and lowest.reached < (1 - 1e-9) * lowest.slopes:
+    loose = [node for node in nodes if node.reached < (1 - 1e-9) * node.slopes]
+    if loose:
+        lowest = min(loose, key=lambda node: node.reached / node.slopes)
+        share = 100 * lowest.reached / lowest.slopes
         lines.append(
-            f"every bound is attained to {100 * lowest.reached / lowest.slopes:.3f} % ({lowest.name}) or better"
+            f"{len(nodes) - len(loose)} of {len(nodes)} bounds over slopes are attained; of the others, in the inverse "
+            f"row transform, no more than {share:.3g} % was found ({lowest.name}): upper bounds"
         )
     else:
-        lines.append("every bound is attained")
+        lines.append("every bound over slopes is attained")
     return lines
 
 

@@ -32,7 +32,7 @@ from models.spectral_divide import reciprocals
 from models.thomas_table import thomas_table
 
 BLOCK_BYTES = 1 << 26  # of responses held at a time
-TRIED = 1 << 30  # products spent on a node of the inverse row transform, whose words are tried one by one
+TRIED = 1 << 32  # products spent on a node of the inverse row transform, whose words are tried one by one
 
 
 @dataclass(frozen=True)
