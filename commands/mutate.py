@@ -97,7 +97,7 @@ CORES = {
     ),
     "tactile_depth": Core(
         protocols.tactile_depth,
-        (0, 3),
+        (3, 0),
         simulators=("verilator",),
         bar=WHOLE,
         tests=TOP_TESTS,
