@@ -30,7 +30,7 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
     async def send(count):
         await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap, size * size)
 
-    await interrupt(bench, send, interrupts, (source, sink), quiet=0)
+    await interrupt(bench, send, interrupts, (source, sink), quiet=spectral_solver_latency(size))
     await send_apart(bench, driver, words[:strays], gap, size * size)
     await send_apart(bench, driver, words, gap, size * size)
     await bench.clocks(spectral_solver_latency(size) + size * size)
@@ -68,10 +68,12 @@ async def frames_that_saturate(dut):
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def reset_in_mid_frame(dut):
-    """The third frame arrives as the first one leaves: every core is at work."""
+@cocotb.parametrize(amplitude=[0.002, 1.0])
+async def reset_in_mid_frame(dut, amplitude):
+    """The third frame arrives as the first one leaves: every core is at work, and clips if it can."""
     size = configuration().columns
-    await check(dut, codes(1, 0.002), interrupts=[2 * size * size + 10 * size + size // 2])
+    first = 2 * size * size + 10 * size + size // 2
+    await check(dut, codes(1, amplitude), interrupts=[first, first + size // 3])
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")

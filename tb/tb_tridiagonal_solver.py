@@ -25,7 +25,7 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
     async def send(count):
         await send_apart(bench, driver, words[:count], gap, pixels)
 
-    await interrupt(bench, send, interrupts, (source, sink), quiet=0)
+    await interrupt(bench, send, interrupts, (source, sink), quiet=latency + pixels)
     await send_apart(bench, driver, words[:strays], gap, pixels)
     await send_apart(bench, driver, words, gap, pixels)
     await bench.clocks(latency + pixels + config.columns)
@@ -70,9 +70,13 @@ async def a_frame_does_not_know_the_one_before(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def reset_in_mid_frame(dut):
+@cocotb.parametrize(amplitude=[0.002, 1.0])
+async def reset_in_mid_frame(dut, amplitude):
+    """At places in a row of the second frame, as the first one leaves: every core is at work, and clips if it can."""
     config = configuration()
-    await check(dut, codes(2, 0.002), interrupts=[3 * config.rows * config.columns // 2 + 3])
+    first = 3 * config.rows * config.columns // 2 + 3
+    places = [first + step * (config.columns // 4 + 1) for step in range(4)]
+    await check(dut, codes(2, amplitude), interrupts=places)
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
