@@ -13,10 +13,15 @@ from models.twiddle_multiply import phase_factors, twiddle_factors, twiddle_mult
 FIELDS = ["re", "im"]
 
 
-async def check(dut, x, **behaviour):
-    width, coeff, drop, block, real_only = parameters(dut, "OutWidth", "CoeffWidth", "Drop", "Block", "RealOnly")
+def factors_of(dut):
+    coeff, block = parameters(dut, "CoeffWidth", "Block")
     kind, direction = os.environ["FACTORS"].split("_")
-    factors = {"twiddle": twiddle_factors, "phase": phase_factors}[kind](block, direction == "inverse", coeff)
+    return {"twiddle": twiddle_factors, "phase": phase_factors}[kind](block, direction == "inverse", coeff)
+
+
+async def check(dut, x, **behaviour):
+    width, drop, real_only = parameters(dut, "OutWidth", "Drop", "RealOnly")
+    factors = factors_of(dut)
 
     def model(x, monitor):
         out = twiddle_multiply(x[..., 0], x[..., 1], factors, drop, width, monitor, real_only=bool(real_only))
@@ -37,6 +42,29 @@ async def limits(dut):
     size, width = parameters(dut, "Size", "InWidth")
     _, sink = await check(dut, extremes(size, width, 2))
     assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(part=[0, 1])
+async def ties(dut, part):
+    """A burst of products that drop just half a step, then for each lower bit one of half a step and that bit alone.
+
+    What they keep is even, so each of those bits decides between down and up. Where the factor's real part is odd
+    there is a word for any rest of the product, whatever the other part of the word.
+    """
+    size, width, drop = parameters(dut, "Size", "InWidth", "Drop")
+    half, modulus = 1 << drop - 1, 1 << drop + 1
+    rests = [half, *(half + (1 << bit) for bit in range(drop - 1))]
+    words = uniform((len(rests), size, 2), width, 0.3)
+    factors = [tuple(map(int, pair)) for pair in factors_of(dut)] * (size // len(factors_of(dut)))
+    for burst, rest in zip(words, rests, strict=True):
+        for word, (re, im) in zip(burst, factors, strict=True):
+            if re % 2:
+                other = int(word[1 - part]) * im * (-1 if part else 1)
+                wanted = (rest + other) * pow(re, -1, modulus) % modulus
+                word[part] = wanted - modulus * (wanted >= modulus // 2)
+    assert any(re % 2 for re, _ in factors), "a poor test: no factor is odd"
+    await check(dut, words)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
