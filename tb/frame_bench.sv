@@ -206,8 +206,10 @@ module frame_bench
 
     // In.
 
-    if (s_axis_tvalid && s_axis_tready && note && !resetting) $fwrite(events_file, "t %0d\n", clock);
-    if (resetting) begin
+    if (started && s_axis_tvalid && s_axis_tready && note && !resetting) $fwrite(events_file, "t %0d\n", clock);
+    if (!started) begin
+      resetting <= 1'b0;
+    end else if (resetting) begin
       if (!rst && !was_resetting) $fwrite(events_file, "r %0d %0d\n", clock, codes);
       reset_left <= reset_left - 32'd1;
       if (reset_left == 32'd1) resetting <= 1'b0;
