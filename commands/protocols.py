@@ -224,15 +224,22 @@ def frame_output(_: Mapping[str, int]) -> Protocol:
 
 
 def frame_tags(parameters: Mapping[str, int]) -> Protocol:
-    """Frames end at least Pixels enabled clocks apart."""
+    """Frames end at least Pixels enabled clocks apart. A push stays while en is low."""
     pixels = parameters["Pixels"]
     registers = f"""
-  reg [15:0] since = 16'd0;
-  always @(posedge clk) if (rst) since <= 16'd0; else if (en) since <= push ? 16'd1 : since + (since != 16'd{pixels});
+  reg [15:0] since = 16'd0;  // 0: none yet after the reset
+  reg still = 1'b0, push_before;
+  always @(posedge clk) begin
+    still <= ~en & ~rst;
+    push_before <= push;
+    if (rst) since <= 16'd0;
+    else if (en) since <= push ? 16'd1 : since + (since != 16'd0 & since != 16'd{pixels});
+  end
 """
-    assume = (f"~(push & en) | rst | since == 16'd0 | since == 16'd{pixels}",)
-    # `since` 0: none yet after the reset. It stays there until the first push.
-    registers = registers.replace("since + (since", "since + (since != 16'd0 & since")
+    assume = (
+        f"~push | rst | since == 16'd0 | since == 16'd{pixels}",
+        "~still | rst | push == push_before",
+    )
     return Protocol(LIVE + registers, assume, dict.fromkeys(("due", "due_tag", "held"), "live"))
 
 

@@ -57,6 +57,12 @@ def extremes(size, width, fields=1):
     return bursts
 
 
+def corners(shape, width):
+    """Random words, mostly the lowest and the highest: sums and differences of them clip in every pairing."""
+    low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
+    return np.random.default_rng(cocotb.RANDOM_SEED).choice([*6 * [low, high], -1, 0], shape)
+
+
 class StreamDriver(BusDriver):
     """Sends words under a qualifier: `start` (with the first word of a burst) or `valid` (with each word).
 

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, extremes, parameters, uniform
+from stream import check_bursts, corners, extremes, parameters, uniform
 
 from models.latency import BUTTERFLY
 from models.sdf_butterfly import sdf_butterfly
@@ -34,6 +34,12 @@ async def limits(dut):
     size, width = parameters(dut, "Size", "Width")
     _, sink = await check(dut, extremes(size, width, 2))
     assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits_in_every_pairing(dut):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, corners((30, size, 2), width))
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
