@@ -42,11 +42,12 @@ tune: $(STAMP)
 	@$(PY) -m commands.tune $(foreach v,$(TUNE_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
 # The suite on Verilator with every line, branch, term and toggle of hdl/ counted, and the fault list's bins.
-coverage: $(STAMP)
+coverage: $(TOOLS)
 	@$(PY) -m commands.coverage
 
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
+	@sh commands/icarus.sh
 	@UPSETS='$(UPSETS)' SEED='$(SEED)' $(PY) -m commands.upsets
 
 # The largest value that each node can be asked to hold, and the frames that ask for it, run in model and RTL; RTL=0: model.
@@ -97,7 +98,7 @@ $(STAMP): requirements.txt requirements-verilator.txt
 	  --requirement requirements-verilator.txt
 	@touch $@
 
-# What only lint, proofs, mutation, coverage and a Dask cluster need.
+# What make sim and what only runs the models can do without.
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt

@@ -21,6 +21,7 @@ import matplotlib
 import numpy as np
 
 from commands import extremes, sim, sweep
+from commands.tune import CLOCK_MHZ
 from models import reference
 from models.calibration import synthetic
 from models.configuration import COLUMNS, Configuration
@@ -36,7 +37,6 @@ ROOT = Path(__file__).resolve().parent.parent
 DEFAULT_OUT = ROOT / "build" / "report"
 SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
-CLOCK_MHZ = 166  # of the published pipeline: cycles become microseconds
 UM_PER_MM = 1000
 EXTREMES_SIZE = 64
 EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
@@ -44,7 +44,7 @@ EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
 # The published pipeline (XCZU7EV, 166 MHz, 24 bit): cycles from first pixel to first depth by grid, RMS to double
 # precision in % of peak over 15 contacts after a fitted scale and offset, memory of its UltraRAM at 128.
 PUBLISHED_LATENCY = {64: 9421, 128: 35107, 256: 135448}
-PUBLISHED_RMS, PUBLISHED_WORST = 0.17, 0.26
+PUBLISHED_RMS, PUBLISHED_WORST = sweep.PUBLISHED_RMS_PERCENT, 0.26
 PUBLISHED_MBIT = 32 * 288 * 1024 / 1e6
 
 # Told apart without colour.
@@ -153,7 +153,7 @@ def headline(runs: dict[str, Run]) -> Figure:
     )  # fmt: skip
     head = (
         "solver",
-        f"first pixel to first depth, cycles (at {CLOCK_MHZ} MHz)",
+        f"first pixel to first depth, cycles (at {CLOCK_MHZ:g} MHz)",
         "last pixel to first depth, cycles",
         "RMS to double precision, % of peak: mean (worst)",
         "RTL equals model on every code",
@@ -182,7 +182,7 @@ def latency_figure(runs: dict[str, Run], folder: Path) -> Figure:
         f"{frames:,} consecutive frames without a pause, through the RTL. Different latencies seen: "
         + ", ".join(f"{solver} {count}" for solver, count in spread.items())
         + f". One frame every {SIZE * SIZE:,} cycles is one pixel per clock, {CLOCK_MHZ * 1e6 / SIZE**2:,.0f} frames/s "
-        f"at {CLOCK_MHZ} MHz."
+        f"at {CLOCK_MHZ:g} MHz."
     )
     commands = "; ".join(run.command for run in runs.values())
     return Figure("latency", "Latency and throughput", text, commands, picture(figure, folder, "latency"))

@@ -39,7 +39,7 @@ OF_SIM = (
 DEFAULT_OUT = simulation.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
 DEFAULT_TOLERANCE = 0.1  # % of peak
-CLOCK_MHZ = 166.0
+CLOCK_MHZ = 166.0  # of the published pipeline
 DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
 
 # The XCZU7EV: DSP48E2 slices; block RAMs of 36 Kbit and UltraRAMs of 288 Kbit.
