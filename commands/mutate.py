@@ -27,7 +27,7 @@ from tqdm import tqdm
 
 from commands import equivalence, mutants, protocols
 from commands import simulator as simulation
-from commands.equivalence import EQUIVALENT, Protocol, settle
+from commands.equivalence import EQUIVALENT, Protocol, Spans, settle
 from models.errors import InputError
 
 OUT = simulation.ROOT / "build" / "mutate"
@@ -184,10 +184,12 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         outcome.mutants += len(made)
         outcome.killed += len(killed)
         graph = equivalence.graph(name, folder, core.protocol(structure.parameters))
+        spans = Spans(graph)
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:
             verdicts = pool.imap(
-                lambda number, graph=graph, folder=folder: settle(graph, number, folder, seconds), numbers
+                lambda number, graph=graph, spans=spans, folder=folder: settle(graph, spans, number, folder, seconds),
+                numbers,
             )
             shown = tqdm(verdicts, f"{name}, survivors", len(numbers), leave=False, disable=None)
             for number, (verdict, how) in zip(numbers, shown, strict=True):
@@ -195,7 +197,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
                 outcome.survivors.append(survivor)
         for number in sorted(killed)[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
-            if settle(graph, number, folder, 1)[0] == EQUIVALENT:
+            if settle(graph, spans, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
                 outcome.survivors.append(survivor | {"how": "killed, yet proven equivalent"})
