@@ -70,7 +70,8 @@ FAINTEST_CIRCLE = 0.1  # deviation from the reference, along the circle
 SHORTEST_ARC = 0.3  # of the circle, seen
 GET = (
     "give PRESSES=<folder with background.png, PNGs of ball presses and presses.csv>; real ones are in the public "
-    "repository rpl-cmu/gelslam, src/gelslam/resources/example_calibration"
+    "repository rpl-cmu/gelslam, src/gelslam/resources/example_calibration: put frame and diameter_mm of its "
+    "catalog.csv into presses.csv, and set PITCH=0.0634"
 )
 UNKNOWN_PITCH = "PITCH is needed: mm per camera pixel (presses.csv has no ball_radius_px)"
 
