@@ -108,14 +108,22 @@ module tactile_depth
 
   // Depth.
 
-  logic table_write;
+  localparam int Tables = TableSelectSelectCount;
+  logic table_write, table_read, gradient_selected, gradient_in_use;
+  logic [TableSelectSelectWidth-1:0] table_select;
   logic [3*BitsPerChannel-1:0] table_index;
+  logic [31:0] table_high, table_low;
+  logic [Tables-1:0] table_bank;
   logic signed [GradientWidth-1:0] table_gx, table_gy, gx, gy;
+  assign gradient_selected = table_select == TableSelectSelectWidth'(TableSelectGradient);
   logic slope_valid;
   logic [3:0] slope_place;
   gradient_lookup #(.Width(GradientWidth), .BitsPerChannel(BitsPerChannel)) u_lookup (
     .clk, .rst, .en,
-    .write_en(table_write), .write_index(table_index), .write_gx(table_gx), .write_gy(table_gy),
+    .table_bank(table_bank[TableSelectGradient]), .table_in_use(gradient_in_use),
+    .table_write(table_write & gradient_selected), .table_read(table_read & gradient_selected), .table_index,
+    .table_gx(table_low[GradientWidth-1:0]), .table_gy(table_high[GradientWidth-1:0]),
+    .table_read_gx(table_gx), .table_read_gy(table_gy),
     .in_valid(guarded_valid), .in_pixel(guarded_data), .in_place(guarded_place),
     .out_valid(slope_valid), .out_place(slope_place),
     .out_gx(gx), .out_gy(gy)
@@ -235,8 +243,14 @@ module tactile_depth
     .saturations,
     .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
     .busy, .contact,
-    .threshold, .timeout, .hold_contact, .table_write, .table_index, .table_gx, .table_gy
+    .threshold, .timeout, .hold_contact,
+    .frame_start(en & guarded_start), .table_write, .table_read, .table_select, .table_index, .table_high, .table_low,
+    .table_read_high(32'(table_gy)), .table_read_low(32'(table_gx)), .table_bank,
+    .table_in_use(Tables'(gradient_in_use) << TableSelectGradient)
   );
+
+  logic unused_banks;  // of the tables that this build has not
+  assign unused_banks = ^table_bank;
 
 `ifndef SYNTHESIS
   initial begin
