@@ -205,7 +205,7 @@ module axil_registers
   end
 
   assign changes = frame_start && !rst;
-  assign table_bank = changes ? bank ^ requested : bank;
+  assign table_bank = bank ^ (requested & {Tables{changes}});
   assign pending = requested | ((bank ^ table_in_use) & Present);
   assign pending_of = (1 << SelectWidth)'(pending);
   assign commits = (write_taken && write_offset == TableCommitOffset) ? write_ones[Tables-1:0] : '0;
