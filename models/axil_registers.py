@@ -167,7 +167,7 @@ class AxilRegisters:
     def _next_entry(self) -> None:
         self.values["TABLE_INDEX"] = (self.values["TABLE_INDEX"] + 1) % self.table_size
 
-    def read(self, address: int, live: Live = Live()) -> tuple[int, Response]:  # noqa: B008, frozen
+    def read(self, address: int, live: Live = Live()) -> tuple[int, Response]:
         """Data and response of a read."""
         register = BY_OFFSET.get(address & ~(BYTES - 1))
         if register is None:
@@ -188,7 +188,7 @@ class AxilRegisters:
         }
         return self.values[register.name] | shown.get(register.name, 0), Response.OKAY
 
-    def write(self, address: int, data: int, strobe: int = 0xF, live: Live = Live()) -> Response:  # noqa: B008, frozen
+    def write(self, address: int, data: int, strobe: int = 0xF, live: Live = Live()) -> Response:
         """Response of a write, which takes effect unless it is an error."""
         register = BY_OFFSET.get(address & ~(BYTES - 1))
         if register is None or not register.writable:

@@ -560,7 +560,8 @@ async def a_write_beside_a_read_of_a_table(dut) -> None:
             writing = cocotb.start_soon(writes())
             await ClockCycles(dut.clk, max(0, -lead) + 1)
             data, response = await read(dut, OFFSET["TABLE_LOW"])
-            assert (data in (entry(0, 1)[1], entry(0, 2)[1])) and response == Response.OKAY
+            assert response == Response.OKAY
+            assert data in (entry(0, 1)[1], entry(0, 2)[1])
             await writing
             assert await value(dut, "TABLE_INDEX") == 3
             assert checker.model.table_writes[-1][1] in (1, 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""gradient_lookup against its model: every bin of both banks, rewritten and read while frames stream; gaps, pauses, reset.
+"""gradient_lookup against its model: both banks, rewritten and read while frames stream; gaps, pauses, reset.
 
 The reference follows the pins, clock by clock: a pixel's slopes are those that its frame's bank holds.
 """

@@ -600,7 +600,7 @@ async def gradient_table(dut):
 
 @TEST
 async def gradient_table_committed_at_the_first_pixel(dut):
-    """The frame whose first pixel is taken around the commit has the codes of one table, and the clock says of which."""
+    """The frame whose first pixel is taken around the commit has the codes of one table; the clock says of which."""
     pipeline = await started(dut)
     colour = pixel(200, 40, 90)
     frame = video([colour] * pipeline.pixels, pipeline.columns)
@@ -764,7 +764,9 @@ async def registers_written_all_the_time(dut, accepts):
             if name in ("TIMEOUT", "CONTROL"):
                 word = word | 1 << 20 if name == "TIMEOUT" else word & ~CONTROL.pack(clear_counters=1)
             refused += await pipeline.write(name, word) == Response.SLVERR
-            await pipeline.read(rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX", "TABLE_COMMIT")))
+            await pipeline.read(
+                rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX", "TABLE_COMMIT"))
+            )
 
     sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(4))))
     await ClockCycles(dut.clk, 12)
