@@ -100,9 +100,9 @@ module axil_registers
     | (GradientFraction << FormatGradientFractionLsb)
     | (BitsPerChannel << FormatBitsPerChannelLsb);
   localparam logic [Tables-1:0] Present =
-      (Tables'(1) << TableSelectGradient)
-    | (Tables'(CoefficientWords != 0) << TableSelectCoefficients)
-    | (Tables'(ReferenceWords != 0) << TableSelectReference);
+      (Tables'(1'b1) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
+    | (Tables'(CoefficientWords != 0) << TableCommitCoefficientsBit)
+    | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit);
 
   logic aw_held;
   logic w_held;

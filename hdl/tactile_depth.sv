@@ -252,8 +252,8 @@ module tactile_depth
     .table_in_use
   );
 
-  logic unused_banks;  // of the tables that this build has not
-  assign unused_banks = ^table_bank;
+  logic unused_tables;  // banks of the tables that this build has not, bits of wider entries than it has
+  assign unused_tables = ^{table_bank, table_high, table_low};
 
 `ifndef SYNTHESIS
   initial begin
