@@ -219,7 +219,7 @@ PROOFS: tuple[Proof, ...] = (
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
     Proof(
         "gradient_lookup",
-        "slopes of the pixel's own index, written or from power-up; valid and place with it, latency 2",
+        "slopes of the pixel's own index in the bank its frame began with, latency 2; reads of the other bank",
         f"{WORD_FREE}; one bit a channel has the same index",
         roms=gradient_rom,
     ),

@@ -102,10 +102,28 @@ def threshold_comparator(_: Mapping[str, int]) -> Protocol:
 
 
 def gradient_lookup(_: Mapping[str, int]) -> Protocol:
-    """The table is not written while a pixel is read."""
-    word = "live & ~rst & en & out_valid"
+    """Nothing is written while a change-over is due, or from a read to its words, 3 clocks later; frames have more than
+    one pixel; a bank that is asked for stays so until a frame or a reset has taken it."""
+    begins = "en & in_valid & in_place[0] & in_place[1]"
+    registers = f"""
+  reg [2:0] asked = 3'd0;
+  reg begun = 1'b0, reads = 1'b0;
+  always @(posedge clk) begin
+    asked <= rst ? 3'd0 : {{asked[1:0], table_read}};
+    begun <= {begins};
+    if (rst | table_read) reads <= 1'b0;
+    else if (asked[1]) reads <= 1'b1;
+  end
+"""
+    assume = (
+        "~table_write | ~rst & table_bank == table_in_use & asked == 3'd0 & ~table_read",
+        "~table_read | ~rst & asked == 3'd0",
+        f"~(begun & {begins})",
+    )
+    word, read = "live & ~rst & en & out_valid", "live & reads"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
-    return Protocol(LIVE, ("~(write_en & in_valid)",), compare)
+    compare |= {"table_read_gx": read, "table_read_gy": read, "table_in_use": "live"}
+    return Protocol(LIVE + registers, assume, compare)
 
 
 def bursts(size: int, rows: int | None, out_size: int | None = None, word: str = "") -> Protocol:
@@ -262,8 +280,9 @@ def axil_client() -> tuple[str, tuple[str, ...], dict[str, str]]:
 
 def axil_registers(_: Mapping[str, int]) -> Protocol:
     registers, assume, compare = axil_client()
-    compare |= dict.fromkeys(("threshold", "timeout", "hold_contact", "table_write", "table_index", "table_gx"), "live")
-    return Protocol(LIVE + registers, assume, compare | {"table_gy": "live & table_write"})
+    held = ("threshold", "timeout", "hold_contact", "table_select", "table_index", "table_high", "table_bank")
+    compare |= dict.fromkeys((*held, "table_write", "table_read"), "live")
+    return Protocol(LIVE + registers, assume, compare | {"table_low": "live & table_write"})
 
 
 def tactile_depth(_: Mapping[str, int]) -> Protocol:

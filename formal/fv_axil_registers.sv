@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
 //
-// Nothing is assumed of the master, the pipeline or reset. The registers of the specification change by what was seen
-// on the ports alone.
+// Nothing is assumed of the master, the pipeline, the tables or reset. The registers of the specification change by what
+// was seen on the ports alone.
 
 module fv_axil_registers
   import register_map_pkg::*;
@@ -13,6 +13,10 @@ module fv_axil_registers
   parameter int GradientWidth    = 21,
   parameter int GradientFraction = 20,
   parameter int BitsPerChannel   = 4,
+  parameter int CoefficientWords = 36,
+  parameter int ReferenceWords   = 0,
+  localparam int Tables = TableSelectSelectCount,
+  localparam int SelectWidth = TableSelectSelectWidth,
   localparam int IndexWidth = 3 * BitsPerChannel
 ) (
   input logic                    clk,
@@ -39,7 +43,11 @@ module fv_axil_registers
   input logic [31:0]             first_depth_latency,
   input logic                    first_depth_latency_valid,
   input logic                    busy,
-  input logic                    contact
+  input logic                    contact,
+  input logic                    frame_start,
+  input logic [31:0]             table_read_high,
+  input logic [31:0]             table_read_low,
+  input logic [Tables-1:0]       table_in_use
 );
 
   localparam logic [1:0] Okay = 2'b00;
@@ -49,12 +57,15 @@ module fv_axil_registers
   logic [1:0] s_axil_bresp, s_axil_rresp;
   logic [31:0] s_axil_rdata, timeout;
   logic signed [31:0] threshold;
-  logic hold_contact, table_write;
+  logic hold_contact, table_write, table_read;
+  logic [SelectWidth-1:0] table_select;
   logic [IndexWidth-1:0] table_index;
-  logic signed [GradientWidth-1:0] table_gx, table_gy;
+  logic [31:0] table_high, table_low;
+  logic [Tables-1:0] table_bank;
   axil_registers #(
     .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
-    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel)
+    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
+    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords)
   ) dut (.*);
 
   logic started = 1'b0;
@@ -72,26 +83,51 @@ module fv_axil_registers
   logic [31:0] data;
   logic [3:0] strobes;
 
+  // Tables: the clocks since one was asked, for which word, whether it has such an entry; change-overs requested.
+  logic [2:0] since;
+  logic upper, has_entry;
+  int size;
+  logic [1:0] select;
+  logic [Tables-1:0] requested, has;
+  logic [Tables-1:0] bank = '0;
+  logic [3:0] waits;
+  logic [31:0] next_index;
+  logic [31:0] index;
+  always_comb begin
+    size = select == TableSelectGradient ? 1 << IndexWidth : select == TableSelectCoefficients ? CoefficientWords
+        : select == TableSelectReference ? ReferenceWords : 0;
+    has = '0;
+    has[TableCommitGradientBit] = 1'b1;
+    has[TableCommitCoefficientsBit] = CoefficientWords != 0;
+    has[TableCommitReferenceBit] = ReferenceWords != 0;
+    waits = 4'(requested | ((bank ^ table_in_use) & has));
+    next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
+  end
+
   // Effect of a write, in the clock before its answer.
   logic effective, refused;
   int offset;
   logic [31:0] mask;
-  assign effective = has_address & has_data & ~answered;
+  assign effective = has_address & has_data & ~answered & (since == 3'd0);
   assign offset = 32'(address) / 4 * 4;
   always_comb begin
     for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
     refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
-        || offset == TimeoutOffset || offset == TableIndexOffset || offset == TableGxOffset
-        || (offset == TableGyOffset && !busy && strobes == 4'b1111));
+        || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
+        || offset == TableHighOffset || offset == TableCommitOffset
+        || (offset == TableLowOffset && index < size && !waits[select] && strobes == 4'b1111));
   end
-  logic writes_control, writes_status, writes_threshold, writes_timeout, writes_index, writes_gx, writes_gy;
+  logic writes_control, writes_status, writes_threshold, writes_timeout;
+  logic writes_select, writes_index, writes_high, writes_low, writes_commit;
   assign writes_control = effective & (offset == ControlOffset);
   assign writes_status = effective & (offset == StatusOffset);
   assign writes_threshold = effective & (offset == ThresholdOffset);
   assign writes_timeout = effective & (offset == TimeoutOffset);
   assign writes_index = effective & (offset == TableIndexOffset);
-  assign writes_gx = effective & (offset == TableGxOffset);
-  assign writes_gy = effective & (offset == TableGyOffset) & ~refused;
+  assign writes_select = effective & (offset == TableSelectOffset);
+  assign writes_high = effective & (offset == TableHighOffset);
+  assign writes_low = effective & (offset == TableLowOffset) & ~refused;
+  assign writes_commit = effective & (offset == TableCommitOffset);
 
   function automatic logic [31:0] written(input logic [31:0] word);
     return (data & mask) | (word & ~mask);
@@ -103,7 +139,7 @@ module fv_axil_registers
   endfunction
 
   logic hold;
-  logic [31:0] limit, silence, index, gx, frames_in, frames_out, frames_dropped, clipped, latency;
+  logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
   assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
   logic [31:0] sticky, happened;
@@ -144,16 +180,20 @@ module fv_axil_registers
     else if (read_offset == SaturationsOffset) word = clipped;
     else if (read_offset == FirstDepthLatencyOffset) word = latency;
     else if (read_offset == TableIndexOffset) word = index;
-    else if (read_offset == TableGxOffset) word = gx;
+    else if (read_offset == TableSelectOffset) word = 32'(select);
+    else if (read_offset == TableCommitOffset) word = 32'(waits);
+    else if (read_offset == TableSizeOffset) word = size;
     else known = 1'b0;
   end
 
   logic b_stalled, r_stalled, refused_q, write_due, read_due;
   logic [1:0] bresp_q, rresp_q;
   logic [31:0] rdata_q;
-  logic [31:0] index_written, gx_written;
+  logic asks;  // a table
+  assign asks = ar & (read_offset == TableHighOffset || read_offset == TableLowOffset);
+  logic [31:0] index_written, select_written;
   assign index_written = written(index);
-  assign gx_written = written(gx);
+  assign select_written = written(32'(select));
   always_ff @(posedge clk) begin
     started <= 1'b1;
     if (aw) address <= s_axil_awaddr;
@@ -164,9 +204,16 @@ module fv_axil_registers
     asked <= ar | (asked & ~r);
     write_due <= effective;
     refused_q <= refused;
-    read_due <= ar;
-    word_q <= word;
-    known_q <= known;
+    read_due <= (ar & ~asks) | (since == 3'd4);
+    word_q <= since == 3'd0 ? word : !has_entry ? '0 : upper ? table_read_high : table_read_low;
+    known_q <= since == 3'd0 ? known : has_entry;
+    if (asks) begin
+      since <= 3'd1;
+      upper <= read_offset == TableHighOffset;
+    end else if (since != 3'd0) begin
+      since <= since == 3'd4 ? 3'd0 : since + 3'd1;
+    end
+    if (since == 3'd1) has_entry <= index < size;
     b_stalled <= s_axil_bvalid & ~s_axil_bready;
     r_stalled <= s_axil_rvalid & ~s_axil_rready;
     bresp_q <= s_axil_bresp;
@@ -177,8 +224,15 @@ module fv_axil_registers
     if (writes_threshold) limit <= written(limit);
     if (writes_timeout) silence <= written(silence);
     if (writes_index) index <= 32'(index_written[IndexWidth-1:0]);
-    if (writes_gy) index <= 32'(IndexWidth'(index + 32'd1));
-    if (writes_gx) gx <= 32'($signed(gx_written[GradientWidth-1:0]));
+    if (writes_low || (since == 3'd1 && !upper && index < size)) index <= next_index;
+    if (writes_select) select <= select_written[1:0];
+    if (writes_high) high <= written(high);
+    for (int table_number = 0; table_number < Tables; table_number++) begin
+      if (frame_start && requested[table_number] && !rst) bank[table_number] <= !bank[table_number];
+      if (frame_start && requested[table_number]) requested[table_number] <= 1'b0;
+      else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !waits[table_number])
+        requested[table_number] <= 1'b1;
+    end
     sticky <= (sticky & ~(writes_status ? data & mask : '0)) | happened;
     frames_in <= counted(clears ? '0 : frames_in, 32'(event_frame_in));
     frames_out <= counted(clears ? '0 : frames_out, 32'(event_frame_out));
@@ -187,20 +241,21 @@ module fv_axil_registers
     if (first_depth_latency_valid) latency <= first_depth_latency;
 
     if (rst) begin
-      {has_address, has_data, answered, asked, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
+      {has_address, has_data, answered, asked, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
       limit <= 32'h7fffffff;
-      {silence, index, gx, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
+      requested <= '0;
+      {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
     end
   end
 
   always_comb begin
-    never_in_reset: assert (!(table_write && rst));
+    never_in_reset: assert (!((table_write || table_read) && rst));
     if (started) begin
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
       one_read_in_flight: assert (s_axil_arready == !asked);
       // Once each, never without a request.
-      answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == asked);
+      answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == (asked && since == 3'd0));
       if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
       if (b_stalled) write_response_stable: assert (s_axil_bvalid && s_axil_bresp == bresp_q);
       if (read_due) begin
@@ -210,16 +265,23 @@ module fv_axil_registers
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
       // What leaves for the pipeline.
       outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
-      table_written: assert (table_write == (writes_gy && !rst));
-      never_while_busy: assert (!(table_write && busy));
-      if (table_write) begin
-        table_word: assert (32'(table_index) == index && 32'(table_gx) == gx && table_gy == data[GradientWidth-1:0]);
-      end
+      // Tables.
+      table_written: assert (table_write == (writes_low && !rst));
+      table_asked: assert (table_read == (since == 3'd1 && index < size && !rst));
+      table_word: assert (table_select == select && 32'(table_index) == index && table_high == high);
+      if (table_write) table_data: assert (table_low == data && index < size);
+      never_both: assert (!(table_write && since != 3'd0));
+      banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
+      if (table_write) only_settled: assert (table_bank[select] == table_in_use[select]);
+      absent: assert ((table_bank & ~has) == '0);
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
       set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && event_row_long
           && sticky[StatusRowLongBit]);
-      refused_while_busy: cover (effective && offset == TableGyOffset && strobes == 4'b1111 && refused);
+      refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[0]);
+      refused_outside: cover (effective && offset == TableLowOffset && index == 36 && size == 36 && refused);
+      changes_over: cover (frame_start && requested == 3'b011);
+      last_entry: cover (table_read && !upper && index == 35 && size == 36);
       second_bin: cover (table_write && table_index == IndexWidth'(1));
       data_first: cover (has_data && !has_address && aw);
       cleared: cover (clears && frames_in != 0 && event_frame_in);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_gradient_lookup: the slopes of a pixel are those that stand in the table at the index of its colour, from power-up
-// or as last written; valid and place travel with it, 2 enabled clocks; while en is low all outputs hold.
+// fv_gradient_lookup: the slopes of a pixel are those that stand at the index of its colour in the bank that its frame
+// began with, from power-up or as last written; valid and place travel with it, 2 enabled clocks; while en is low all
+// outputs hold. An entry asked for stands on the read port 3 clocks later and until the next: that of the bank not in use.
 //
-// Assumed: nothing is written while a pixel is present or between the table and its register (axil_registers: never
-// while busy).
+// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or from a read to
+// its words; reads are 4 clocks apart; the first pixels of two frames do not follow each other in successive clocks.
 
 module fv_gradient_lookup #(
   parameter int Width          = 1,
@@ -13,29 +14,30 @@ module fv_gradient_lookup #(
   input logic                    clk,
   input logic                    rst,
   input logic                    en,
-  input logic                    write_en,
-  input logic [IndexWidth-1:0]   write_index,
-  input logic signed [Width-1:0] write_gx,
-  input logic signed [Width-1:0] write_gy,
+  input logic                    table_bank,
+  input logic                    table_write,
+  input logic                    table_read,
+  input logic [IndexWidth-1:0]   table_index,
+  input logic signed [Width-1:0] table_gx,
+  input logic signed [Width-1:0] table_gy,
   input logic                    in_valid,
   input logic [23:0]             in_pixel,
   input logic [3:0]              in_place
 );
 
-  logic out_valid;
+  logic out_valid, table_in_use;
   logic [3:0] out_place;
-  logic signed [Width-1:0] out_gx, out_gy;
-  gradient_lookup #(.Width(Width), .BitsPerChannel(BitsPerChannel)) dut (
-    .clk, .rst, .en, .write_en, .write_index, .write_gx, .write_gy, .in_valid, .in_pixel, .in_place,
-    .out_valid, .out_place, .out_gx, .out_gy
-  );
+  logic signed [Width-1:0] out_gx, out_gy, table_read_gx, table_read_gy;
+  gradient_lookup #(.Width(Width), .BitsPerChannel(BitsPerChannel)) dut (.*);
 
   logic started = 1'b0;
-  always_comb if (!started) assume (rst && !write_en);
+  always_comb if (!started) assume (rst && !table_write && !table_bank);
 
   // The table as the register map describes it: red uppermost, then green, then blue.
-  logic [2*Width-1:0] words[1 << IndexWidth];
-  initial $readmemh("gradient.hex", words);
+  logic [2*Width-1:0] bank_0[1 << IndexWidth];
+  logic [2*Width-1:0] bank_1[1 << IndexWidth];
+  initial $readmemh("gradient.hex", bank_0);
+  initial $readmemh("gradient.hex", bank_1);
   logic [BitsPerChannel-1:0] red, green, blue;
   assign red = in_pixel[23:16] >> (8 - BitsPerChannel);
   assign blue = in_pixel[15:8] >> (8 - BitsPerChannel);
@@ -44,38 +46,74 @@ module fv_gradient_lookup #(
   assign index = (IndexWidth'(red) << (2 * BitsPerChannel)) + (IndexWidth'(green) << BitsPerChannel)
       + IndexWidth'(blue);
 
-  logic [1:0] valid;   // of the pixels 1 and 2 enabled clocks ago
+  logic in_use = 1'b0;
+  logic [1:0] written = '0;
+  logic begins, used;
+  assign begins = en && in_valid && (in_place & 4'b0011) == 4'b0011;
+  assign used = begins ? table_bank : in_use;
+
+  logic [1:0] valid;           // of the pixels 1 and 2 enabled clocks ago
   logic [7:0] place;
   logic [4*Width-1:0] slopes;
-  logic written, held;
+  logic held, begun;
   logic [4+2*Width:0] out_q;
+  logic [2:0] asked;           // a read 1, 2, 3 clocks ago
+  logic read_known, changed_over;
+  logic [2*Width-1:0] asked_word, read_word;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
+    begun <= begins & ~rst;
     out_q <= {out_valid, out_place, out_gx, out_gy};
-    if (write_en) words[write_index] <= {write_gy, write_gx};
-    written <= ~rst & (written | write_en);
+    if (rst || begins) in_use <= table_bank;
+    if (table_write) written[!in_use] <= 1'b1;
+    if (table_write && in_use) bank_0[table_index] <= {table_gy, table_gx};
+    if (table_write && !in_use) bank_1[table_index] <= {table_gy, table_gx};
     if (en) begin
       valid <= {valid[0], in_valid};
       place <= {place[3:0], in_place};
-      slopes <= {slopes[2*Width-1:0], words[index]};
+      slopes <= {slopes[2*Width-1:0], used ? bank_1[index] : bank_0[index]};
     end
-    if (rst) valid <= '0;
+    asked <= {asked[1:0], table_read};
+    if (table_read) begin
+      asked_word <= used ? bank_0[table_index] : bank_1[table_index];
+      read_known <= 1'b0;
+    end
+    if (asked[1]) begin
+      read_known <= 1'b1;
+      read_word <= asked_word;
+    end
+    changed_over <= ~rst & (changed_over | (begins & table_bank != in_use));
+    if (rst) begin
+      valid <= '0;
+      asked <= '0;
+      read_known <= 1'b0;
+    end
   end
-  always_comb if (in_valid || valid[0]) assume (!write_en);
+  always_comb begin
+    if (table_write) assume (table_bank == in_use && !rst && asked == '0 && !table_read);
+    if (table_read) assume (asked == '0 && !rst);
+    if (begun) assume (!begins);
+  end
 
   always_comb begin
     if (started) begin
+      bank_shown: assert (table_in_use == in_use);
       valid_travels: assert (out_valid == valid[1]);
       if (out_valid) place_travels: assert (out_place == place[7:4]);
       if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[2*Width+:2*Width]);
       if (held) holds: assert ({out_valid, out_place, out_gx, out_gy} == out_q);
-      from_power_up: cover (out_valid && !written);
-      from_write: cover (out_valid && written && in_valid && valid == 2'b11 && held);
+      if (read_known && !asked[0] && !asked[1]) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
+      from_power_up: cover (out_valid && written == '0);
+      from_write: cover (out_valid && changed_over && in_valid && valid == 2'b11 && held);
+      read_in_change: cover (asked[2] && read_known && written == 2'b11 && changed_over);
     end
   end
 
-  bind fv_gradient_lookup.dut.u_table ram_check #(.Depth(Depth), .Defined(0)) u_check (
+  bind fv_gradient_lookup.dut.g_bank[0].u_table ram_check #(.Depth(Depth), .Defined(0)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+  bind fv_gradient_lookup.dut.g_bank[1].u_table ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
 

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // axil_registers: the registers of the pipeline, on AXI4-Lite.
 //
-// The map is docs/registers.md; the constants come from models/register_map.py. One write and one
+// The map is docs/registers.md; the constants come from registers/tactile_depth.rdl. One write and one
 // read in flight; no ready output depends on an input in the same clock. A write takes effect, and
 // is answered, in the clock after both its address and its data were taken, whichever came first;
 // a read is answered in the clock after its address was taken, with the registers as they were
 // before. Responses wait for their ready, readies wait for the response before to be taken.
 //
 // Events are levels: each clock in which one is high counts once. What they set wins over what a
-// write clears in the same clock. table_write is never high in a clock in which busy or rst is.
+// write clears in the same clock.
+//
+// Tables, each held in two banks. table_write: the entry table_index of the bank not in use becomes
+// {table_high, table_low}. table_read: its words are wanted, which shall stand on table_read_* from
+// 3 clocks later until the next table_read; until then writes wait. Never both, nor one in reset,
+// nor outside the table, nor a write while a change-over is pending. table_bank is the bank that
+// each table shall use; it changes in a clock with frame_start alone, and is new in that clock. A
+// core takes its bit over with the first pixel of its own next frame, or in reset, and shows the
+// bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand
+// within a frame of the head of the pipeline.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers
@@ -20,51 +29,65 @@ module axil_registers
   parameter int GradientWidth    = 20,  // bits of a slope code, at most 32
   parameter int GradientFraction = 18,
   parameter int BitsPerChannel   = 4,
-  localparam int IndexWidth = 3 * BitsPerChannel
+  parameter int CoefficientWords = 0,   // entries of these tables, 0: none
+  parameter int ReferenceWords   = 0,
+  localparam int Tables = TableSelectSelectCount,
+  localparam int SelectWidth = TableSelectSelectWidth,
+  localparam int GradientWords = 1 << (3 * BitsPerChannel),
+  localparam int OtherWords = CoefficientWords > ReferenceWords ? CoefficientWords : ReferenceWords,
+  localparam int IndexWidth = $clog2(GradientWords > OtherWords ? GradientWords : OtherWords)
 ) (
-  input  logic                            clk,
-  input  logic                            rst,
+  input  logic                     clk,
+  input  logic                     rst,
 
-  input  logic [AddressWidth-1:0]         s_axil_awaddr,
-  input  logic                            s_axil_awvalid,
-  output logic                            s_axil_awready,
-  input  logic [31:0]                     s_axil_wdata,
-  input  logic [3:0]                      s_axil_wstrb,
-  input  logic                            s_axil_wvalid,
-  output logic                            s_axil_wready,
-  output logic [1:0]                      s_axil_bresp,
-  output logic                            s_axil_bvalid,
-  input  logic                            s_axil_bready,
-  input  logic [AddressWidth-1:0]         s_axil_araddr,
-  input  logic                            s_axil_arvalid,
-  output logic                            s_axil_arready,
-  output logic [31:0]                     s_axil_rdata,
-  output logic [1:0]                      s_axil_rresp,
-  output logic                            s_axil_rvalid,
-  input  logic                            s_axil_rready,
+  input  logic [AddressWidth-1:0]  s_axil_awaddr,
+  input  logic                     s_axil_awvalid,
+  output logic                     s_axil_awready,
+  input  logic [31:0]              s_axil_wdata,
+  input  logic [3:0]               s_axil_wstrb,
+  input  logic                     s_axil_wvalid,
+  output logic                     s_axil_wready,
+  output logic [1:0]               s_axil_bresp,
+  output logic                     s_axil_bvalid,
+  input  logic                     s_axil_bready,
+  input  logic [AddressWidth-1:0]  s_axil_araddr,
+  input  logic                     s_axil_arvalid,
+  output logic                     s_axil_arready,
+  output logic [31:0]              s_axil_rdata,
+  output logic [1:0]               s_axil_rresp,
+  output logic                     s_axil_rvalid,
+  input  logic                     s_axil_rready,
 
-  input  logic                            event_row_short,
-  input  logic                            event_row_long,
-  input  logic                            event_start_missing,
-  input  logic                            event_start_early,
-  input  logic                            event_timeout,
-  input  logic                            event_out_of_step,
-  input  logic                            event_frame_in,
-  input  logic                            event_frame_out,
-  input  logic                            event_frame_dropped,
-  input  logic [7:0]                      saturations,  // values clipped in this clock
-  input  logic [31:0]                     first_depth_latency,
-  input  logic                            first_depth_latency_valid,
-  input  logic                            busy,
-  input  logic                            contact,
+  input  logic                     event_row_short,
+  input  logic                     event_row_long,
+  input  logic                     event_start_missing,
+  input  logic                     event_start_early,
+  input  logic                     event_timeout,
+  input  logic                     event_out_of_step,
+  input  logic                     event_frame_in,
+  input  logic                     event_frame_out,
+  input  logic                     event_frame_dropped,
+  input  logic [7:0]               saturations,  // values clipped in this clock
+  input  logic [31:0]              first_depth_latency,
+  input  logic                     first_depth_latency_valid,
+  input  logic                     busy,
+  input  logic                     contact,
 
-  output logic signed [31:0]              threshold,
-  output logic [31:0]                     timeout,
-  output logic                            hold_contact,
-  output logic                            table_write,
-  output logic [IndexWidth-1:0]           table_index,
-  output logic signed [GradientWidth-1:0] table_gx,
-  output logic signed [GradientWidth-1:0] table_gy
+  output logic signed [31:0]       threshold,
+  output logic [31:0]              timeout,
+  output logic                     hold_contact,
+
+  input  logic                     frame_start,  // the first pixel of a frame passes the head
+  output logic                     table_write,
+  output logic                     table_read,
+  output logic [SelectWidth-1:0]   table_select,
+  output logic [IndexWidth-1:0]    table_index,
+  output logic [31:0]              table_high,
+  output logic [31:0]              table_low,
+  input  logic [31:0]              table_read_high,  // of the table selected
+  input  logic [31:0]              table_read_low,
+  output logic [Tables-1:0]        table_bank,
+  input  logic [Tables-1:0]        table_in_use
 );
 
   localparam logic [1:0] Okay        = 2'b00;
@@ -76,6 +99,10 @@ module axil_registers
     | (GradientWidth << FormatGradientWidthLsb)
     | (GradientFraction << FormatGradientFractionLsb)
     | (BitsPerChannel << FormatBitsPerChannelLsb);
+  localparam logic [Tables-1:0] Present =
+      (Tables'(1'b1) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
+    | (Tables'(CoefficientWords != 0) << TableCommitCoefficientsBit)
+    | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit);
 
   logic aw_held;
   logic w_held;
@@ -93,6 +120,19 @@ module axil_registers
   logic [31:0] status_set;
   logic [31:0] status_cleared;
   logic counters_cleared;
+  logic [Tables-1:0] commits;
+
+  logic [3:0] reading;  // clocks since a table was asked
+  logic read_is_low;
+  logic read_inside;
+  logic [31:0] table_size;
+  logic [IndexWidth-1:0] table_last;
+  logic inside_table;
+  logic [Tables-1:0] requested;  // a change-over that no frame has taken
+  logic [Tables-1:0] bank = '0;  // no reset: it says where the tables are, which no reset touches
+  logic changes;
+  logic [Tables-1:0] pending;
+  logic [(1<<SelectWidth)-1:0] pending_of;
 
   logic [31:0] status;  // the sticky bits
   logic [31:0] frames_in;
@@ -115,7 +155,7 @@ module axil_registers
 
   assign s_axil_awready = !aw_held;
   assign s_axil_wready = !w_held;
-  assign s_axil_arready = !s_axil_rvalid;
+  assign s_axil_arready = !s_axil_rvalid && reading == '0;
 
   assign write_offset = 32'({write_address[AddressWidth-1:2], 2'b00});
   assign read_offset = 32'({s_axil_araddr[AddressWidth-1:2], 2'b00});
@@ -123,14 +163,16 @@ module axil_registers
     {8{write_strobe[3]}}, {8{write_strobe[2]}}, {8{write_strobe[1]}}, {8{write_strobe[0]}}
   };
   assign write_ones = write_data & write_mask;
-  assign write_now = aw_held && w_held && !s_axil_bvalid;
+  assign write_now = aw_held && w_held && !s_axil_bvalid && reading == '0;
   assign write_taken = write_now && !write_refused;
 
   always_comb begin
     case (write_offset)
-      ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableIndexOffset, TableGxOffset:
+      ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableSelectOffset, TableIndexOffset,
+      TableHighOffset, TableCommitOffset:
         write_refused = 1'b0;
-      TableGyOffset: write_refused = busy || write_strobe != 4'b1111;
+      TableLowOffset:
+        write_refused = !inside_table || write_strobe != 4'b1111 || pending_of[table_select];
       default: write_refused = 1'b1;
     endcase
   end
@@ -147,9 +189,26 @@ module axil_registers
   assign counters_cleared =
       write_taken && write_offset == ControlOffset && write_ones[ControlClearCountersBit];
 
-  // The bin written is the one that stands in TABLE_INDEX, which moves on at the end of the clock.
-  assign table_write = write_taken && write_offset == TableGyOffset && !rst;
-  assign table_gy = $signed(write_data[GradientWidth-1:0]);
+  // The entry written or read is the one that stands in TABLE_INDEX, which moves on at the end of the clock.
+  assign table_write = write_taken && write_offset == TableLowOffset && !rst;
+  assign table_read = reading[0] && inside_table && !rst;
+  assign table_low = write_data;
+  assign inside_table = 32'(table_index) < table_size;
+  assign table_last = IndexWidth'(table_size - 32'd1);
+  always_comb begin
+    case (32'(table_select))
+      TableSelectGradient: table_size = GradientWords;
+      TableSelectCoefficients: table_size = CoefficientWords;
+      TableSelectReference: table_size = ReferenceWords;
+      default: table_size = 32'd0;
+    endcase
+  end
+
+  assign changes = frame_start && !rst;
+  assign table_bank = bank ^ (requested & {Tables{changes}});
+  assign pending = requested | ((bank ^ table_in_use) & Present);
+  assign pending_of = (1 << SelectWidth)'(pending);
+  assign commits = (write_taken && write_offset == TableCommitOffset) ? write_ones[Tables-1:0] : '0;
 
   always_ff @(posedge clk) begin
     // Write channels.
@@ -181,11 +240,19 @@ module axil_registers
         ThresholdOffset: threshold <= $signed(merged(threshold));
         TimeoutOffset: timeout <= merged(timeout);
         TableIndexOffset: table_index <= IndexWidth'(merged(32'(table_index)));
-        TableGxOffset: table_gx <= GradientWidth'(merged(32'(table_gx)));
-        TableGyOffset: table_index <= table_index + IndexWidth'(1);
+        TableSelectOffset:
+          table_select <= SelectWidth'(merged(32'(table_select) << TableSelectSelectLsb) >> TableSelectSelectLsb);
+        TableHighOffset: table_high <= merged(table_high);
         default: ;
       endcase
     end
+    if (table_write || (table_read && read_is_low)) begin
+      table_index <= table_index == table_last ? '0 : table_index + IndexWidth'(1);
+    end
+
+    // Banks.
+    requested <= (requested & {Tables{!frame_start}}) | (commits & Present & ~pending);
+    if (changes) bank <= table_bank;
 
     // Registers that the pipeline writes.
     status <= (status & ~status_cleared) | status_set;
@@ -197,6 +264,13 @@ module axil_registers
 
     // Read channels.
     if (s_axil_rvalid && s_axil_rready) s_axil_rvalid <= 1'b0;
+    reading <= {reading[2:0], 1'b0};
+    if (reading[0]) read_inside <= inside_table;
+    if (reading[3]) begin
+      s_axil_rvalid <= 1'b1;
+      s_axil_rresp <= read_inside ? Okay : SlaveError;
+      s_axil_rdata <= !read_inside ? 32'd0 : read_is_low ? table_read_low : table_read_high;
+    end
     if (s_axil_arvalid && s_axil_arready) begin
       s_axil_rvalid <= 1'b1;
       s_axil_rresp <= Okay;
@@ -216,7 +290,14 @@ module axil_registers
         SaturationsOffset: s_axil_rdata <= saturations_count;
         FirstDepthLatencyOffset: s_axil_rdata <= last_latency;
         TableIndexOffset: s_axil_rdata <= 32'(table_index);
-        TableGxOffset: s_axil_rdata <= 32'(table_gx);
+        TableSelectOffset: s_axil_rdata <= 32'(table_select) << TableSelectSelectLsb;
+        TableHighOffset, TableLowOffset: begin
+          reading[0] <= 1'b1;
+          read_is_low <= read_offset == TableLowOffset;
+          s_axil_rvalid <= 1'b0;
+        end
+        TableCommitOffset: s_axil_rdata <= 32'(pending);
+        TableSizeOffset: s_axil_rdata <= table_size;
         default: begin
           s_axil_rdata <= 32'd0;
           s_axil_rresp <= SlaveError;
@@ -232,8 +313,11 @@ module axil_registers
       hold_contact <= 1'b0;
       threshold <= ThresholdReset;
       timeout <= 32'd0;
+      table_select <= '0;
       table_index <= '0;
-      table_gx <= '0;
+      table_high <= '0;
+      requested <= '0;
+      reading <= '0;
       status <= 32'd0;
       frames_in <= 32'd0;
       frames_out <= 32'd0;
@@ -251,7 +335,7 @@ module axil_registers
     if (Rows < 1 || Rows > 65535) $fatal(1, "%m: Rows does not fit GRID");
     if (Columns < 1 || Columns > 65535) $fatal(1, "%m: Columns does not fit GRID");
     if (GradientWidth < 2 || GradientWidth > 32) $fatal(1, "%m: GradientWidth must be 2 to 32");
-    if (IndexWidth > 32) $fatal(1, "%m: TABLE_INDEX holds at most 32 bits");
+    if (BitsPerChannel < 1 || BitsPerChannel > 8) $fatal(1, "%m: BitsPerChannel must be 1 to 8");
   end
 `endif
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // register_map_pkg: offsets, reset values and bits of the AXI4-Lite registers.
 //
-// Written by `python -m models.register_map` from models/register_map.py: change it there.
+// Written by `make registers` from registers/tactile_depth.rdl: change it there.
 
 package register_map_pkg;
 
   // Byte offsets.
-  localparam int AddressWidth = 7;
+  localparam int AddressWidth = 8;
   localparam int IdOffset = 32'h00;
   localparam int GridOffset = 32'h04;
   localparam int FormatOffset = 32'h08;
@@ -19,9 +19,12 @@ package register_map_pkg;
   localparam int FramesDroppedOffset = 32'h24;
   localparam int SaturationsOffset = 32'h28;
   localparam int FirstDepthLatencyOffset = 32'h2c;
-  localparam int TableIndexOffset = 32'h30;
-  localparam int TableGxOffset = 32'h34;
-  localparam int TableGyOffset = 32'h38;
+  localparam int TableSelectOffset = 32'h30;
+  localparam int TableIndexOffset = 32'h34;
+  localparam int TableHighOffset = 32'h38;
+  localparam int TableLowOffset = 32'h3c;
+  localparam int TableCommitOffset = 32'h40;
+  localparam int TableSizeOffset = 32'h44;
 
   // Values after reset that are not zero.
   localparam int IdReset = 32'h54444550;
@@ -45,5 +48,16 @@ package register_map_pkg;
   localparam int StatusOutOfStepBit = 6;
   localparam int StatusBusyBit = 8;
   localparam int StatusContactBit = 9;
+  localparam int TableSelectSelectLsb = 0;
+  localparam int TableSelectSelectWidth = 2;
+  localparam int TableCommitGradientBit = 0;
+  localparam int TableCommitCoefficientsBit = 1;
+  localparam int TableCommitReferenceBit = 2;
+
+  // Values of a field.
+  localparam int TableSelectSelectCount = 3;
+  localparam int TableSelectGradient = 0;
+  localparam int TableSelectCoefficients = 1;
+  localparam int TableSelectReference = 2;
 
 endpackage

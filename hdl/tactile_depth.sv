@@ -108,14 +108,25 @@ module tactile_depth
 
   // Depth.
 
-  logic table_write;
+  localparam int Tables = TableSelectSelectCount;
+  logic table_write, table_read, gradient_selected, gradient_bank, gradient_in_use;
+  logic [TableSelectSelectWidth-1:0] table_select;
   logic [3*BitsPerChannel-1:0] table_index;
+  logic [31:0] table_high, table_low;
+  logic [Tables-1:0] table_bank, table_in_use;
   logic signed [GradientWidth-1:0] table_gx, table_gy, gx, gy;
+  // Constants of the package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.
+  assign gradient_bank = table_bank[TableSelectGradient];
+  assign table_in_use = Tables'(gradient_in_use) << TableSelectGradient;
+  assign gradient_selected = table_select == TableSelectSelectWidth'(TableSelectGradient);
   logic slope_valid;
   logic [3:0] slope_place;
   gradient_lookup #(.Width(GradientWidth), .BitsPerChannel(BitsPerChannel)) u_lookup (
     .clk, .rst, .en,
-    .write_en(table_write), .write_index(table_index), .write_gx(table_gx), .write_gy(table_gy),
+    .table_bank(gradient_bank), .table_in_use(gradient_in_use),
+    .table_write(table_write & gradient_selected), .table_read(table_read & gradient_selected), .table_index,
+    .table_gx(table_low[GradientWidth-1:0]), .table_gy(table_high[GradientWidth-1:0]),
+    .table_read_gx(table_gx), .table_read_gy(table_gy),
     .in_valid(guarded_valid), .in_pixel(guarded_data), .in_place(guarded_place),
     .out_valid(slope_valid), .out_place(slope_place),
     .out_gx(gx), .out_gy(gy)
@@ -235,8 +246,14 @@ module tactile_depth
     .saturations,
     .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
     .busy, .contact,
-    .threshold, .timeout, .hold_contact, .table_write, .table_index, .table_gx, .table_gy
+    .threshold, .timeout, .hold_contact,
+    .frame_start(en & guarded_start), .table_write, .table_read, .table_select, .table_index, .table_high, .table_low,
+    .table_read_high(32'(table_gy)), .table_read_low(32'(table_gx)), .table_bank,
+    .table_in_use
   );
+
+  logic unused_tables;  // banks of the tables that this build has not, bits of wider entries than it has
+  assign unused_tables = ^{table_bank, table_high, table_low};
 
 `ifndef SYNTHESIS
   initial begin

@@ -2,20 +2,22 @@
 """Behavioural model of hdl/axil_registers.sv: what reads return, what writes and events change.
 
 It knows no clock. In one clock a read sees the registers first, then the write takes effect, then the events:
-that order is what makes setting win over clearing.
+that order is what makes setting win over clearing. A read of a table entry comes in a clock without a write.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
 
-from models.register_map import REGISTERS, WORD_BITS
+from models.register_map import REGISTERS, TABLES, WORD_BITS
 
 WORD = (1 << WORD_BITS) - 1
 BYTES = WORD_BITS // 8
 BY_OFFSET = {register.offset: register for register in REGISTERS.values()}
 
+SELECT = REGISTERS["TABLE_SELECT"].field("select")
 STATUS = REGISTERS["STATUS"]
 CONTROL = REGISTERS["CONTROL"]
 STICKY_EVENTS = tuple(f.name for f in STATUS.fields if f.access == "w1c" and f.name != "saturation")
@@ -41,6 +43,20 @@ class Build:
     gradient_width: int
     gradient_fraction: int
     bits_per_channel: int
+    coefficient_words: int = 0
+    reference_words: int = 0
+
+    @property
+    def table_sizes(self) -> dict[int, int]:
+        """Entries of each table that TABLE_SELECT can name; 0: the build has none."""
+        gradient_words = 1 << 3 * self.bits_per_channel
+        sizes = {"gradient": gradient_words, "coefficients": self.coefficient_words, "reference": self.reference_words}
+        return {code: sizes[name] for name, code in TABLES.items()}
+
+    @property
+    def index_width(self) -> int:
+        """Bits of TABLE_INDEX."""
+        return (max(self.table_sizes.values()) - 1).bit_length()
 
 
 @dataclass(frozen=True)
@@ -55,11 +71,23 @@ class Events:
         Values clipped.
     first_depth_latency : int or None
         Reported by the frame whose first depth value leaves.
+    frame_start : bool
+        The first pixel of a frame is at the head of the pipeline.
     """
 
     flags: frozenset[str] = frozenset()
     saturations: int = 0
     first_depth_latency: int | None = None
+    frame_start: bool = False
+
+
+@dataclass(frozen=True)
+class Live:
+    """Inputs that a read or a write of this clock sees; `in_use`: the bank of each table, bit by bit."""
+
+    busy: bool = False
+    contact: bool = False
+    in_use: int = 0
 
 
 def signed(word: int, width: int) -> int:
@@ -80,21 +108,30 @@ class AxilRegisters:
     Attributes
     ----------
     values : dict
-        Register name to word: what a read returns, but for the live bits of STATUS.
-    table_writes : list of (index, gx, gy)
-        Every write to the gradient table since the start, slopes signed.
+        Register name to word: what a read returns, but for what is live.
+    bank, requested : int
+        Bit by bit, the bank that each table shall use, and the tables that change over with the next frame.
+    table_writes : list of (table, index, high, low)
+        Every entry written since the start.
+    entry : callable
+        The words (high, low) of an entry that is read, by table and index.
     """
 
     build: Build
+    entry: Callable[[int, int], tuple[int, int]] = lambda table, index: (0, 0)
     values: dict[str, int] = field(default_factory=dict)
-    table_writes: list[tuple[int, int, int]] = field(default_factory=list)
+    bank: int = 0
+    requested: int = 0
+    table_writes: list[tuple[int, int, int, int]] = field(default_factory=list)
+    _committed: int = 0
 
     def __post_init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Every register to its reset value."""
+        """Every register to its reset value; tables and their banks stay."""
         build = self.build
+        self.requested = self._committed = 0
         self.values = {register.name: register.reset or 0 for register in REGISTERS.values()}
         self.values["GRID"] = REGISTERS["GRID"].pack(rows=build.rows, columns=build.columns)
         self.values["FORMAT"] = REGISTERS["FORMAT"].pack(
@@ -104,47 +141,89 @@ class AxilRegisters:
             bits_per_channel=build.bits_per_channel,
         )
 
-    def read(self, address: int, busy: bool = False, contact: bool = False) -> tuple[int, Response]:
-        """Data and response of a read; `busy` and `contact` are the live inputs in that clock."""
-        register = BY_OFFSET.get(address & ~(BYTES - 1))
-        if register is None or register.access == "wo":
-            return 0, Response.SLVERR
-        live = STATUS.pack(busy=int(busy), contact=int(contact)) if register is STATUS else 0
-        return self.values[register.name] | live, Response.OKAY
+    @property
+    def table(self) -> int:
+        """The table selected."""
+        return self.values["TABLE_SELECT"] >> SELECT.low & (1 << SELECT.width) - 1
 
-    def write(self, address: int, data: int, strobe: int = 0xF, busy: bool = False) -> Response:
+    @property
+    def table_size(self) -> int:
+        return self.build.table_sizes.get(self.table, 0)
+
+    def pending(self, in_use: int) -> int:
+        """TABLE_COMMIT: tables that have not changed over, or will with the next frame."""
+        present = sum(1 << table for table, size in self.build.table_sizes.items() if size)
+        return self.requested | (self.bank ^ in_use) & present
+
+    def bank_wanted(self, frame_start: bool) -> int:
+        """The bank that each table shall use in a clock in which a frame starts, or does not."""
+        return self.bank ^ self.requested if frame_start else self.bank
+
+    def is_port(self, address: int) -> bool:
+        """Whether a read of this address is one of a table."""
+        register = BY_OFFSET.get(address & ~(BYTES - 1))
+        return register is not None and any(f.access == "port" for f in register.fields)
+
+    def _next_entry(self) -> None:
+        self.values["TABLE_INDEX"] = (self.values["TABLE_INDEX"] + 1) % self.table_size
+
+    def read(self, address: int, live: Live = Live()) -> tuple[int, Response]:
+        """Data and response of a read."""
+        register = BY_OFFSET.get(address & ~(BYTES - 1))
+        if register is None:
+            return 0, Response.SLVERR
+        if self.is_port(address):
+            index = self.values["TABLE_INDEX"]
+            if index >= self.table_size:
+                return 0, Response.SLVERR
+            high, low = self.entry(self.table, index)
+            if register.name == "TABLE_HIGH":
+                return high, Response.OKAY
+            self._next_entry()
+            return low, Response.OKAY
+        shown = {
+            "STATUS": STATUS.pack(busy=int(live.busy), contact=int(live.contact)),
+            "TABLE_COMMIT": self.pending(live.in_use),
+            "TABLE_SIZE": self.table_size,
+        }
+        return self.values[register.name] | shown.get(register.name, 0), Response.OKAY
+
+    def write(self, address: int, data: int, strobe: int = 0xF, live: Live = Live()) -> Response:
         """Response of a write, which takes effect unless it is an error."""
         register = BY_OFFSET.get(address & ~(BYTES - 1))
-        if register is None or register.access == "ro":
+        if register is None or not register.writable:
             return Response.SLVERR
         values, name = self.values, register.name
         strobed = data & strobed_bits(strobe)
         merged = strobed | values[name] & ~strobed_bits(strobe)
-        gradient_width, table_size = self.build.gradient_width, 1 << 3 * self.build.bits_per_channel
-        if name == "TABLE_GY":
-            if busy or strobe != (1 << BYTES) - 1:
+        pending = self.pending(live.in_use)
+        if name == "TABLE_LOW":
+            index, table = values["TABLE_INDEX"], self.table
+            if index >= self.table_size or strobe != (1 << BYTES) - 1 or pending >> table & 1:
                 return Response.SLVERR
-            index = values["TABLE_INDEX"]
-            gx, gy = (signed(word, gradient_width) for word in (values["TABLE_GX"], data))
-            self.table_writes.append((index, gx, gy))
-            values["TABLE_INDEX"] = (index + 1) % table_size
-        elif name == "TABLE_GX":
-            values[name] = signed(merged, gradient_width) & WORD
+            self.table_writes.append((table, index, values["TABLE_HIGH"], data))
+            self._next_entry()
+        elif name == "TABLE_COMMIT":
+            for table, size in self.build.table_sizes.items():
+                if size:
+                    self._committed |= strobed & ~pending & 1 << table
         elif name == "TABLE_INDEX":
-            values[name] = merged % table_size
-        elif register is STATUS:
-            values[name] &= ~strobed
-        elif register is CONTROL:
-            values[name] = merged & CONTROL.field("hold_contact").mask
-            if strobed & CONTROL.field("clear_counters").mask:
-                values.update(dict.fromkeys(COUNTERS, 0))
+            values[name] = merged & (1 << self.build.index_width) - 1
         else:
-            values[name] = merged
+            values[name] &= ~(strobed & register.mask("w1c"))
+            values[name] = merged & register.mask("rw", "port") | values[name] & ~register.mask("rw", "port")
+        if strobed & CONTROL.field("clear_counters").mask and register is CONTROL:
+            values.update(dict.fromkeys(COUNTERS, 0))
         return Response.OKAY
 
     def clock(self, events: Events) -> None:
         """Take the events of one clock, after the write of that clock."""
         values = self.values
+        if events.frame_start:
+            self.bank ^= self.requested
+            self.requested = 0
+        self.requested |= self._committed  # not by the frame that starts in this clock
+        self._committed = 0
         for name in STICKY_EVENTS:
             values["STATUS"] |= STATUS.pack(**{name: int(name in events.flags)})
         values["STATUS"] |= STATUS.pack(saturation=int(events.saturations > 0))

@@ -31,7 +31,7 @@ INPUTS, OUTPUTS = ("idle", "accept", "stalled"), ("idle", "taken", "held")
 RESETS = (1, 2, 16)  # clocks
 PAUSES = ("0", "1", "many")  # idle clocks between frames
 SILENCES = ("off", "waited for", "given up")
-WRITTEN = {register.offset: register.name for register in MAP if register.access != "ro"}
+WRITTEN = {register.offset: register.name for register in MAP if register.writable}
 # Frames between their last pixel and their first depth, at the smallest grid.
 SMALLEST = [
     Configuration(columns=least, rows=0 if name == "spectral" else ROWS[0], solver=name)

@@ -22,15 +22,17 @@ from models.axil_registers import (
     AxilRegisters,
     Build,
     Events,
+    Live,
     Response,
-    signed,
+    strobed_bits,
 )
-from models.register_map import ADDRESS_WIDTH, MAP, REGISTERS
+from models.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES
 
 FLAGS = (*STICKY_EVENTS, *FRAME_COUNTERS)
 INPUTS = (
     *(f"event_{flag}" for flag in FLAGS),
-    *("saturations", "first_depth_latency", "first_depth_latency_valid", "busy", "contact"),
+    *("saturations", "first_depth_latency", "first_depth_latency_valid", "busy", "contact", "frame_start"),
+    *("table_read_high", "table_read_low", "table_in_use"),
     *(f"s_axil_{pin}" for pin in ("awaddr", "awvalid", "wdata", "wstrb", "wvalid", "bready")),
     *(f"s_axil_{pin}" for pin in ("araddr", "arvalid", "rready")),
 )
@@ -38,6 +40,13 @@ OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
 COUNTER_SIGNALS = dict(zip(COUNTERS, ("frames_in", "frames_out", "frames_dropped", "saturations_count"), strict=True))
 RANDOM_CLOCKS = 10_000
+TABLE_CLOCKS = 4  # from the one in which an entry is asked for to that which takes its words, both counted
+
+
+def entry(table: int, index: int) -> tuple[int, int]:
+    """Words (high, low) of an entry of the tables behind the registers: other ones for each."""
+    low = (index + 1) * 0x9E37_79B1 + (table + 1) * 0x85EB_CA6B & WORD
+    return low * 0xC2B2_AE35 >> 5 & WORD, low
 
 
 class Checker:
@@ -46,8 +55,9 @@ class Checker:
     def __init__(self, dut) -> None:
         self.dut = dut
         names = ("Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel")
+        names += ("CoefficientWords", "ReferenceWords")
         self.build = Build(*(int(getattr(dut, name).value) for name in names))
-        self.model = AxilRegisters(self.build)
+        self.model = AxilRegisters(self.build, entry)
         self.responses: dict[str, list[Response]] = {"read": [], "write": []}
         self.clocks = 0
         self.drop()
@@ -58,6 +68,8 @@ class Checker:
         self.data: tuple[int, int] | None = None
         self.written: Response | None = None
         self.read: tuple[int, Response] | None = None
+        self.asked: int | None = None  # a table, by a read of this address
+        self.asked_for = 0  # clocks
 
     def pin(self, name: str) -> int:
         return int(getattr(self.dut, name).value)
@@ -72,67 +84,115 @@ class Checker:
         got = self.pin(name)
         assert got == want, f"clock {self.clocks}: {name} is {got:#x}, the model says {want:#x}"
 
-    def expect_slope(self, name: str, want: int) -> None:
-        self.expect(name, want & (1 << self.build.gradient_width) - 1)
-
     async def run(self) -> None:
         await RisingEdge(self.dut.clk)  # of the first reset: before it everything is unknown
+        self.model.bank = self.pin("table_bank")  # of the test before: no reset touches it
         while True:
             await RisingEdge(self.dut.clk)
             self.step()
             self.clocks += 1
 
     def step(self) -> None:
-        values, table_writes = self.model.values, len(self.model.table_writes)
+        model, values = self.model, self.model.values
+        resets = bool(self.pin("rst"))
         self.expect("s_axil_awready", self.address is None)
         self.expect("s_axil_wready", self.data is None)
         self.expect("s_axil_bvalid", self.written is not None)
-        self.expect("s_axil_arready", self.read is None)
-        self.expect("s_axil_rvalid", self.read is not None)
+        self.expect("s_axil_arready", self.read is None and self.asked is None)
+        self.expect("s_axil_rvalid", self.read is not None and self.asked is None)
         if self.written is not None:
             self.expect("s_axil_bresp", self.written)
-        if self.read is not None:
+        if self.read is not None and self.asked is None:
             self.expect("s_axil_rdata", self.read[0])
             self.expect("s_axil_rresp", self.read[1])
         self.expect("threshold", values["THRESHOLD"])
         self.expect("timeout", values["TIMEOUT"])
         self.expect("hold_contact", CONTROL.unpack(values["CONTROL"])["hold_contact"])
+        self.expect("table_select", model.table)
         self.expect("table_index", values["TABLE_INDEX"])
-        self.expect_slope("table_gx", values["TABLE_GX"])
+        self.expect("table_high", values["TABLE_HIGH"])
+        starts = bool(self.pin("frame_start"))
+        self.expect("table_bank", model.bank_wanted(starts and not resets))
 
-        busy, contact = bool(self.pin("busy")), bool(self.pin("contact"))
-        if self.fires("ar"):
-            self.read = self.model.read(self.bus("araddr"), busy, contact)
-            self.responses["read"].append(self.read[1])
+        live = Live(bool(self.pin("busy")), bool(self.pin("contact")), self.pin("table_in_use"))
+        asked_before = self.asked
+        table_read = False
+        if self.asked is not None:
+            self.asked_for += 1
+            if self.asked_for == 1:  # the others wait for what it brings
+                self.read = model.read(self.asked)
+                table_read = self.read[1] == Response.OKAY
+            elif self.asked_for == TABLE_CLOCKS:
+                self.asked = None
+                self.responses["read"].append(self.read[1])
+        elif self.fires("ar"):
+            if model.is_port(self.bus("araddr")):
+                self.asked, self.asked_for = self.bus("araddr"), 0
+            else:
+                self.read = model.read(self.bus("araddr"), live)
+                self.responses["read"].append(self.read[1])
         elif self.fires("r"):
             self.read = None
+        self.expect("table_read", table_read and not resets)
+        writes = len(model.table_writes)
         if self.fires("b"):
             self.address = self.data = self.written = None
-        elif self.address is not None and self.data is not None and self.written is None and not self.pin("rst"):
-            self.written = self.model.write(self.address, *self.data, busy=busy)
+        elif (
+            None not in (self.address, self.data)
+            and self.written is None
+            and asked_before is None
+            and not self.pin("rst")
+        ):
+            self.written = model.write(self.address, *self.data, live)
             self.responses["write"].append(self.written)
         if self.fires("aw"):
             self.address = self.bus("awaddr")
         if self.fires("w"):
             self.data = self.bus("wdata"), self.bus("wstrb")
-        self.expect("table_write", len(self.model.table_writes) - table_writes)
-        if len(self.model.table_writes) > table_writes:
-            index, gx, gy = self.model.table_writes[-1]
+        self.expect("table_write", len(model.table_writes) - writes)
+        if len(model.table_writes) > writes:
+            table, index, high, low = model.table_writes[-1]
+            self.expect("table_select", table)
             self.expect("table_index", index)
-            self.expect_slope("table_gx", gx)
-            self.expect_slope("table_gy", gy)
-        self.model.clock(
+            self.expect("table_high", high)
+            self.expect("table_low", low)
+        model.clock(
             Events(
                 flags=frozenset(flag for flag in FLAGS if self.pin(f"event_{flag}")),
                 saturations=self.pin("saturations"),
                 first_depth_latency=(
                     self.pin("first_depth_latency") if self.pin("first_depth_latency_valid") else None
                 ),
+                frame_start=starts and not resets,
             )
         )
-        if self.pin("rst"):
-            self.model.reset()
+        if resets:
+            model.reset()
             self.drop()
+
+
+class Tables:
+    """What stands behind the table ports: the words of an entry come as late as they may, other words before; a table
+    changes over `lag` clocks after the frame start."""
+
+    def __init__(self, dut, lag: int = 0) -> None:
+        self.dut, self.lag = dut, lag
+        self.random = random.Random(lag)
+
+    async def run(self) -> None:
+        dut, late, due = self.dut, 0, []
+        while True:
+            await RisingEdge(dut.clk)
+            if dut.table_read.value:
+                due = [*[None] * (TABLE_CLOCKS - 2), entry(int(dut.table_select.value), int(dut.table_index.value))]
+                dut.table_read_high.value, dut.table_read_low.value = (self.random.getrandbits(32) for _ in range(2))
+            if due and (words := due.pop(0)) is not None:
+                dut.table_read_high.value, dut.table_read_low.value = words
+            wanted, used = dut.table_bank.value, dut.table_in_use.value
+            late = late + 1 if wanted != used else 0
+            if dut.rst.value or late > self.lag:
+                dut.table_in_use.value = int(wanted)
+                late = 0
 
 
 async def reset(dut) -> None:
@@ -142,8 +202,8 @@ async def reset(dut) -> None:
 
 
 @asynccontextmanager
-async def checked(dut) -> AsyncIterator[Checker]:
-    """A clocked, reset device, followed by a Checker until the end of the block."""
+async def checked(dut, lag: int = 0) -> AsyncIterator[Checker]:
+    """A clocked, reset device, followed by a Checker until the end of the block; `lag`: of its tables."""
     for name in INPUTS:
         getattr(dut, name).value = 0
     dut.rst.value = 1
@@ -151,11 +211,13 @@ async def checked(dut) -> AsyncIterator[Checker]:
     await RisingEdge(dut.clk)
     checker = Checker(dut)
     follower = cocotb.start_soon(checker.run())
+    tables = cocotb.start_soon(Tables(dut, lag).run())
     await reset(dut)
     yield checker
     await ClockCycles(dut.clk, 2)
     assert checker.clocks > 4
     follower.cancel()
+    tables.cancel()
 
 
 async def pulse(dut, **values: int) -> None:
@@ -240,46 +302,75 @@ async def response_of(transaction: Awaitable) -> Response:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_values(dut) -> None:
-    """Every register that can be read has its reset value, or that of the build."""
+    """Every field has the reset value of the map, or that of the build; bits of no field read 0."""
     async with checked(dut) as checker:
-        master = master_of(dut)
         for register in MAP:
-            if register.access == "wo":
-                continue
-            data = int(await master.read(register.offset))
-            want = checker.model.values[register.name] if register.reset is None else register.reset
-            assert data == want, f"{register.name} is {data:#x} after reset, not {want:#x}"
-        assert int(await master.read(OFFSET["ID"])).to_bytes(4, "big") == b"TDEP"
+            data = (await read(dut, register.offset))[0]
+            assert data & ~register.mask() == 0, f"{register.name} has bits that are not listed"
+            for field in register.fields:
+                if field.reset is not None:
+                    got = register.unpack(data)[field.name]
+                    assert got == field.reset, f"{register.name}.{field.name} is {got:#x} after reset"
+        assert (await value(dut, "ID")).to_bytes(4, "big") == b"TDEP"
         build = checker.build
-        grid = REGISTERS["GRID"].unpack(int(await master.read(OFFSET["GRID"])))
-        assert grid == {"rows": build.rows, "columns": build.columns}
+        assert REGISTERS["GRID"].unpack(await value(dut, "GRID")) == {"rows": build.rows, "columns": build.columns}
+        form = REGISTERS["FORMAT"].unpack(await value(dut, "FORMAT"))
+        assert form == {name: getattr(build, name) for name in form}
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def written_words_come_back(dut) -> None:
-    """What rw registers hold, whole and byte by byte, through the bus master."""
+@cocotb.parametrize(register=[r.name for r in MAP if "port" not in {f.access for f in r.fields}])
+async def access(dut, register) -> None:
+    """Every bit does what the access of its field says, bit by bit and byte by byte; what lies behind the others is
+    tested with the tables."""
     async with checked(dut) as checker:
+        register, build = REGISTERS[register], checker.build
+        everything = STATUS.mask("w1c")
+        held = register.mask("rw")
+        if register.name == "TABLE_INDEX":
+            held = (1 << build.index_width) - 1
+        await pulse(dut, saturations=1, **{f"event_{flag}": 1 for flag in FLAGS})
+        before = await value(dut, register.name)
+        if not register.writable:
+            for word in (0, WORD):
+                assert await write(dut, register.offset, word) == Response.SLVERR
+            assert await value(dut, register.name) == before
+            return
+        rng = random.Random(cocotb.RANDOM_SEED)
+        single_bits = [(1 << bit, 0xF) for bit in range(32)]
+        words = [(WORD, 0), (WORD, 0xF), (0, 0xF), (WORD, 0xF), *single_bits]
+        for word, strobe in [*words, *((rng.getrandbits(32), strobe) for strobe in range(1 << BYTES))]:
+            old = await value(dut, register.name)
+            assert await write(dut, register.offset, word, strobe) == Response.OKAY
+            strobed = strobed_bits(strobe)
+            want = {
+                "ro": old & register.mask("ro"),
+                "rw": (word & strobed | old & ~strobed) & held,
+                "w1c": old & ~(word & strobed) & register.mask("w1c"),
+                "w1s": (old | word & strobed & tables_present(build)) & register.mask("w1s"),
+                "pulse": 0,
+            }
+            got = await value(dut, register.name)
+            assert got == sum(want.values()), f"{register.name} is {got:#x} after {word:#x} strobed {strobe:04b}"
+            if register is STATUS:
+                await pulse(dut, saturations=1, **{f"event_{flag}": 1 for flag in FLAGS})
+                assert await value(dut, "STATUS") == everything
+
+
+def tables_present(build: Build) -> int:
+    """Bits of TABLE_COMMIT of the tables that the build has."""
+    return sum(1 << table for table, size in build.table_sizes.items() if size)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def outputs(dut) -> None:
+    """What the pipeline gets of the registers, through the bus master."""
+    async with checked(dut):
         master = master_of(dut)
-        build = checker.build
-        index_mask = (1 << 3 * build.bits_per_channel) - 1
-        held = {
-            "THRESHOLD": lambda word: word,
-            "TIMEOUT": lambda word: word,
-            "TABLE_INDEX": lambda word: word & index_mask,
-            "TABLE_GX": lambda word: signed(word, build.gradient_width) & WORD,
-            "CONTROL": lambda word: word & CONTROL.field("hold_contact").mask,
-        }
-        assert set(held) == {register.name for register in MAP if register.access == "rw"}
-        for name, what in held.items():
-            for word in (WORD, 0, 0xA5A5_A5A5, 0x5A5A_5A5A, 1 << build.gradient_width - 1):
-                await master.write(OFFSET[name], word)
-                assert int(await master.read(OFFSET[name])) == what(word), name
-        for byte in range(BYTES):
-            await master.write(OFFSET["TIMEOUT"], 0x4433_2211)
-            await master.write(OFFSET["TIMEOUT"], WORD, byte_enable=1 << byte)
-            assert int(await master.read(OFFSET["TIMEOUT"])) == 0x4433_2211 | 0xFF << 8 * byte
         await master.write(OFFSET["THRESHOLD"], -5 & WORD)
         assert dut.threshold.value.to_signed() == -5
+        await master.write(OFFSET["TIMEOUT"], 0x4433_2211)
+        assert int(await master.read(OFFSET["TIMEOUT"])) == int(dut.timeout.value) == 0x4433_2211
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
@@ -366,57 +457,181 @@ async def reset_inside_transactions(dut) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def errors_change_nothing(dut) -> None:
-    """Unmapped offsets, writes to ro and reads of wo registers: SLVERR, as the map says, and no effect."""
+    """Unmapped offsets and writes to ro registers: SLVERR, as the map says, and no effect."""
     async with checked(dut) as checker:
         master = master_of(dut)
         for offset in range(0, 1 << ADDRESS_WIDTH, BYTES):
             register = next((r for r in MAP if r.offset == offset), None)
             before = dict(checker.model.values)
-            if register is None or register.access == "ro":
+            if register is None or not register.writable:
                 response = await response_of(master.write(offset, WORD))
                 assert response == Response.SLVERR, f"a write to {offset:#x} passed"
-            readable = register is not None and register.access != "wo"
-            response = await response_of(master.read(offset))
-            assert response == (Response.OKAY if readable else Response.SLVERR), f"a read of {offset:#x}"
+            if not checker.model.is_port(offset):
+                response = await response_of(master.read(offset))
+                assert response == (Response.OKAY if register else Response.SLVERR), f"a read of {offset:#x}"
             assert checker.model.values == before
-        for register in MAP:
-            if register.access != "wo":
-                assert int(await master.read(register.offset)) == checker.model.values[register.name]
+
+
+async def choose(dut, table: int, index: int) -> None:
+    """Set TABLE_SELECT and TABLE_INDEX."""
+    await write(dut, OFFSET["TABLE_SELECT"], table)
+    await write(dut, OFFSET["TABLE_INDEX"], index)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def table_writes(dut) -> None:
-    """Slope pairs go out in turn, the index runs round, and nothing goes out while busy or half strobed."""
+@cocotb.parametrize(table=list(TABLES.values()))
+async def table_entries(dut, table) -> None:
+    """Entries are written and read in turn, the index runs round; nothing happens outside, half strobed, in reset."""
     async with checked(dut) as checker:
-        width, size = checker.build.gradient_width, 1 << 3 * checker.build.bits_per_channel
-        low, high = -(1 << width - 1), (1 << width - 1) - 1
-        pairs = [(low, high), (high, low), (-1, 0), (0, -1), (1, 2)]
-        await write(dut, OFFSET["TABLE_INDEX"], size - 2)
-        for gx, gy in pairs:
-            await write(dut, OFFSET["TABLE_GX"], gx & WORD)
-            assert await write(dut, OFFSET["TABLE_GY"], gy & WORD) == Response.OKAY
-        want = [((size - 2 + n) % size, *pair) for n, pair in enumerate(pairs)]
-        assert checker.model.table_writes == want
-        assert await value(dut, "TABLE_INDEX") == 3 % size
+        size, writes = checker.build.table_sizes[table], checker.model.table_writes
+        await write(dut, OFFSET["TABLE_HIGH"], 0x8000_0001)
+        await choose(dut, table, 0)
+        assert await value(dut, "TABLE_SIZE") == size
+        if not size:
+            assert await write(dut, OFFSET["TABLE_LOW"], 5) == Response.SLVERR
+            for name in ("TABLE_LOW", "TABLE_HIGH"):
+                assert await read(dut, OFFSET[name]) == (0, Response.SLVERR)
+            assert not writes
+            return
+        words = [(0x8000_0000, WORD), (0x7FFF_FFFF, 0), (0, 0x8000_0000), (1, 2), (WORD, WORD)]
+        first = max(0, size - 2)
+        await choose(dut, table, first)
+        for high, low in words:
+            await write(dut, OFFSET["TABLE_HIGH"], high)
+            assert await write(dut, OFFSET["TABLE_LOW"], low) == Response.OKAY
+        assert writes == [(table, (first + n) % size, *pair) for n, pair in enumerate(words)]
+        assert await value(dut, "TABLE_INDEX") == (first + len(words)) % size
+        await write(dut, OFFSET["TABLE_LOW"], 3)  # the upper word stays
+        assert writes.pop() == (table, (first + len(words)) % size, WORD, 3)
 
-        dut.busy.value = 1
-        assert await write(dut, OFFSET["TABLE_GY"], 5) == Response.SLVERR
-        assert await write(dut, OFFSET["TABLE_GX"], 6) == Response.OKAY  # only TABLE_GY waits
-        dut.busy.value = 0
+        await choose(dut, table, first)
+        for n in range(5):
+            index = (first + n) % size
+            assert await value(dut, "TABLE_INDEX") == index
+            assert await value(dut, "TABLE_HIGH") == entry(table, index)[0]
+            assert await value(dut, "TABLE_LOW") == entry(table, index)[1]
+
         for strobe in range((1 << BYTES) - 1):
-            assert await write(dut, OFFSET["TABLE_GY"], 5, strobe) == Response.SLVERR, f"strobe {strobe:04b}"
-        assert checker.model.table_writes == want
-        assert await write(dut, OFFSET["TABLE_GY"], 7) == Response.OKAY
-        assert checker.model.table_writes[len(want) :] == [(3 % size, 6, 7)]
+            assert await write(dut, OFFSET["TABLE_LOW"], 5, strobe) == Response.SLVERR, f"strobe {strobe:04b}"
+        if size < 1 << checker.build.index_width:
+            await choose(dut, table, size)
+            assert await write(dut, OFFSET["TABLE_LOW"], 5) == Response.SLVERR
+            for name in ("TABLE_LOW", "TABLE_HIGH"):
+                assert await read(dut, OFFSET[name]) == (0, Response.SLVERR)
+            assert await value(dut, "TABLE_INDEX") == size
+            await choose(dut, table, size - 1)
+            assert await write(dut, OFFSET["TABLE_LOW"], 5) == Response.OKAY
+            assert await value(dut, "TABLE_INDEX") == 0
 
         # Taken in the clock before a reset, so that it would go out in the reset's first.
-        writing = cocotb.start_soon(write(dut, OFFSET["TABLE_GY"], 9))
+        writing = cocotb.start_soon(write(dut, OFFSET["TABLE_LOW"], 9))
         while not (checker.fires("aw") and checker.fires("w")):
             await RisingEdge(dut.clk)
         dut.rst.value = 1
         await RisingEdge(dut.clk)
         assert not dut.table_write.value, "written in reset"
         writing.cancel()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def no_table_beyond_the_last(dut) -> None:
+    """Values of TABLE_SELECT that name no table."""
+    async with checked(dut) as checker:
+        for table in set(range(1 << REGISTERS["TABLE_SELECT"].field("select").width)) - set(TABLES.values()):
+            await choose(dut, table, 0)
+            assert await value(dut, "TABLE_SIZE") == 0
+            assert await write(dut, OFFSET["TABLE_LOW"], 5) == Response.SLVERR
+            assert await read(dut, OFFSET["TABLE_LOW"]) == (0, Response.SLVERR)
+        assert not checker.model.table_writes
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def a_write_beside_a_read_of_a_table(dut) -> None:
+    """Writes that come in each clock of a read wait for its end, and the entry read is that of before or after."""
+    async with checked(dut) as checker:
+        for lead in range(-3, 8):
+            await choose(dut, 0, 1)
+            await write(dut, OFFSET["TABLE_HIGH"], 77)
+
+            async def writes(lead=lead) -> None:
+                await ClockCycles(dut.clk, max(0, lead) + 1)
+                assert await write(dut, OFFSET["TABLE_LOW"], 8) == Response.OKAY
+
+            writing = cocotb.start_soon(writes())
+            await ClockCycles(dut.clk, max(0, -lead) + 1)
+            data, response = await read(dut, OFFSET["TABLE_LOW"])
+            assert response == Response.OKAY
+            assert data in (entry(0, 1)[1], entry(0, 2)[1])
+            await writing
+            assert await value(dut, "TABLE_INDEX") == 3
+            assert checker.model.table_writes[-1][1] in (1, 2)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(lag=[0, 1, 7])
+async def commits(dut, lag) -> None:
+    """A change-over comes with the next frame start, is pending until the table has followed, and guards that table."""
+    async with checked(dut, lag) as checker:
+        COMMIT, has = OFFSET["TABLE_COMMIT"], tables_present(checker.build)
+
+        async def starts() -> None:
+            before = int(dut.table_bank.value)
+            dut.frame_start.value = 1
+            await RisingEdge(dut.clk)  # the checker looks at table_bank in this clock
+            dut.frame_start.value = 0
+            await ClockCycles(dut.clk, 1)
+            changed.append(before ^ int(dut.table_bank.value))
+
+        changed: list[int] = []
+        await starts()
+        assert changed.pop() == 0
+        for tables in range(1, 1 << len(TABLES)):
+            await write(dut, COMMIT, tables, strobe=0b1110)
+            assert await value(dut, "TABLE_COMMIT") == 0
+            await write(dut, COMMIT, tables)
+            assert await value(dut, "TABLE_COMMIT") == tables & has
+            await write(dut, COMMIT, 0)  # takes nothing back
+            for table, size in checker.build.table_sizes.items():
+                await choose(dut, table, 0)
+                refused = not size or tables >> table & 1
+                assert await write(dut, OFFSET["TABLE_LOW"], 1) == (Response.SLVERR if refused else Response.OKAY)
+                assert (await read(dut, OFFSET["TABLE_HIGH"]))[1] == (Response.OKAY if size else Response.SLVERR)
+            await starts()
+            assert changed.pop() == tables & has
+            if lag > 3:
+                assert await value(dut, "TABLE_COMMIT") == tables & has
+            await write(dut, COMMIT, tables if lag > 3 else 0)  # while it is pending: nothing
+            await ClockCycles(dut.clk, lag)
+            assert await value(dut, "TABLE_COMMIT") == 0
+            await starts()
+            assert changed.pop() == 0
+
+        # Frame starts around the clock in which the write takes effect: those after it change over.
+        for clocks, late in ((0, False), (1, False), (2, True), (3, True)):
+            writing = cocotb.start_soon(write(dut, COMMIT, 1))
+            await ClockCycles(dut.clk, clocks)
+            await starts()
+            assert changed.pop() == late, f"a frame start {clocks} clocks after the write was offered"
+            await writing
+            if not late:
+                assert await value(dut, "TABLE_COMMIT") == 1
+                await starts()
+                assert changed.pop() == 1
+            await ClockCycles(dut.clk, lag + 2)
+
+        # A reset forgets what no frame has taken, and finishes what one has.
+        await write(dut, COMMIT, 1)
+        await reset(dut)
+        assert await value(dut, "TABLE_COMMIT") == 0
+        await starts()
+        assert changed.pop() == 0
+        await write(dut, COMMIT, 1)
+        await starts()
+        assert changed.pop() == 1
+        bank = int(dut.table_bank.value)
+        await reset(dut)
+        assert await value(dut, "TABLE_COMMIT") == 0
+        assert int(dut.table_bank.value) == int(dut.table_in_use.value) == bank
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
@@ -512,7 +727,7 @@ async def each_address_reads_its_own(dut) -> None:
     async with checked(dut) as checker:
         rng = random.Random(cocotb.RANDOM_SEED)
         for _ in range(4):
-            for name in ("THRESHOLD", "TIMEOUT", "TABLE_INDEX", "TABLE_GX", "CONTROL"):
+            for name in ("THRESHOLD", "TIMEOUT", "TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "CONTROL"):
                 await write(dut, OFFSET[name], rng.getrandbits(32) & ~CONTROL.pack(clear_counters=1))
             await pulse(dut, first_depth_latency=rng.getrandbits(32), first_depth_latency_valid=1)
             for name, signal in COUNTER_SIGNALS.items():
@@ -520,6 +735,7 @@ async def each_address_reads_its_own(dut) -> None:
                 getattr(dut, signal).value = checker.model.values[name]
             await pulse(dut, **{f"event_{flag}": rng.getrandbits(1) for flag in STICKY_EVENTS}, saturations=1)
             dut.busy.value, dut.contact.value = rng.getrandbits(1), rng.getrandbits(1)
+            await write(dut, OFFSET["TABLE_COMMIT"], rng.getrandbits(3))
             for address in range(0, 1 << ADDRESS_WIDTH, 4):
                 await read(dut, address)  # compared by the checker
             dut.busy.value, dut.contact.value = 0, 0
@@ -531,9 +747,10 @@ async def random_traffic(dut, pressure) -> None:
     """Reads, writes and events at random, responses refused with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-    async with checked(dut) as checker:
+    async with checked(dut, lag=5) as checker:
         master = master_of(dut)
         done = False
+        since_start = 0
 
         def any_offset() -> int:
             unmapped_too = range(0, 1 << ADDRESS_WIDTH, BYTES)
@@ -544,7 +761,7 @@ async def random_traffic(dut, pressure) -> None:
                 await response_of(
                     master.write(
                         any_offset(),
-                        rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), WORD)),
+                        rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), rng.getrandbits(4), WORD)),
                         byte_enable=rng.choice((None, rng.getrandbits(BYTES))),
                         address_latency=rng.choice((0, 0, 1, 3)),
                         data_latency=rng.choice((0, 0, 1, 3)),
@@ -565,6 +782,8 @@ async def random_traffic(dut, pressure) -> None:
             dut.saturations.value = rng.getrandbits(8) if rng.random() < 0.05 else 0
             dut.first_depth_latency.value = rng.getrandbits(32)
             dut.first_depth_latency_valid.value = rng.random() < 0.05
+            since_start = 0 if since_start > 10 and rng.random() < 0.1 else since_start + 1
+            dut.frame_start.value = since_start == 0
             if rng.random() < 0.1:
                 dut.busy.value, dut.contact.value = rng.random() < 0.3, rng.random() < 0.5
             dut.s_axil_bready.value = rng.random() >= pressure

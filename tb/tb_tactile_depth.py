@@ -25,15 +25,17 @@ from models.divergence import divergence
 from models.frame_guard import FAULTS, frame_guard
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import first_depth_latency, last_pixel_to_first_depth
-from models.register_map import MAP, REGISTERS
+from models.register_map import MAP, REGISTERS, TABLES
 from models.round_saturate import Monitor
 from models.tactile_depth import solve, top_parameters
 from models.threshold_comparator import ThresholdComparator
 
 OFFSET = {register.name: register.offset for register in MAP}
-STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
+STATUS, CONTROL, COMMIT = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT"))
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 GREEN, BLUE, RED = 0, 8, 16  # lowest bits of the colours in a word
+TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
+HEAD_CLOCKS = 2  # from a pixel's clock on the pins to that in which it is the first at the head of the pipeline
 SKID_WORDS = 2  # that a stalled output holds
 SECOND_CLIENT = os.environ.get("CLIENT") == "second"  # cocotbext-axi drives the ports
 
@@ -51,7 +53,7 @@ def colours(pixels):
 class Pipeline:
     """The device, driven and watched at its pins."""
 
-    table = None  # slope codes in the gradient table: it survives resets, so it survives a test
+    table = None  # slope codes that frames to come use: the table survives resets, so it survives a test
 
     def __init__(self, dut, offers="none", accepts="none", timeout=0):
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
@@ -77,6 +79,7 @@ class Pipeline:
         self.out = AxisMonitor(dut, "m_axis", prefix="t")
         self.comparator = ThresholdComparator()
         self.contacts = []  # clocks in which contact rose
+        self.tables = None  # of each frame that comes, if they differ
         self.expect_reset_values()
 
     async def start(self):
@@ -143,19 +146,39 @@ class Pipeline:
         return int(await self.master.read(OFFSET[name]))
 
     async def write_bin(self, index, slopes):
-        """Write one bin of the gradient table; how its last write is answered."""
-        for name, value in (("TABLE_INDEX", index), ("TABLE_GX", slopes[0])):
+        """Write one bin of the gradient table that is not in use; how its last write is answered."""
+        for name, value in (
+            ("TABLE_SELECT", TABLES["gradient"]),
+            ("TABLE_INDEX", index),
+            ("TABLE_HIGH", slopes[1]),
+        ):
             assert await self.write(name, int(value)) == Response.OKAY
-        return await self.write("TABLE_GY", int(slopes[1]))
+        return await self.write("TABLE_LOW", int(slopes[0]))
 
     async def write_table(self, table):
-        """Write all bins, one after another as they come."""
+        """Write all bins of the table that is not in use, one after another as they come."""
+        while await self.read("TABLE_COMMIT"):
+            pass
+        await self.write("TABLE_SELECT", TABLES["gradient"])
+        assert await self.read("TABLE_SIZE") == len(table)
         await self.write("TABLE_INDEX", 0)
         for index, (gx, gy) in enumerate(table.tolist()):
-            await self.write("TABLE_GX", gx)
-            assert await self.write("TABLE_GY", gy) == Response.OKAY, f"refused at bin {index}"
+            await self.write("TABLE_HIGH", gy)
+            assert await self.write("TABLE_LOW", gx) == Response.OKAY, f"refused at bin {index}"
         assert await self.read("TABLE_INDEX") == 0, "it does not wrap at the end of the table"
-        Pipeline.table = table.copy()
+
+    async def read_table(self):
+        """All bins of the table that is not in use."""
+        await self.write("TABLE_SELECT", TABLES["gradient"])
+        await self.write("TABLE_INDEX", 0)
+        words = [[await self.read(name) for name in ("TABLE_HIGH", "TABLE_LOW")] for _ in self.table]
+        return np.array(words, np.uint32).astype(np.int32).astype(np.int64)[:, ::-1]
+
+    async def commit(self, table=None):
+        """Have the frames that begin from now on use what was written."""
+        assert await self.write("TABLE_COMMIT", COMMIT.pack(gradient=1)) == Response.OKAY
+        if table is not None:
+            Pipeline.table = table.copy()
 
     # Frames.
 
@@ -177,12 +200,14 @@ class Pipeline:
         return self.frame_of(np.stack(np.meshgrid(along, down), axis=-1))
 
     def model(self, frames):
-        """Depth codes (frames, rows, columns) and the number of values clipped."""
+        """Depth codes (frames, rows, columns) and the number of values clipped, of frames in the order they came."""
         if not frames:
             return np.zeros((0, self.rows, self.columns), np.int64), 0
         rgb = colours(frames).reshape(-1, self.rows, self.columns, 3)
         monitor = Monitor()
-        slopes = gradient_lookup(rgb, self.table, self.config.bits_per_channel)
+        tables = [self.table] * len(rgb) if self.tables is None else self.tables
+        pairs = zip(rgb, tables, strict=True)
+        slopes = np.stack([gradient_lookup(frame, table, self.config.bits_per_channel) for frame, table in pairs])
         return solve(divergence(slopes, self.config.neumann), self.config, monitor), monitor.saturations.total()
 
     async def send(self, *streams):
@@ -249,6 +274,7 @@ class Pipeline:
         if counters:
             have = {name: await self.read(name) for name in self.counters}
             assert have == self.counters, f"counters are {have}, should be {self.counters}"
+        status = STATUS.unpack(await self.read("STATUS"))
         status = STATUS.unpack(await self.read("STATUS"))
         assert not status.pop("busy"), "busy after everything left"
         assert status.pop("contact") == self.comparator.contact
@@ -549,7 +575,7 @@ async def random_streams(dut, offers, accepts):
 
 @TEST
 async def gradient_table(dut):
-    """Rewritten between frames it gives the codes of the new table."""
+    """Written and read between frames; with its commit the next frame has the codes of the new table."""
     pipeline = await started(dut)
     power_up = Pipeline.table
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
@@ -557,57 +583,105 @@ async def gradient_table(dut):
     await pipeline.send(frame)
     before = await pipeline.check()
     limit = 1 << pipeline.config.gradient.width - 1
-    await pipeline.write_table(rng.integers(-limit // 4, limit // 4, power_up.shape))
-    await pipeline.send(frame)
-    assert (await pipeline.check() != before).any()
-    await pipeline.write_table(power_up)
-    await pipeline.send(frame)
-    np.testing.assert_array_equal(await pipeline.check(), before)
+    new = rng.integers(-limit // 4, limit // 4, power_up.shape)
+    for old, table in ((power_up, new), (new, power_up)):
+        await pipeline.write_table(table)
+        np.testing.assert_array_equal(await pipeline.read_table(), table)
+        await pipeline.send(frame)
+        await pipeline.check()  # of the old table
+        await pipeline.commit(table)
+        assert await pipeline.read("TABLE_COMMIT") == COMMIT.pack(gradient=1)
+        await pipeline.send(frame)
+        after = await pipeline.check()
+        assert await pipeline.read("TABLE_COMMIT") == 0
+        assert (after != before).any() == (table is new)
+        np.testing.assert_array_equal(await pipeline.read_table(), old)  # what was in use before
 
 
 @TEST
-async def gradient_table_refused(dut):
-    """While a frame is in flight: it has the codes of the old table, and one begun later those of the new."""
+async def gradient_table_committed_at_the_first_pixel(dut):
+    """The frame whose first pixel is taken around the commit has the codes of one table; the clock says of which."""
     pipeline = await started(dut)
     colour = pixel(200, 40, 90)
     frame = video([colour] * pipeline.pixels, pipeline.columns)
     bits = pipeline.config.bits_per_channel
     index = int(sum(int(c) >> 8 - bits << shift * bits for shift, c in enumerate(colours([colour])[0][::-1])))
-    answers = []
-    # Of the write over the first pixel, in clocks; and clocks between that and the second.
-    for lead, gap in product(range(-6, 3), (0, 4)):
-        new = np.array(Pipeline.table)
+    taken = []
+    # Of the commit over the first pixel, in clocks; and clocks between that and the second.
+    for lead, gap in product(range(-6, 5), (0, 4)):
+        old, new = np.array(Pipeline.table), np.array(Pipeline.table)
         new[index] = pipeline.random.randrange(1 << 8), -pipeline.random.randrange(1 << 8)
-        await pipeline.write("TABLE_INDEX", index)
-        await pipeline.write("TABLE_GX", int(new[index][0]))
+        assert await pipeline.write_bin(index, new[index]) == Response.OKAY
         stream = [None] * (8 + lead), frame[:1], [None] * gap, frame[1:]
         sending = cocotb.start_soon(pipeline.send(*stream))
         await ClockCycles(dut.clk, 8)
-        answer = cocotb.start_soon(pipeline.write("TABLE_GY", int(new[index][1])))
+        answer = cocotb.start_soon(pipeline.commit())
         while not dut.s_axil_bvalid.value:
             await RisingEdge(dut.clk)
         decided = pipeline.into.clock_count - 1
-        answers.append(await answer)
-        if answers[-1] == Response.OKAY:
-            Pipeline.table = new
+        await answer
         await sending
-        late = decided > pipeline.into.taken[0]
-        assert (answers[-1] == Response.SLVERR) == late, f"write {lead} clocks ahead of the first pixel"
-        assert await pipeline.write("TABLE_GY", 123) == Response.SLVERR, "taken while the frame was in flight"
-        await pipeline.check()  # with the table that the answer says there is
-    assert set(answers) == set(Response), "a poor test: all answers were alike"
-
-    await pipeline.send(frame, frame)  # busy from the first pixel to the last depth
-    refusals = 0
-    while len(pipeline.out.words) < 2 * pipeline.pixels - 40:
-        assert await pipeline.write("TABLE_GY", 5) == Response.SLVERR
-        assert STATUS.unpack(await pipeline.read("STATUS"))["busy"]
-        refusals += 1
-    assert refusals > 20
-    await pipeline.check()
+        taken.append(decided < pipeline.into.taken[0] + HEAD_CLOCKS)
+        pending = await pipeline.read("TABLE_COMMIT")
+        assert pending == COMMIT.pack(gradient=not taken[-1])
+        assert await pipeline.write("TABLE_LOW", 123) == (Response.OKAY if taken[-1] else Response.SLVERR)
+        await pipeline.send(frame)
+        pipeline.tables = [new if taken[-1] else old, new]
+        await pipeline.check()
+        pipeline.tables, Pipeline.table = None, new
+    assert set(taken) == {False, True}, "a poor test: every commit came on the same side of the first pixel"
     power_up = gradient_codes(synthetic(bits), pipeline.config)
-    assert await pipeline.write_bin(index, power_up[index]) == Response.OKAY
-    Pipeline.table = power_up
+    await pipeline.write_table(power_up)
+    await pipeline.commit(power_up)
+    await pipeline.send(frame)
+    await pipeline.check()
+
+
+@TEST
+@cocotb.parametrize(offers=["none", "random"], accepts=["none", "random"])
+async def gradient_table_rewritten_while_frames_stream(dut, offers, accepts):
+    """Frames without a pause, the whole table written again and again: each frame has the codes of one table, the one
+    whose commit was the last to take effect before its first pixel."""
+    pipeline = await started(dut, offers=offers, accepts=accepts)
+    power_up = Pipeline.table
+    limit = 1 << pipeline.config.gradient.width - 1
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    tables, of_frames = [power_up], []  # the tables in their order; of each frame, the number of its table
+    committing, running = None, True
+
+    async def follow():
+        nonlocal committing
+        while True:
+            await RisingEdge(dut.clk)
+            if committing is not None and dut.s_axil_bvalid.value:  # it took effect in the clock before
+                tables.append(committing)
+                committing = None
+            if dut.u_registers.frame_start.value:
+                of_frames.append(len(tables) - 1)
+
+    async def feed():
+        while running:
+            await pipeline.send(pipeline.frame(), pipeline.frame())
+
+    following, feeding = cocotb.start_soon(follow()), cocotb.start_soon(feed())
+    for _ in range(5):
+        table = rng.integers(-limit // 4, limit // 4, power_up.shape)
+        await pipeline.write_table(table)
+        await ClockCycles(dut.clk, int(rng.integers(pipeline.pixels)))
+        committing = table
+        await pipeline.commit()
+    await pipeline.write_table(power_up)  # waits until the last has been taken
+    running = False
+    await feeding
+    await pipeline.idle()
+    following.cancel()
+    pipeline.tables = [tables[number] for number in of_frames]
+    await pipeline.check()
+    assert set(of_frames) == set(range(len(tables))), "a poor test: no frame used one of the tables"
+    pipeline.tables = None
+    await pipeline.commit(power_up)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
 
 
 @TEST
@@ -632,7 +706,7 @@ async def saturation(dut, accepts):
 @TEST
 @cocotb.parametrize(clocks=[1, 2, 16], phase=["mid_frame", "filling", "waiting", "output", "stalled", "full", "idle"])
 async def resets(dut, clocks, phase):
-    """Registers are as after power-up, but for the gradient table; the next frame is right.
+    """Registers are as after power-up, but for tables; the next frame is right.
 
     tests/test_faults.py resets in every clock of these phases.
     """
@@ -662,9 +736,11 @@ async def resets(dut, clocks, phase):
     pipeline.sink.stall(repeat(True))
     assert not dut.contact.value
     for register in MAP:
-        if register.access != "wo" and register.reset is not None:
-            value = await pipeline.read(register.name)
-            assert value == register.reset, f"{register.name} is {value:#x} after a reset"
+        fields = [field for field in register.fields if field.reset is not None]
+        values = register.unpack(await pipeline.read(register.name)) if fields else {}
+        for field in fields:
+            value = values[field.name]
+            assert value == field.reset, f"{register.name}.{field.name} is {value:#x} after a reset"
     await ClockCycles(dut.clk, pipeline.pixels)
     assert not pipeline.out.words, "something left that was sent before the reset"
     await pipeline.send(pipeline.frame(), pipeline.frame())
@@ -684,11 +760,13 @@ async def registers_written_all_the_time(dut, accepts):
         rng = pipeline.random
         while running:
             word = rng.getrandbits(32)
-            name = rng.choice(("THRESHOLD", "TIMEOUT", "CONTROL", "TABLE_INDEX", "TABLE_GX", "TABLE_GY", "GRID"))
+            name = rng.choice(("THRESHOLD", "TIMEOUT", "CONTROL", *TABLE_REGISTERS, "GRID"))
             if name in ("TIMEOUT", "CONTROL"):
                 word = word | 1 << 20 if name == "TIMEOUT" else word & ~CONTROL.pack(clear_counters=1)
             refused += await pipeline.write(name, word) == Response.SLVERR
-            await pipeline.read(rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX")))
+            await pipeline.read(
+                rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX", "TABLE_COMMIT"))
+            )
 
     sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(4))))
     await ClockCycles(dut.clk, 12)
@@ -709,28 +787,29 @@ async def registers_written_phase_by_phase(dut):
     pipeline = await started(dut)
     columns, first = pipeline.columns, Pipeline.table[0]
 
-    async def write_all(busy):
-        answers = [await pipeline.write(name, 0) for name in ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT")]
+    async def write_all():
+        names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT")
+        answers = [await pipeline.write(name, 0) for name in names]
         assert answers == [Response.OKAY] * len(answers)
-        assert await pipeline.write_bin(0, first) == (Response.SLVERR if busy else Response.OKAY)
+        assert await pipeline.write_bin(0, first) == Response.OKAY
 
-    await write_all(busy=False)
+    await write_all()
     frame, silence = pipeline.frame(), [None] * 100
     sending = cocotb.start_soon(pipeline.send(frame[:columns], silence, frame[columns:]))
     await ClockCycles(dut.clk, columns + 10)
-    await write_all(busy=True)  # inside the frame
+    await write_all()  # inside the frame
     await sending
-    await write_all(busy=True)  # before its first depth
+    await write_all()  # before its first depth
     while not pipeline.out.words:
         await RisingEdge(dut.clk)
-    await write_all(busy=True)  # while it leaves
+    await write_all()  # while it leaves
     pipeline.sink.stall(repeat(False))
     await ClockCycles(dut.clk, 4)
-    await write_all(busy=True)
+    await write_all()
     pipeline.sink.stall(repeat(True))
     await pipeline.idle()
     await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
-    await write_all(busy=True)  # while it fills up
+    await write_all()  # while it fills up
     await pipeline.check()
 
 
@@ -747,12 +826,14 @@ async def registers_written_in_every_phase(dut, accepts):
         "TIMEOUT": lambda: rng.randint(2, 300),  # no frame is silent
         "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
         "STATUS": lambda: rng.getrandbits(32),
+        "TABLE_SELECT": lambda: TABLES["gradient"],
         "TABLE_INDEX": lambda: rng.getrandbits(32),
-        "TABLE_GX": lambda: rng.getrandbits(32),
-        "TABLE_GY": lambda: rng.getrandbits(32),
+        "TABLE_HIGH": lambda: rng.getrandbits(32),
+        "TABLE_LOW": lambda: rng.getrandbits(32),  # of the table that no frame uses
+        "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1),  # the build has neither
         "GRID": lambda: rng.getrandbits(32),
     }
-    refused = {"TABLE_GY", "GRID"}  # a frame is in flight; not to be written
+    refused = {"GRID"}
     missing = {name: set(range(pipeline.pixels)) for name in values}
 
     async def feed():

@@ -32,7 +32,16 @@ FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency la
 OF_DATA = ("saturation", "contact")  # bits of STATUS that depend on what a frame shows
 # What holds until software writes it again; an upset there is no matter of frames.
 SETTINGS = {
-    "axil_registers": ("threshold", "timeout", "hold_contact", "table_index", "table_gx"),
+    "axil_registers": (
+        "threshold",
+        "timeout",
+        "hold_contact",
+        "table_select",
+        "table_index",
+        "table_high",
+        "bank",
+        "requested",
+    ),
     "gradient_lookup": ("words",),
 }
 

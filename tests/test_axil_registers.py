@@ -26,6 +26,8 @@ EXTREMES = {
     "GradientWidth": 32,
     "GradientFraction": 31,
     "BitsPerChannel": 1,
+    "CoefficientWords": 36,
+    "ReferenceWords": 5000,
 }
 
 

@@ -1,46 +1,53 @@
 # SPDX-License-Identifier: Apache-2.0
-"""models/register_map.py: the map is consistent, and what is written from it is up to date."""
+"""registers/tactile_depth.rdl: what is written from it is up to date, and C and Python reach the registers by it."""
+
+import shutil
+import subprocess
+import sys
 
 import pytest
 
-from models.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, ROOT, WORD_BITS, generated
+from commands import registers
+from models.axil_registers import AxilRegisters, Build, Live
+from models.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, ROOT, TABLES, WORD_BITS
+
+BUILD = Build(16, 32, 24, 21, 20, 2)
 
 
-@pytest.mark.parametrize("path", generated(), ids=lambda path: path.name)
-def test_generated_files_are_up_to_date(path):
-    assert path.read_text() == generated()[path], (
-        f"{path.relative_to(ROOT)} is not what the map says: run python -m models.register_map"
-    )
+@pytest.fixture(scope="module")
+def root():
+    return registers.compiled()
+
+
+def test_written_files_are_up_to_date(root):
+    for path, text in registers.generated(root).items():
+        assert path.read_text() == text, f"{path.relative_to(ROOT)} is not what the map says: run make registers"
 
 
 def test_offsets_are_words_of_their_own():
     offsets = [register.offset for register in MAP]
-    assert len(set(offsets)) == len(offsets)
+    assert len(set(offsets)) == len(offsets) == len(REGISTERS)
     assert all(offset % (WORD_BITS // 8) == 0 for offset in offsets)
     assert all(0 <= offset < 1 << ADDRESS_WIDTH for offset in offsets)
 
 
-def test_names_are_unique():
-    assert len(REGISTERS) == len(MAP)
-    for register in MAP:
-        names = [field.name for field in register.fields]
-        assert len(set(names)) == len(names), register.name
-
-
 def test_accesses_are_known():
     for register in MAP:
-        assert {register.access, *(field.access for field in register.fields)} <= set(ACCESSES), register.name
+        assert {field.access for field in register.fields} <= set(ACCESSES), register.name
 
 
-@pytest.mark.parametrize("register", MAP, ids=lambda register: register.name)
-def test_fields_share_no_bit(register):
-    taken = 0
-    for field in register.fields:
-        assert 0 <= field.low <= field.high < WORD_BITS, field.name
-        assert not taken & field.mask, f"{field.name} overlaps a field before it"
-        taken |= field.mask
-    if register.fields and register.reset is not None:
-        assert register.reset & ~taken == 0
+def test_an_access_that_no_register_has_is_refused(tmp_path):
+    source = tmp_path / "other.rdl"
+    source.write_text("addrmap a { reg { field { sw = rw; onread = rclr; } value[31:0] = 0; } R @ 0; };\n")
+    node = next(iter(registers.compiled(source).top.registers()))
+    with pytest.raises(ValueError, match=r"a\.R\.value: no register has sw, onwrite, onread"):
+        registers.register_of(node)
+
+
+def test_a_table_has_the_bit_of_its_number_in_the_commit_register():
+    """hdl/axil_registers.sv takes the one for the other."""
+    assert {field.name: field.low for field in REGISTERS["TABLE_COMMIT"].fields} == dict(TABLES)
+    assert sorted(TABLES.values()) == list(range(len(TABLES)))
 
 
 @pytest.mark.parametrize("register", MAP, ids=lambda register: register.name)
@@ -54,3 +61,60 @@ def test_a_value_too_large_for_its_field_is_refused():
         REGISTERS["STATUS"].pack(busy=2)
     with pytest.raises(KeyError, match="it has rows, columns"):
         REGISTERS["GRID"].field("cols")
+
+
+def test_the_c_header(tmp_path):
+    """A program that includes it finds every register where the map has it, and every field's bits and reset value."""
+    compiler = shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("no gcc")
+    checks = [f"sizeof(tactile_depth_t) == {MAP[-1].offset + 4}"]
+    for register in MAP:
+        checks.append(f"offsetof(tactile_depth_t, {register.name}) == {register.offset}")
+        for field in register.fields:
+            prefix = f"TACTILE_DEPTH__{register.name}__{field.name}".upper()
+            checks += [f"{prefix}_bm == {field.mask}u", f"{prefix}_bp == {field.low}", f"{prefix}_bw == {field.width}"]
+            if field.reset is not None:
+                checks.append(f"{prefix}_reset == {field.reset}u")
+    program = tmp_path / "program.c"
+    program.write_text(
+        '#include <stddef.h>\n#include "tactile_depth.h"\n'
+        + "".join(f'static_assert({check}, "");\n' for check in checks)
+        + "int main(void) { return 0; }\n"
+    )
+    flags = ["-std=c11", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'registers'}"]
+    ran = subprocess.run([compiler, *flags, program, "-o", tmp_path / "program"], capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stderr
+    assert subprocess.run([tmp_path / "program"]).returncode == 0
+
+
+def test_the_python_layer(tmp_path, monkeypatch, root):
+    """It reads and writes fields by name; behind it the model of the registers in place of a device."""
+    registers.python_layer(root, tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    from tactile_depth.lib import NormalCallbackSet
+    from tactile_depth.reg_model import RegModel
+
+    model = AxilRegisters(BUILD, entry=lambda table, index: (0x1000 + index, 0x2000 + index))
+
+    def read(addr, **_):
+        data, response = model.read(addr, Live(busy=True, in_use=model.bank))
+        assert response == 0
+        return data
+
+    def write(addr, data, **_):
+        assert model.write(addr, data, live=Live(in_use=model.bank)) == 0
+
+    device = RegModel(callbacks=NormalCallbackSet(read_callback=read, write_callback=write))
+    assert (device.GRID.rows.read(), device.GRID.columns.read()) == (16, 32)
+    assert device.STATUS.busy.read() == 1
+    device.CONTROL.hold_contact.write(1)
+    assert model.values["CONTROL"] == REGISTERS["CONTROL"].pack(hold_contact=1)
+    device.TABLE_INDEX.value.write(3)
+    device.TABLE_HIGH.write(5)
+    device.TABLE_LOW.write(6)
+    assert model.table_writes == [(TABLES["gradient"], 3, 5, 6)]
+    assert (device.TABLE_HIGH.read(), device.TABLE_LOW.read()) == (0x1004, 0x2004)
+    assert device.TABLE_INDEX.read() == 5
+    for name in [name for name in sys.modules if name.split(".")[0] == "tactile_depth"]:
+        del sys.modules[name]

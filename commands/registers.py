@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make registers`: everything that is written from registers/tactile_depth.rdl.
+
+Committed, so that nobody needs these tools to read or to use them: the page by peakrdl-markdown, the C header by
+peakrdl-cheader, and two by the templates here: hdl/register_map_pkg.sv, since no exporter writes a package that Icarus
+11 takes, and the JSON that models/register_map.py reads, since a run needs neither the compiler nor its 40 MB. The
+Python access layer of peakrdl-python goes to build/: it is thousands of lines, most of them its library.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from peakrdl_cheader.c_standards import CStandard
+from peakrdl_cheader.exporter import CHeaderExporter
+from peakrdl_markdown import MarkdownExporter
+from peakrdl_python import PythonExporter
+from systemrdl import RDLCompiler
+from systemrdl.node import FieldNode, RegNode, RootNode
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCE = ROOT / "registers" / "tactile_depth.rdl"
+LAYER = ROOT / "build" / "registers"
+NAME = SOURCE.stem
+WRITTEN_BY = f"Written by `make registers` from {SOURCE.relative_to(ROOT)}: change it there."
+
+
+def compiled(source: Path = SOURCE) -> RootNode:
+    """The elaborated map."""
+    compiler = RDLCompiler()
+    compiler.compile_file(str(source))
+    return compiler.elaborate()
+
+
+def access(field: FieldNode) -> str:
+    """One of models.register_map.ACCESSES.
+
+    Raises
+    ------
+    ValueError
+        Software sees the field in a way that no register of ours has.
+    """
+    onwrite, onread = field.get_property("onwrite"), field.get_property("onread")
+    properties = (
+        field.get_property("sw").name,
+        onwrite.name if onwrite else "",
+        onread.name if onread else "",
+        field.get_property("singlepulse"),
+    )
+    accesses = {
+        ("r", "", "", False): "ro",
+        ("rw", "", "", False): "rw",
+        ("rw", "woclr", "", False): "w1c",
+        ("rw", "woset", "", False): "w1s",
+        ("w", "", "", True): "pulse",
+        ("rw", "wuser", "ruser", False): "port",
+    }
+    if properties not in accesses:
+        raise ValueError(f"{field.get_path()}: no register has sw, onwrite, onread, singlepulse = {properties}")
+    return accesses[properties]
+
+
+def field_of(node: FieldNode) -> dict[str, Any]:
+    encode = node.get_property("encode")
+    return {
+        "name": node.inst_name,
+        "low": node.low,
+        "high": node.high,
+        "access": access(node),
+        "reset": node.get_property("reset"),
+        "signed": node.get_property("is_signed", default=False),
+        "values": {member.name: member.value for member in encode} if encode else {},
+        "description": node.get_property("name"),
+    }
+
+
+def register_of(node: RegNode) -> dict[str, Any]:
+    return {
+        "name": node.inst_name,
+        "offset": node.absolute_address,
+        "description": node.get_property("name"),
+        "fields": [field_of(field) for field in node.fields()],
+    }
+
+
+def camel(name: str) -> str:
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def package(registers: list[dict[str, Any]]) -> str:
+    """Text of hdl/register_map_pkg.sv."""
+    offsets, resets, bits, values = [], [], [], []
+    for register in registers:
+        name = camel(register["name"])
+        offsets.append(f"localparam int {name}Offset = 32'h{register['offset']:02x};")
+        reset = sum((field["reset"] or 0) << field["low"] for field in register["fields"])
+        if reset:
+            resets.append(f"localparam int {name}Reset = 32'h{reset:08x};")
+        for field in register["fields"]:
+            if field["low"] == 0 and field["high"] == 31:
+                continue
+            single = field["low"] == field["high"]
+            bits.append(f"localparam int {name}{camel(field['name'])}{'Bit' if single else 'Lsb'} = {field['low']};")
+            if field["values"]:
+                bits.append(f"localparam int {name}{camel(field['name'])}Width = {field['high'] - field['low'] + 1};")
+                values.append(f"localparam int {name}{camel(field['name'])}Count = {len(field['values'])};")
+            for value, code in field["values"].items():
+                values.append(f"localparam int {name}{camel(value)} = {code};")
+    sections = {
+        "Byte offsets.": [f"localparam int AddressWidth = {address_width(registers)};", *offsets],
+        "Values after reset that are not zero.": resets,
+        "Bits: number of a flag, lowest of a wider field.": bits,
+        "Values of a field.": values,
+    }
+    body = "\n\n".join("\n".join(f"  {line}" for line in (f"// {title}", *lines)) for title, lines in sections.items())
+    return (
+        "// SPDX-License-Identifier: Apache-2.0\n"
+        "// register_map_pkg: offsets, reset values and bits of the AXI4-Lite registers.\n"
+        "//\n"
+        f"// {WRITTEN_BY}\n\n"
+        f"package register_map_pkg;\n\n{body}\n\nendpackage\n"
+    )
+
+
+def address_width(registers: list[dict[str, Any]]) -> int:
+    """Bits of a byte address: 8 serve 64 registers, and a map that outgrows them grows by itself."""
+    return max(8, max(register["offset"] for register in registers).bit_length())
+
+
+def generated(root: RootNode) -> dict[Path, str]:
+    """Every committed file that is written from the map, and its text."""
+    top = root.top
+    registers = [register_of(node) for node in top.registers(unroll=True)]
+    described = {"written_by": WRITTEN_BY, "address_width": address_width(registers), "registers": registers}
+    with TemporaryDirectory() as folder:
+        page, header = Path(folder) / "registers.md", Path(folder) / f"{NAME}.h"
+        MarkdownExporter().export(top, str(page), input_files=[str(SOURCE.relative_to(ROOT))])
+        # Names by place, not by type: a type that is used twice would get a hash for its name.
+        CHeaderExporter().export(top, str(header), reuse_typedefs=False, std=CStandard.gnu11)
+        texts = {
+            ROOT / "docs" / page.name: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
+            SOURCE.parent / header.name: f"// SPDX-License-Identifier: Apache-2.0\n// {WRITTEN_BY}\n"
+            + header.read_text(),
+        }
+    return texts | {
+        SOURCE.with_suffix(".json"): json.dumps(described, indent=1) + "\n",
+        ROOT / "hdl" / "register_map_pkg.sv": package(registers),
+    }
+
+
+def python_layer(root: RootNode, folder: Path) -> None:
+    """The package `tactile_depth` in the folder, with its library: needs nothing else installed."""
+    PythonExporter().export(
+        root.top, str(folder), skip_test_case_generation=True, skip_systemrdl_name_and_desc_in_docstring=True
+    )
+
+
+def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    root = compiled()
+    for path, text in generated(root).items():
+        changed = not path.exists() or path.read_text() != text
+        path.write_text(text)
+        print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
+    python_layer(root, LAYER)
+    print(f"wrote {LAYER.relative_to(ROOT)}/{NAME}")
+
+
+if __name__ == "__main__":
+    main()
