@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from commands.simulator import ROOT, sources
+from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
@@ -211,6 +212,21 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof(
         "threshold_comparator", "contact within one clock of a depth above the threshold, never otherwise", FULL_WIDTH
+    ),
+    *(
+        Proof(
+            "contact_events",
+            "a record at a fixed latency, touching by its rule, limits and peak of an arbitrary depth; whole packets",
+            "rows and columns are only counted, depths only compared; sums and division are left to simulation",
+            {
+                "Rows": rows,
+                "Columns": columns,
+                "BottomFirst": bottom_first,
+                "Latency": contact_events.latency(rows, columns),
+            },
+            depth=110,
+        )
+        for rows, columns, bottom_first in ((3, 8, 0), (3, 8, 1))
     ),
     *(
         Proof("ram", "a read returns what was last written to its address", WORD_FREE, {"Style": style})

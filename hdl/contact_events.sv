@@ -257,7 +257,7 @@ module contact_events #(
   assign renewed = divided & of_row;
   assign leaves = m_event_tvalid & m_event_tready;
   assign send = waiting & (~m_event_tvalid | (leaves & m_event_tlast));
-  assign m_event_tdata = packet[32*32'(word)+:32];
+  assign m_event_tdata = 32'(packet >> {word, 5'd0});
   assign m_event_tlast = word == ($clog2(Words))'(Words - 1);
   assign event_lost = renewed & waiting & ~send;
   always_ff @(posedge clk) begin
