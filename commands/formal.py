@@ -232,6 +232,12 @@ PROOFS: tuple[Proof, ...] = (
         Proof("ram", "a read returns what was last written to its address", WORD_FREE, {"Style": style})
         for style in (0, 1, 2)
     ),
+    Proof(
+        "depth_gate",
+        "all words of a frame that waits, the first ones of one that does not; each looked at once, in time",
+        f"words of a frame are only counted; {WORD_FREE}",
+        depth=30,
+    ),
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
     Proof(
         "gradient_lookup",

@@ -69,6 +69,7 @@ CORES = {
     "axis_skid": Core(protocols.axis_skid),
     "threshold_comparator": Core(protocols.threshold_comparator),
     "contact_events": Core(protocols.contact_events, (1,)),
+    "depth_gate": Core(protocols.depth_gate),
     "frame_guard": Core(protocols.frame_guard, outside=("silence",)),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
     "thomas_table": Core(protocols.thomas_table),

@@ -127,6 +127,31 @@ def contact_events(parameters: Mapping[str, int]) -> Protocol:
     return Protocol(LIVE + registers, (f"~in_valid | rst | ({marks})",), compare)
 
 
+def depth_gate(_: Mapping[str, int]) -> Protocol:
+    """Frames of any number of words, in successive enabled clocks; what is present stays while en is low. After a reset
+    the first word is a frame's first."""
+    registers = """
+  reg inside = 1'b0, stays = 1'b0;
+  reg [63:0] word_before;
+  always @(posedge clk) begin
+    if (rst) inside <= 1'b0;
+    else if (en & in_valid) inside <= ~in_frame_end;
+    stays <= in_valid & ~en & ~rst;
+    word_before <= {in_user, in_last, in_frame_end, in_data};
+  end
+"""
+    assume = (
+        "rst | in_valid | ~inside",
+        "rst | ~in_valid | in_user == ~inside",
+        "rst | ~stays | (in_valid & word_before == {in_user, in_last, in_frame_end, in_data})",
+    )
+    clock = "live & ~rst"
+    compare = dict.fromkeys(("en", "event_dropped", "m_valid", "look_valid"), clock)
+    for name in ("user", "last", "frame_end", "data"):
+        compare |= {f"m_{name}": f"{clock} & m_valid", f"look_{name}": f"{clock} & look_valid"}
+    return Protocol(LIVE + registers, assume, compare)
+
+
 def gradient_lookup(_: Mapping[str, int]) -> Protocol:
     """The table is not written while a pixel is read."""
     word = "live & ~rst & en & out_valid"
