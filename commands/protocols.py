@@ -131,18 +131,18 @@ def depth_gate(_: Mapping[str, int]) -> Protocol:
     """Frames of any number of words, in successive enabled clocks; what is present stays while en is low. After a reset
     the first word is a frame's first."""
     registers = """
-  reg inside = 1'b0, stays = 1'b0;
+  reg open = 1'b0, stays = 1'b0;
   reg [63:0] word_before;
   always @(posedge clk) begin
-    if (rst) inside <= 1'b0;
-    else if (en & in_valid) inside <= ~in_frame_end;
+    if (rst) open <= 1'b0;
+    else if (en & in_valid) open <= ~in_frame_end;
     stays <= in_valid & ~en & ~rst;
     word_before <= {in_user, in_last, in_frame_end, in_data};
   end
 """
     assume = (
-        "rst | in_valid | ~inside",
-        "rst | ~in_valid | in_user == ~inside",
+        "rst | in_valid | ~open",
+        "rst | ~in_valid | in_user == ~open",
         "rst | ~stays | (in_valid & word_before == {in_user, in_last, in_frame_end, in_data})",
     )
     clock = "live & ~rst"

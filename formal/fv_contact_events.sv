@@ -4,14 +4,17 @@
 // lies within the limits and is no higher than the peak, and the peak is a depth of its place; packets are whole, in
 // order, each the record that stood when it began; stable under stall; a record is sent, lost and said so, or waits.
 //
-// Whatever frames come, one may begin inside another. The sums and the division are left to simulation.
+// Whatever frames come, one may begin inside another; their last depths lie at least Latency clocks apart, as the core
+// asks. So the frames here may be smaller than those that need no gaps for that. The sums and the division are left to
+// simulation.
 
 module fv_contact_events #(
   parameter int Width       = 2,
   parameter int Rows        = 3,
-  parameter int Columns     = 8,
+  parameter int Columns     = 4,
   parameter int BottomFirst = 0,
-  parameter int Latency     = 22  // models/contact_events.py
+  parameter int Latency     = 20,  // models/contact_events.py
+  parameter int Part        = 0    // one of Timing, Rule, Limits
 ) (
   input logic                    clk,
   input logic                    rst,
@@ -27,6 +30,9 @@ module fv_contact_events #(
   input logic [3:0]              pick_word
 );
 
+  localparam int Timing = 0;
+  localparam int Rule = 1;
+  localparam int Limits = 2;
   localparam int Words = 13;
   localparam int Pixels = Rows * Columns;
   localparam int CountWidth = $clog2(Pixels + 1);
@@ -52,6 +58,12 @@ module fv_contact_events #(
     .m_event_tready, .m_event_tlast
   );
 
+  // They stand still: that they are taken with the first depth of a frame is left to simulation.
+  logic [2*(Width+1)+6:0] settings, settings_q;
+  assign settings = {on_setting, off_setting, minimum_setting, debounce_setting};
+  always_ff @(posedge clk) settings_q <= settings;
+  always_comb if (started) assume (settings == settings_q);
+
   // Frames, and where in the picture a depth lies.
 
   logic [CountWidth-1:0] next_place, place;
@@ -65,18 +77,14 @@ module fv_contact_events #(
 
   // The event, from counts of its own: a clock after the depths, so that a frame's first meets what the last decided.
 
-  logic signed [31:0] on_q, off_q, on_now, off_now;
   logic signed [33:0] excess_on, excess_off;
-  assign on_now = in_user ? on_threshold : on_q;
-  assign off_now = in_user ? off_threshold : off_q;
-  assign excess_on = 34'(in_data) - 34'(on_now);
-  assign excess_off = 34'(in_data) - 34'(off_now);
+  assign excess_on = 34'(in_data) - 34'(on_threshold);
+  assign excess_off = 34'(in_data) - 34'(off_threshold);
 
   logic beat, first, whole, over_on, over_off, over, decide, state, state_now, state_q, turn;
   logic [CountWidth-1:0] count;
-  logic [31:0] minimum, minimum_of_whole;
-  logic [7:0] needed, needed_of_whole, contrary;  // frames in a row that differ from the state
-  assign turn = decide & ((32'(count) >= minimum_of_whole) != state) & (32'(contrary) + 32'd1 >= 32'(needed_of_whole));
+  logic [7:0] contrary;  // frames in a row that differ from the state
+  assign turn = decide & ((32'(count) >= minimum_area) != state) & (32'(contrary) + 32'd1 >= 32'(debounce));
   assign state_now = state ^ turn;
   assign over = state_now ? over_off : over_on;
 
@@ -86,7 +94,8 @@ module fv_contact_events #(
   logic signed [Width-1:0] value;
   logic [15:0] value_row, value_column;
   logic counts, any;  // it is above; some are
-  logic whole_q, whole_counts, whole_picked, whole_any;
+  logic whole_counts, whole_picked, whole_any;
+  logic [CountWidth-1:0] whole_count;
   logic signed [Width-1:0] whole_value;
   logic [15:0] whole_row, whole_column;
 
@@ -95,10 +104,11 @@ module fv_contact_events #(
   logic [Latency-1:0] due;
   logic [32*Words-1:0] record_q;
   logic [3:0] watched, word;
-  logic [31:0] word_q, sent_word;
-  logic waits, offered, stalled, stalled_last, rst_q;
+  logic first_bit, sent_bit;  // of the word watched: words are all sent alike
+  logic waits, offered, stalled, stalled_last, rst_q, packet_ends;
+  assign packet_ends = m_event_tvalid & m_event_tready & m_event_tlast;
   logic [31:0] stalled_data;
-  assign word_q = 32'(record_q >> {watched, 5'd0});
+  assign first_bit = 1'(record_q >> {watched, 5'd0});
 
   always_ff @(posedge clk) begin
     started <= 1'b1;
@@ -110,16 +120,6 @@ module fv_contact_events #(
     over_off <= excess_off > 0;
     if (in_valid) begin
       next_place <= in_frame_end ? '0 : place + CountWidth'(1);
-      on_q <= on_now;
-      off_q <= off_now;
-      if (in_user) begin
-        minimum <= minimum_area;
-        needed <= debounce;
-      end
-      if (in_frame_end) begin
-        minimum_of_whole <= minimum;
-        needed_of_whole <= needed;
-      end
       here <= pick & ~(picked & ~in_user);
       picked <= pick | (picked & ~in_user);
       if (pick && !(picked && !in_user)) begin
@@ -136,7 +136,7 @@ module fv_contact_events #(
       any <= over | (any & ~first);
       counts <= here ? over : counts;
     end
-    if (decide) contrary <= turn || (32'(count) >= minimum_of_whole) == state ? 8'd0 : contrary + 8'd1;
+    if (decide) contrary <= turn || (32'(count) >= minimum_area) == state ? 8'd0 : contrary + 8'd1;
     if (beat && whole) begin
       whole_picked <= picked;
       whole_value <= value;
@@ -146,15 +146,16 @@ module fv_contact_events #(
     if (decide) begin
       whole_counts <= counts;
       whole_any <= any;
+      whole_count <= count;
     end
     due <= Latency'({due, in_valid & in_frame_end});
     record_q <= record;
-    waits <= due[Latency-2] | (waits & m_event_tvalid & ~(m_event_tready & m_event_tlast));
-    offered <= m_event_tvalid & ~(m_event_tready & m_event_tlast);
+    waits <= due[Latency-2] | (waits & m_event_tvalid & ~packet_ends);
+    offered <= m_event_tvalid & ~packet_ends;
     stalled <= m_event_tvalid & ~m_event_tready;
     stalled_data <= m_event_tdata;
     stalled_last <= m_event_tlast;
-    if (m_event_tvalid && !offered) sent_word <= word_q;
+    if (m_event_tvalid && !offered) sent_bit <= first_bit;
     if (m_event_tvalid && m_event_tready) word <= m_event_tlast ? 4'd0 : word + 4'd1;
     if (!m_event_tvalid) watched <= pick_word;
     if (rst) begin
@@ -171,7 +172,10 @@ module fv_contact_events #(
       word <= '0;
     end
   end
-  always_comb assume (pick_word < 4'(Words));
+  always_comb begin
+    assume (pick_word < 4'(Words));
+    if (due[Latency-2:0] != '0) assume (!(in_valid && in_frame_end));
+  end
 
   logic signed [31:0] peak;
   logic [31:0] peak_place, least, greatest, area;
@@ -180,35 +184,51 @@ module fv_contact_events #(
   assign peak_place = record[32*5+:32];
   assign least = record[32*6+:32];
   assign greatest = record[32*7+:32];
-  always_comb begin
-    if (started) begin
-      by_the_rule: assert (touching == state);
-      record_due: assert (record_valid == due[Latency-1]);
-      if (!record_valid && !rst_q) keeps: assert (record == record_q);
-      if (record_valid) begin
-        status: assert (record[0] == state && !(record[1] && record[2]) && record[31:3] == '0);
-        some_or_none: assert ((area != '0) == whole_any);
-        if (!whole_any) zeros: assert (record[32*Words-1:32*4] == '0);
-        if (whole_picked && whole_counts) begin
-          no_higher: assert (32'(whole_value) <= peak);
-          rows_limited: assert (least[31:16] <= whole_row && whole_row <= greatest[31:16]);
-          columns_limited: assert (least[15:0] <= whole_column && whole_column <= greatest[15:0]);
-          if (peak_place == {whole_row, whole_column}) its_own: assert (32'(whole_value) == peak);
+
+  if (Part == Timing) begin : g_timing
+    always_comb begin
+      if (started) begin
+        record_due: assert (record_valid == due[Latency-1]);
+        if (!record_valid && !rst_q) keeps: assert (record == record_q);
+        if (rst_q) quiet: assert (!m_event_tvalid && record == '0);
+        if (stalled) stable: assert (m_event_tvalid && m_event_tdata == stalled_data && m_event_tlast == stalled_last);
+        if (offered) whole_packet: assert (m_event_tvalid);
+        if (m_event_tvalid) begin
+          last_of_packet: assert (m_event_tlast == (word == 4'(Words - 1)));
+          if (word == watched) as_it_was: assert (m_event_tdata[0] == (offered ? sent_bit : first_bit));
         end
-        contact: cover (touching && whole_counts && peak == 32'sd1 && area == 32'd2);
-        ends: cover (record[2]);
-        empty: cover (area == '0);
+        lost_and_said: assert (event_lost == (due[Latency-2] & waits & m_event_tvalid & ~packet_ends));
+        sent_if_free: assert (m_event_tvalid || !waits || due[Latency-1]);
+        slow: cover (event_lost && word == 4'd1);
+        next_follows: cover (waits && packet_ends);
       end
-      if (rst_q) quiet: assert (!m_event_tvalid && record == '0);
-      if (stalled) stable: assert (m_event_tvalid && m_event_tdata == stalled_data && m_event_tlast == stalled_last);
-      if (offered) whole_packet: assert (m_event_tvalid);
-      if (m_event_tvalid) begin
-        last_of_packet: assert (m_event_tlast == (word == 4'(Words - 1)));
-        if (word == watched) as_it_was: assert (m_event_tdata == (offered ? sent_word : word_q));
-        slow: cover (event_lost && word == 4'd7);
-        next_follows: cover (waits && m_event_tready && m_event_tlast);
+    end
+  end
+
+  if (Part == Rule) begin : g_rule
+    always_comb begin
+      if (started) begin
+        by_the_rule: assert (touching == state);
+        if (record_valid) begin
+          status: assert (record[0] == state && !(record[1] && record[2]) && record[31:3] == '0);
+          counted: assert (area == 32'(whole_count));
+          if (!whole_any) zeros: assert (record[32*Words-1:32*3] == '0);
+          begins: cover (record[1] && area == 32'd2);
+          ends: cover (record[2]);
+        end
       end
-      lost_and_said: assert (event_lost == (due[Latency-2] & waits & m_event_tvalid & ~(m_event_tready & m_event_tlast)));
+    end
+  end
+
+  if (Part == Limits) begin : g_limits
+    always_comb begin
+      if (started && record_valid && whole_picked && whole_counts) begin
+        no_higher: assert (32'(whole_value) <= peak);
+        rows_limited: assert (least[31:16] <= whole_row && whole_row <= greatest[31:16]);
+        columns_limited: assert (least[15:0] <= whole_column && whole_column <= greatest[15:0]);
+        if (peak_place == {whole_row, whole_column}) its_own: assert (32'(whole_value) == peak);
+        not_at_the_rim: cover (least[15:0] < whole_column && whole_column < greatest[15:0] && 32'(whole_value) < peak);
+      end
     end
   end
 

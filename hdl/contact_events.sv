@@ -60,7 +60,9 @@ module contact_events #(
   localparam int ColumnWidth = $clog2(Columns);
   localparam int PlaceWidth = RowWidth > ColumnWidth ? RowWidth : ColumnWidth;
   localparam int AreaWidth = $clog2(Pixels + 1);
-  localparam int SumWidth = AreaWidth + PlaceWidth - 1;  // half the larger side, on average, for each pixel
+  localparam int ColumnSumWidth = $clog2(Pixels * (Columns - 1) / 2 + 1);
+  localparam int RowSumWidth = $clog2(Pixels * (Rows - 1) / 2 + 1);
+  localparam int SumWidth = AreaWidth + PlaceWidth - 1;  // holds both
   localparam int VolumeWidth = Width + $clog2(Pixels);
   localparam int Fraction = 4;
   localparam int Steps = PlaceWidth + Fraction + 1;  // quotient bits of a division, with one to round by
@@ -161,7 +163,8 @@ module contact_events #(
   // Sums and limits over what is above.
 
   logic some, fresh;  // there was one above in this frame; this is the first
-  logic [SumWidth-1:0] column_sum, row_sum;
+  logic [ColumnSumWidth-1:0] column_sum;
+  logic [RowSumWidth-1:0] row_sum;
   logic signed [VolumeWidth-1:0] volume;
   logic signed [Width-1:0] peak;
   logic [RowWidth-1:0] peak_row, first_row, last_row, least_row, greatest_row;
@@ -171,8 +174,8 @@ module contact_events #(
     if (valid_q2) begin
       some <= above_q | ~fresh;
       if (above_q) begin
-        column_sum <= (fresh ? '0 : column_sum) + SumWidth'(column_q2);
-        row_sum <= (fresh ? '0 : row_sum) + SumWidth'(row_q2);
+        column_sum <= (fresh ? '0 : column_sum) + ColumnSumWidth'(column_q2);
+        row_sum <= (fresh ? '0 : row_sum) + RowSumWidth'(row_q2);
         volume <= (fresh ? VolumeWidth'(0) : volume) + VolumeWidth'(data_q2);
         if (fresh || data_q2 > peak) begin
           peak <= data_q2;
@@ -196,8 +199,8 @@ module contact_events #(
     16'(greatest_row), 16'(greatest_column), 16'(least_row), 16'(least_column),
     16'(peak_row), 16'(peak_column), 32'(peak)
   };
-  logic [SumWidth-1:0] row_sum_closed;
-  assign row_sum_closed = summary_closed[32*5+:SumWidth];
+  logic [RowSumWidth-1:0] row_sum_closed;
+  assign row_sum_closed = summary_closed[32*5+:RowSumWidth];
 
   // Centroid: a quotient bit a clock, the column's and then the row's. A sum is less than area 2^PlaceWidth.
 
@@ -210,7 +213,7 @@ module contact_events #(
   logic [Steps-1:0] quotient;
   logic fits;
   assign divided = dividing & (step == '0);
-  assign dividend = summed ? column_sum : row_sum_closed;
+  assign dividend = summed ? SumWidth'(column_sum) : SumWidth'(row_sum_closed);
   assign shifted = {remainder, digits[PlaceWidth-1]};
   assign difference = shifted - {1'b0, area_closed};
   assign fits = ~difference[AreaWidth];
@@ -284,11 +287,9 @@ module contact_events #(
 `ifndef SYNTHESIS
   initial begin
     if (Width < 2 || Width > 32) $fatal(1, "%m: Width must be 2 to 32");
-    if (Rows < 2 || Rows > 2048) $fatal(1, "%m: Rows must be 2 to 2048");
-    if (Columns < 2 || Columns > 2048) $fatal(1, "%m: Columns must be 2 to 2048");
+    if (Rows < 2 || Rows > 1024) $fatal(1, "%m: Rows must be 2 to 1024");
+    if (Columns < 2 || Columns > 1024) $fatal(1, "%m: Columns must be 2 to 1024");
     if (Pixels < Latency) $fatal(1, "%m: a frame must have at least Latency pixels: 32 are enough");
-    if (VolumeWidth > 64) $fatal(1, "%m: Width + log2(Rows Columns) must be at most 64");
-    if (SumWidth > 32) $fatal(1, "%m: sums of places must fit 32 bits");
   end
 `endif
 

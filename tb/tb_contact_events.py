@@ -297,6 +297,24 @@ async def ties_and_edges(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
+async def centroids_between_two(dut):
+    """A mean that lies half way goes to the even one: 32 pixels above, since 16 sum / 32 has halves."""
+    bench = Bench(dut)
+    await bench.start()
+    want, halves = [], set()
+    for _ in range(24):
+        depth = np.zeros(bench.pixels, np.int64)
+        depth[bench.random.sample(range(bench.pixels), 32)] = 1
+        depth = depth.reshape(bench.rows, bench.columns)
+        await bench.frame(depth, Settings(0, 0, 1, 1))
+        want.append(numpy_fields(depth, 0, bench.bottom_first))
+        halves |= {total % 4 for total in want[-1][8:10]}
+    await bench.settle()
+    assert [seen_fields(words) for words in bench.records] == want
+    assert halves == {0, 1, 2, 3}, "not both ties: a poor test"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
 async def hysteresis(dut):
     """Between the thresholds the state stays, whichever it is; on its own threshold nothing counts as above."""
     bench = Bench(dut)
@@ -354,6 +372,18 @@ async def large_areas(dut):
     await bench.settle()
     status = [words[0] for words in bench.records]
     assert status == [0] * (len(status) - 3) + [3, 4, 3]
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def frame_numbers(dut):
+    """They count on through every bit, and over the end."""
+    bench = Bench(dut)
+    await bench.start()
+    for bits in range(6, 33):
+        dut.frame.value = bench.model.frames = (1 << bits) - 1
+        await bench.frame(bench.full(0), Settings(0, 0, 1, 1))
+        await bench.settle()
+    assert [words[1] for words in bench.records] == [*(1 << bits for bits in range(6, 32)), 0]
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from models.contact_events import FRACTION, WORDS, Record, centroid, record
 
 SOURCES = ["round_saturate.sv", "contact_events.sv"]
-PLACE = st.tuples(st.integers(0, 2047), st.integers(0, 2047))
+PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
 
 
 @pytest.mark.structures(
     "width rows columns bottom_first",
     both=[(24, 8, 16, 0)],
-    icarus=[(6, 4, 8, 1), (32, 5, 16, 1), (12, 9, 4, 0)],
+    icarus=[(6, 5, 8, 1), (32, 5, 16, 1), (12, 9, 4, 0)],
 )
 def test_rtl(run_tb, width, rows, columns, bottom_first):
     parameters = {"Width": width, "Rows": rows, "Columns": columns, "BottomFirst": bottom_first}

@@ -19,8 +19,7 @@ INVALID = {
     "divergence": ["Columns=1"],
     "threshold_comparator": ["Width=33"],
     "contact_events": [
-        *("Width=1", "Width=33", "Rows=1", "Rows=2049", "Columns=1", "Columns=2049"),
-        *("Rows=4 Columns=4", "Rows=2048 Columns=2048"),
+        *("Width=1", "Width=33", "Rows=1", "Rows=1025", "Columns=1", "Columns=1025", "Rows=4 Columns=4"),
     ],
     "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
     "rom": ["Depth=1"],
