@@ -396,8 +396,8 @@ def bounds(size: int, neumann: bool = False) -> Bounds:
         return _variation(response) + 2 * l1(response)
 
     def column(response: np.ndarray) -> np.ndarray:  # outer product with every row mode
-        x, y = l1(modes), _variation(modes)
-        return np.maximum.reduce([v * l1(response) + u * _variation(response) for u, v in zip(x, y, strict=True)])
+        along, across = l1(response), _variation(response)
+        return np.maximum.reduce([v * along + u * across for u, v in zip(l1(modes), _variation(modes), strict=True)])
 
     largest_mode = float(l1(modes).max())
     return Bounds(

@@ -10,7 +10,7 @@ from models.orders import bit_reversed, mirror
 SOURCES = ["burst_counter.sv", "delay_line.sv", "mode_pairs.sv", "ram.sv"]
 
 
-@pytest.mark.structures("size width", both=[(32, 24)], icarus=[(8, 27), (16, 12), (64, 24)])
+@pytest.mark.structures("size width", both=[(32, 24)], icarus=[(8, 27), (16, 12), (64, 24), (8, 4)])
 def test_rtl(run_tb, size, width):
     run_tb("mode_pairs", SOURCES, {"Size": size, "Width": width})
 

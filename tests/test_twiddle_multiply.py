@@ -30,6 +30,7 @@ MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
         ("phase_forward", 16, 16, 27, 24, 18, 20, 1),
         ("phase_forward", 16, 16, 15, 15, 10, 9, 1),
         ("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
+        ("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0),
     ],
 )
 def test_rtl(run_tb, factors, size, block, in_width, out_width, coeff, drop, real_only):
