@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from commands.simulator import ROOT, sources
+from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
@@ -167,6 +168,7 @@ def thomas_roms(
 FULL_WIDTH = "the widths in use"
 ONE_ORDER = "the order is one formula for every power of two"
 ROUNDING = "rounding is proven of round_saturate at full width"
+ARITHMETIC = "sums and the division are left to simulation"
 WORD_FREE = "no word is looked at, so one bit stands for any width"
 
 PROOFS: tuple[Proof, ...] = (
@@ -213,8 +215,40 @@ PROOFS: tuple[Proof, ...] = (
         "threshold_comparator", "contact within one clock of a depth above the threshold, never otherwise", FULL_WIDTH
     ),
     *(
+        Proof(
+            "contact_events",
+            claim,
+            f"rows and columns are only counted, depths only compared; {ARITHMETIC}",
+            {
+                "Rows": 3,
+                "Columns": 4,
+                "BottomFirst": bottom_first,
+                "Latency": contact_events.latency(3, 4),
+                "Part": part,
+            },
+            depth=depth,
+        )
+        for part, claim, bottom_first, depth in (
+            (
+                0,
+                "a record at a fixed latency, kept until the next; whole packets, each sent, or lost and said so",
+                0,
+                110,
+            ),
+            (1, "area and touching by their rules, zeros where nothing is above", 0, 80),
+            (2, "peak and limits of an arbitrary depth", 0, 60),
+            (2, "peak and limits of an arbitrary depth", 1, 60),
+        )
+    ),
+    *(
         Proof("ram", "a read returns what was last written to its address", WORD_FREE, {"Style": style})
         for style in (0, 1, 2)
+    ),
+    Proof(
+        "depth_gate",
+        "all words of a frame that waits, the first ones of one that does not; each looked at once, in time",
+        f"words of a frame are only counted; {WORD_FREE}",
+        depth=30,
     ),
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
     Proof(

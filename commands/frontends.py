@@ -67,7 +67,12 @@ def cases() -> list[Case]:
         Case("axil_registers", {"Rows": 16, "Columns": 8, "GradientWidth": 9, "BitsPerChannel": 1}),
         Case("axis_skid", {"Width": 4}),
         Case("burst_counter", {"Size": 8}),
+        *(
+            Case("contact_events", {"Width": 3, "Rows": 4, "Columns": 8, "BottomFirst": bottom_first})
+            for bottom_first in (0, 1)
+        ),
         *(Case("delay_line", {"Width": 3, "Delay": delay}) for delay in (1, 3, 6)),
+        Case("depth_gate", {"Width": 4}),
         *(Case("divergence", {"Width": 4, "Columns": 8, "Neumann": neumann}) for neumann in (0, 1)),
         Case("dot_product", {"AWidth": 5, "BWidth": 4}),
         *(

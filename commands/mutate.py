@@ -69,6 +69,8 @@ CORES = {
     "axis_skid": Core(protocols.axis_skid),
     "threshold_comparator": Core(protocols.threshold_comparator),
     "frame_guard": Core(protocols.frame_guard, (2,), outside=("silence",)),
+    "contact_events": Core(protocols.contact_events, (1,), outside=("frame",)),
+    "depth_gate": Core(protocols.depth_gate),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
     "thomas_table": Core(protocols.thomas_table),
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),

@@ -101,6 +101,57 @@ def threshold_comparator(_: Mapping[str, int]) -> Protocol:
     return Protocol(LIVE + begun, ("~in_valid | rst | begun | in_user",), {"contact": "live & ~rst"})
 
 
+def contact_events(parameters: Mapping[str, int]) -> Protocol:
+    """Rows of Columns depths, Rows of them a frame; one may begin inside another, none but the first after a reset may
+    lack its start. Last depths lie at least a frame apart, which is all that is asked of them."""
+    rows, columns = parameters["Rows"], parameters["Columns"]
+    registers = """
+  reg [15:0] place = 16'd0;  // of the next depth; 0: of a frame's first
+  reg [15:0] column = 16'd0;
+  always @(posedge clk) begin
+    if (rst) place <= 16'd0;
+    else if (in_valid) begin
+      place <= in_frame_end ? 16'd0 : (in_user ? 16'd0 : place) + 16'd1;
+      column <= in_last ? 16'd0 : (in_user ? 16'd0 : column) + 16'd1;
+    end
+  end
+"""
+    marks = (
+        "(in_user | place != 16'd0)"
+        f" & in_last == ((in_user ? 16'd0 : column) == 16'd{columns - 1})"
+        f" & in_frame_end == ((in_user ? 16'd0 : place) == 16'd{rows * columns - 1})"
+    )
+    clock = "live & ~rst"
+    compare = dict.fromkeys(("touching", "record_valid", "record", "event_lost", "m_event_tvalid"), clock)
+    compare |= dict.fromkeys(("m_event_tdata", "m_event_tlast"), f"{clock} & m_event_tvalid")
+    return Protocol(LIVE + registers, (f"~in_valid | rst | ({marks})",), compare)
+
+
+def depth_gate(_: Mapping[str, int]) -> Protocol:
+    """Frames of any number of words, in successive enabled clocks; what is present stays while en is low. After a reset
+    the first word is a frame's first."""
+    registers = """
+  reg open = 1'b0, stays = 1'b0;
+  reg [63:0] word_before;
+  always @(posedge clk) begin
+    if (rst) open <= 1'b0;
+    else if (en & in_valid) open <= ~in_frame_end;
+    stays <= in_valid & ~en & ~rst;
+    word_before <= {in_user, in_last, in_frame_end, in_data};
+  end
+"""
+    assume = (
+        "rst | in_valid | ~open",
+        "rst | ~in_valid | in_user == ~open",
+        "rst | ~stays | (in_valid & word_before == {in_user, in_last, in_frame_end, in_data})",
+    )
+    clock = "live & ~rst"
+    compare = dict.fromkeys(("en", "event_dropped", "m_valid", "look_valid"), clock)
+    for name in ("user", "last", "frame_end", "data"):
+        compare |= {f"m_{name}": f"{clock} & m_valid", f"look_{name}": f"{clock} & look_valid"}
+    return Protocol(LIVE + registers, assume, compare)
+
+
 def gradient_lookup(_: Mapping[str, int]) -> Protocol:
     """Nothing is written while a change-over is due, or from a read to its words, 3 clocks later; frames have more than
     one pixel; a bank that is asked for stays so until a frame or a reset has taken it."""

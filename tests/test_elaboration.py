@@ -18,6 +18,9 @@ INVALID = {
     "frame_output": ["Columns=12", "Rows=1"],
     "divergence": ["Columns=1"],
     "threshold_comparator": ["Width=33"],
+    "contact_events": [
+        *("Width=1", "Width=33", "Rows=1", "Rows=1025", "Columns=1", "Columns=1025", "Rows=4 Columns=4"),
+    ],
     "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
     "rom": ["Depth=1"],
     "gradient_lookup": ["BitsPerChannel=0", "BitsPerChannel=9"],
@@ -63,10 +66,14 @@ def test_an_invalid_parameter_is_refused(tmp_path, core, change):
     assert "FATAL" in (said := refused(core, change, tmp_path)) or "error" in said.lower()
 
 
-VALID = ["burst_counter Size=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"]
+VALID = [
+    *("burst_counter Size=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"),
+    *("contact_events Rows=4 Columns=8", "contact_events Rows=1024 Columns=1024 Width=32"),
+]
 
 
 @pytest.mark.parametrize("case", VALID)
 def test_a_valid_parameter_is_not(tmp_path, case):
     simulator.check("icarus")
-    assert not refused(*case.split(), tmp_path)
+    core, change = case.split(maxsplit=1)
+    assert not refused(core, change, tmp_path)

@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
+"""depth_gate: RTL against the model."""
+
+
+def test_rtl(run_tb):
+    run_tb("depth_gate", ["axis_skid.sv", "depth_gate.sv"], {"Width": 12})
