@@ -155,7 +155,10 @@ module gain_map #(
   logic [3*Width-1:0] fetched_gains;
   logic [3:0][Width-1:0] fetched_gain;  // of each channel
   assign fetched_gains = words[fetched_bank];
-  assign fetched_gain = {{Width{1'b0}}, fetched_gains};
+  for (genvar c = 0; c < 3; c++) begin : g_fetched
+    assign fetched_gain[c] = fetched_gains[c*Width+:Width];
+  end
+  assign fetched_gain[3] = '0;
   assign used_gains = words[bank];
   assign capture_read_gains = words[~bank];
 

@@ -6,8 +6,8 @@
 // `request` starts it, at any time, afresh if it is busy. From the next start of frame on it sums each block and
 // channel over 2^k whole frames, k = log2_frames at that start, at most MaxLog2; in_bad with a frame's last pixel
 // starts it afresh. Then a serial divider turns each sum into its gain, 85 clocks a node. All this in the bank of
-// gain_map that is not in use; `done` is high for one clock after the last gain is written, and asks for the change-over. While busy
-// nobody else writes that bank, nor asks for a change-over.
+// gain_map that is not in use; `done` is high for one clock after the last gain is written, and asks for the
+// change-over. While busy nobody else writes that bank, nor asks for a change-over.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that gain_map takes; gaps and en low change no gain.
 // From the last pixel to done: 85 nodes + 2 clocks, en or not. Model: models/reference_capture.py.
 
