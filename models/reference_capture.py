@@ -42,7 +42,7 @@ def reference_capture_clocks(config: Configuration) -> int:
 
 
 def reference_capture(
-    frames: Sequence[np.ndarray], bad: Sequence[bool], log2_frames: Sequence[int], config: Configuration
+    frames: Sequence[np.ndarray], bad: Sequence[bool], log2_frames: Sequence[int], largest: int, config: Configuration
 ) -> tuple[int, np.ndarray] | None:
     """What comes of frames that begin after a request.
 
@@ -51,6 +51,8 @@ def reference_capture(
     frames : uint8 arrays (rows, columns, 3)
     bad : bool of each
     log2_frames : int of each, as the register stands when the frame begins: the first that counts is the one taken
+    largest : int
+        `largest_log2_frames`, or less
 
     Returns
     -------
@@ -60,7 +62,7 @@ def reference_capture(
     wanted = 0
     for index, frame in enumerate(frames):
         if not taken:
-            wanted = 1 << min(log2_frames[index], largest_log2_frames(config))
+            wanted = 1 << min(log2_frames[index], largest)
         taken = [] if bad[index] else [*taken, frame]
         if len(taken) == wanted:
             return index, captured_gains(np.stack(taken), config)
