@@ -160,7 +160,7 @@ module gain_map #(
   end
   assign fetched_gain[3] = '0;
   assign used_gains = words[bank];
-  assign capture_read_gains = words[~bank];
+  assign capture_read_gains = bank ? words[0] : words[1];
 
   // Stages behind the read.
 
