@@ -36,6 +36,8 @@ SPECTRAL_NEUMANN = Configuration(**CHOICES, neumann=True)
 TRIDIAGONAL = Configuration(**CHOICES, rows=8, solver="tridiagonal")
 TRIDIAGONAL_NEUMANN = Configuration(**CHOICES, rows=8, solver="tridiagonal", neumann=True)
 ROM = {"Width": 7, "Depth": 12}
+FIELD = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Drop": 25, "OutWidth": 4, "Flat": 8}
+CAPTURE = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Width": 12, "GainFraction": 14, "MaxLog2": 2}
 WITHIN_THE_WHOLE = {"spectral_solver", "tridiagonal_solver"}
 
 
@@ -83,10 +85,13 @@ def cases() -> list[Case]:
         Case("frame_guard", {"Rows": 5, "Columns": 8}),
         Case("frame_output", {"Width": 4, "Rows": 5, "Columns": 8}),
         Case("frame_stack", {"Width": 3, "Rows": 5, "Size": 8}),
+        *(Case("flat_field", FIELD | more) for more in ({}, {"Drop": 22, "Offset": 4, "OutWidth": 5, "Flat": 0})),
         *(Case("frame_tags", {"Width": 4, "Latency": latency, "Pixels": 8}) for latency in (6, 20)),
+        *(Case("gain_map", {"Rows": rows, "Columns": 8, "BlockLog2": 1}) for rows in (3, 5)),
         Case("gradient_lookup", {"Width": SPECTRAL.gradient.width, "BitsPerChannel": SPECTRAL.bits_per_channel}),
         Case("mode_pairs", {"Width": 3, "Size": 8}),
         *(Case("ram", {"Width": 3, "Depth": 8, "Style": style}) for style in (0, 1, 2)),
+        Case("reference_capture", CAPTURE),
         Case("rom", ROM),
         *(
             Case("round_saturate", {"InWidth": 9, "Drop": drop, "OutWidth": width})

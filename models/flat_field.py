@@ -41,6 +41,21 @@ def unit_gains(config: Configuration) -> np.ndarray:
     return np.full((*config.reference_nodes, 3), (1 << GAIN_FRACTION) // FLAT_CODE, np.int64)
 
 
+def flat_field_parameters(config: Configuration, quadratic: bool) -> dict[str, int]:
+    """Parameters of hdl/flat_field.sv: deviations for the quadratic model, else codes for the table."""
+    fraction = DEVIATION.fraction if quadratic else FLAT_CODE.bit_length() - 1
+    return {
+        "Rows": config.rows,
+        "Columns": config.columns,
+        "BlockLog2": config.reference_block_log2,
+        "GainWidth": GAIN_WIDTH,
+        "Drop": GAIN_FRACTION - fraction,
+        "Offset": 1 << fraction if quadratic else 0,
+        "OutWidth": DEVIATION.width if quadratic else CODE_WIDTH,
+        "Flat": 0 if quadratic else FLAT_CODE,
+    }
+
+
 def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     """Gains from frames without contact: each 2**27 over the mean of a block and of all frames, ties up, saturated.
 

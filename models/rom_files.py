@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from models.configuration import Configuration
+from models.configuration import GAIN_WIDTH, Configuration
+from models.flat_field import unit_gains
 from models.sdf_fft import stages
 from models.spectral_divide import reciprocal_rom, reciprocals
 from models.thomas_table import thomas_table
@@ -52,6 +53,11 @@ def write_transform(folder: Path, size: int, width: int) -> None:
 def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     """Slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
+
+
+def write_gains(path: Path, config: Configuration) -> None:
+    """The gains at power-up, as the memories of gain_map.sv read them: a word a node, the same for all channels."""
+    write_words(path, unit_gains(config)[..., 0].ravel(), GAIN_WIDTH)
 
 
 def write_thomas(folder: Path, config: Configuration) -> None:

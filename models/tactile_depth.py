@@ -13,7 +13,7 @@ from models.configuration import Configuration
 from models.divergence import divergence
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import frame_latency
-from models.rom_files import write_gradient, write_solver
+from models.rom_files import write_gains, write_gradient, write_solver
 from models.round_saturate import Monitor
 
 
@@ -62,3 +62,4 @@ def write_roms(folder: Path, calibration: Calibration, config: Configuration) ->
     """Every file that the RTL reads."""
     write_solver(folder, config)
     write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)
+    write_gains(folder / "gain.hex", config)

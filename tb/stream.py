@@ -63,6 +63,15 @@ def corners(shape, width):
     return np.random.default_rng(cocotb.RANDOM_SEED).choice([*6 * [low, high], -1, 0], shape)
 
 
+def raster(rows, columns):
+    """The marks of a frame's pixels in their order: bit 0 first row, 1 first column, 2 last row, 3 last column."""
+    return [
+        (row == 0) | (column == 0) << 1 | (row == rows - 1) << 2 | (column == columns - 1) << 3
+        for row in range(rows)
+        for column in range(columns)
+    ]
+
+
 class StreamDriver(BusDriver):
     """Sends words under a qualifier: `start` (with the first word of a burst) or `valid` (with each word).
 

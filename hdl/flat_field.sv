@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// flat_field: colours relative to the reference frame, by the gains of gain_map; dark pixels held from their neighbour.
+//
+//   out = sat( round( I gain / 2^Drop ) - Offset )       of red, green and blue
+//
+// With Offset 0 these are codes, unsigned (128 I / ref); else deviations, signed (I / ref - 1). A pixel is dark if all
+// its colours are under dark_level, as it stood when the frame's first pixel came, or if the gain of one of them has
+// its top bit set. It takes over what left for the pixel before it in its row, the first of a row Flat; `dark` is high
+// one clock for each. Nothing that a dark pixel would clip counts as saturation.
+// Stream in: pixels R in 23:16, B in 15:8, G in 7:0. Stream out: colours relative to the reference.
+// Latency: 12 cycles. Banks, bus and capture: see gain_map. Bit-accurate model: models/flat_field.py.
+
+module flat_field #(
+  parameter int Rows      = 128,
+  parameter int Columns   = 128,
+  parameter int BlockLog2 = 3,
+  parameter int GainWidth = 24,
+  parameter int Drop      = 20,
+  parameter int Offset    = 0,
+  parameter int OutWidth  = 8,
+  parameter int Flat      = 128,
+  parameter     File      = "gain.hex",
+  localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)))
+) (
+  input  logic                   clk,
+  input  logic                   rst,
+  input  logic                   en,
+  input  logic [7:0]             dark_level,
+
+  input  logic                   table_bank,
+  output logic                   table_in_use,
+  input  logic                   table_write,
+  input  logic                   table_read,
+  input  logic [NodeWidth+1:0]   table_index,
+  input  logic [GainWidth-1:0]   table_gain,
+  output logic [GainWidth-1:0]   table_read_gain,
+
+  input  logic                   capture_write,
+  input  logic [NodeWidth-1:0]   capture_write_node,
+  input  logic [3*GainWidth-1:0] capture_gains,
+  input  logic                   capture_read,
+  input  logic [NodeWidth-1:0]   capture_read_node,
+  output logic [3*GainWidth-1:0] capture_read_gains,
+
+  input  logic                   in_valid,
+  input  logic [23:0]            in_pixel,
+  input  logic [3:0]             in_place,    // in the first row, first column, last row, last column
+  output logic                   out_valid,
+  output logic [3:0]             out_place,
+  output logic [OutWidth-1:0]    out_red,     // signed where Offset is not 0
+  output logic [OutWidth-1:0]    out_green,
+  output logic [OutWidth-1:0]    out_blue,
+  output logic                   dark,
+  output logic [1:0]             saturations  // values clipped in this clock
+);
+
+  localparam int MapLatency = 9;
+  localparam int ToOut = 2;  // stages between the gain and the output
+  localparam int ProductWidth = 8 + GainWidth;
+  localparam int RoundedWidth = OutWidth + (Offset == 0 ? 1 : 0);  // round_saturate is signed
+
+  logic gain_valid;
+  logic [3:0] gain_place;
+  logic [3*GainWidth-1:0] gains;
+  gain_map #(
+    .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth), .File(File)
+  ) u_map (
+    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
+    .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,
+    .capture_read_gains, .in_valid, .in_place, .out_valid(gain_valid), .out_place(gain_place), .out_gains(gains)
+  );
+
+  // Colours in the order of the gains: red, green, blue from the lowest.
+
+  logic [7:0] level;
+  logic [23:0] colours_q, colours;
+  logic dim_q, dim;
+  assign dim_q = colours_q[7:0] < level & colours_q[15:8] < level & colours_q[23:16] < level;
+  delay_line #(.Width(25), .Delay(MapLatency - 1)) u_delay (
+    .clk, .rst, .en, .in({dim_q, colours_q}), .out({dim, colours})
+  );
+
+  logic dead;
+  logic [ToOut-1:0] valid_q, dark_q;
+  logic [4*ToOut-1:0] place_q;
+  logic [2:0] clipped;
+  assign dead = gains[GainWidth-1] | gains[2*GainWidth-1] | gains[3*GainWidth-1];
+
+  logic [3*OutWidth-1:0] out;
+  assign {out_blue, out_green, out_red} = out;
+  for (genvar c = 0; c < 3; c++) begin : g_channel
+    logic [ProductWidth-1:0] product;
+    logic signed [ProductWidth:0] sum;
+    logic signed [RoundedWidth-1:0] rounded;
+    round_saturate #(.InWidth(ProductWidth + 1), .Drop(Drop), .OutWidth(RoundedWidth)) u_round (
+      .in(sum), .out(rounded), .clipped(clipped[c])
+    );
+    if (Offset == 0) begin : g_unsigned
+      logic unused_sign;
+      assign unused_sign = rounded[OutWidth];
+    end
+    always_ff @(posedge clk) begin
+      if (en) begin
+        product <= ProductWidth'(colours[8*c+:8]) * ProductWidth'(gains[c*GainWidth+:GainWidth]);
+        sum <= $signed({1'b0, product}) - ((ProductWidth + 1)'(Offset) <<< Drop);
+        if (valid_q[1] & ~dark_q[1]) out[c*OutWidth+:OutWidth] <= rounded[OutWidth-1:0];
+        else if (valid_q[1] & place_q[5]) out[c*OutWidth+:OutWidth] <= OutWidth'(Flat);
+      end
+    end
+  end
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_valid & in_place[0] & in_place[1]) level <= dark_level;
+      colours_q <= {in_pixel[15:8], in_pixel[7:0], in_pixel[23:16]};
+      valid_q <= {valid_q[0], gain_valid};
+      place_q <= {place_q[3:0], gain_place};
+      dark_q <= {dark_q[0], dim | dead};
+      out_valid <= valid_q[1];
+      out_place <= place_q[7:4];
+    end
+    dark <= en & valid_q[1] & dark_q[1];
+    saturations <= en & valid_q[1] & ~dark_q[1] ? 2'(clipped[0]) + 2'(clipped[1]) + 2'(clipped[2]) : '0;
+    if (rst) begin
+      valid_q <= '0;
+      out_valid <= 1'b0;
+      dark <= 1'b0;
+      saturations <= '0;
+    end
+  end
+
+endmodule

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The bus of gain_map and of flat_field around it: both banks as they should stand, writes, reads, change-overs."""
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from models.configuration import GAIN_WIDTH
+from models.flat_field import unit_gains
+from models.gain_map import ENTRIES_PER_NODE, table_entries
+
+READ_CLOCKS = 3  # from table_read to the gain
+LARGEST = (1 << GAIN_WIDTH) - 1
+
+
+def random_gains(config, chance):
+    """Of the nodes: anything, the limits alone, or like those of a sensor, by chance."""
+    generator = np.random.default_rng(chance.getrandbits(32))
+    shape = (*config.reference_nodes, 3)
+    match chance.randrange(4):
+        case 0:
+            return generator.integers(0, LARGEST, shape, endpoint=True)
+        case 1:
+            return generator.choice([0, 1, LARGEST - 1, LARGEST], shape)
+        case 2:
+            return generator.choice([0, LARGEST], shape)
+    return generator.integers(1 << 19, 1 << 22, shape)
+
+
+class Gains:
+    """Pins of the bus; `banks` are the gains that each bank should hold."""
+
+    def __init__(self, dut, config):
+        self.dut, self.config = dut, config
+        self.banks = [unit_gains(config), unit_gains(config)]
+        self.bank = 0  # what table_bank says
+        self.due = False  # a change-over with the next frame
+        for pin in ("table_bank", "table_write", "table_read", "table_index", "capture_write", "capture_read"):
+            getattr(dut, pin).value = 0
+
+    async def settle(self, written):
+        """What a test before this one has `written` is written over, with the gains at power-up. On Verilator always:
+        it begins with random pins, so that a first edge may have written a word. What the banks hold at power-up is
+        tested on Icarus, which begins with X, and by the top."""
+        if written or cocotb.SIM_NAME.lower().startswith("verilator"):
+            for _ in range(2):
+                await self.write(unit_gains(self.config))
+                self.change()
+                self.dut.rst.value = 1
+                await RisingEdge(self.dut.clk)
+                self.dut.rst.value = 0
+                await RisingEdge(self.dut.clk)
+
+    def begin_frame(self):
+        """What the head of the pipeline does with a frame's first pixel; the gains of that frame."""
+        if self.due:
+            self.change()
+        return self.banks[self.bank]
+
+    def change(self):
+        """From the next frame on, or in reset, the other bank."""
+        self.due = False
+        self.bank ^= 1
+        self.dut.table_bank.value = self.bank
+
+    async def changed(self):
+        while self.dut.table_in_use.value != self.bank:
+            await RisingEdge(self.dut.clk)
+
+    async def write(self, gains):
+        """All entries of the bank that is not in use, in order, one a clock; the unused ones too."""
+        await self.changed()
+        for index, word in table_entries(gains).items():
+            await self.write_entry(index, word)
+            if index % ENTRIES_PER_NODE == ENTRIES_PER_NODE - 2:
+                await self.write_entry(index + 1, LARGEST)
+        assert np.array_equal(self.banks[self.bank ^ 1], gains)
+
+    async def rewrite(self, chance, going_on):
+        """The bank not in use, over and over; when it is complete it is asked for, and entries are read all along."""
+        size = ENTRIES_PER_NODE * self.banks[0][..., 0].size
+        while going_on():
+            if self.due or self.dut.table_in_use.value != self.bank:
+                await self.read(chance.randrange(size))
+                continue
+            await self.write(random_gains(self.config, chance))
+            for _ in range(4):
+                await self.read(chance.randrange(size))
+            self.due = True
+
+    async def write_entry(self, index, word):
+        for pin, value in (("write", 1), ("index", index), ("gain", word)):
+            getattr(self.dut, f"table_{pin}").value = value
+        node, channel = divmod(index, ENTRIES_PER_NODE)
+        if channel < 3:
+            self.banks[self.bank ^ 1].reshape(-1, 3)[node, channel] = word
+        await RisingEdge(self.dut.clk)
+        self.dut.table_write.value = 0
+
+    async def read(self, index):
+        """An entry of the bank that is not in use, compared; a change-over may come in the very clock."""
+        self.dut.table_read.value, self.dut.table_index.value = 1, index
+        await RisingEdge(self.dut.clk)
+        self.dut.table_read.value = 0
+        self.dut.table_index.value = index ^ 5
+        await RisingEdge(self.dut.clk)
+        free = 1 - int(self.dut.table_in_use.value)  # as the edge of the read left it
+        for _ in range(READ_CLOCKS - 1):
+            await RisingEdge(self.dut.clk)
+        node, channel = divmod(index, ENTRIES_PER_NODE)
+        want = [*self.banks[free].reshape(-1, 3)[node].tolist(), 0][channel]
+        got = int(self.dut.table_read_gain.value)
+        assert got == want, f"entry {index} of bank {free}: {got:#x}, not {want:#x}"

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""gain_map against its model: random and extreme gains, rewritten over the bus and changed over while frames stream."""
+
+import cocotb
+import numpy as np
+from gains import Gains, random_gains
+from stream import Bench, StreamDriver, StreamMonitor, configuration, raster, send_apart
+
+from models.configuration import GAIN_WIDTH
+from models.flat_field import interpolated_gains
+from models.latency import GAIN_MAP
+
+PLACES = 2048  # that a test sends, at least
+
+
+class Map:
+    """The device, and the gains that each frame sent should get."""
+
+    def __init__(self, dut, gap, pause):
+        self.dut, self.gap = dut, gap
+        self.config = configuration()
+        self.places = raster(self.config.rows, self.config.columns)
+        self.frames = max(3, PLACES // len(self.places))
+        self.bench = Bench(dut, pause)
+        self.gains = Gains(dut, self.config)
+        self.driver = StreamDriver(dut, "in", "valid", ["place"])
+        self.source = StreamMonitor(dut, "in", "valid", ["place"], unsigned=["place"])
+        self.sink = StreamMonitor(dut, "out", "valid", ["gains", "place"], unsigned=["gains", "place"])
+        self.expected = []
+
+    async def start(self, written=True):
+        await self.bench.start()
+        await self.gains.settle(written)
+
+    async def send(self, frames=1):
+        """Frames back to back, each with the bank that stands when it begins."""
+        for _ in range(frames):
+            while self.bench.random.random() < self.gap:
+                await self.bench.clocks(1)
+            self.expected.append(interpolated_gains(self.gains.begin_frame(), self.config))
+            await send_apart(self.bench, self.driver, [(self.places[0],)], 0.0)
+            await send_apart(self.bench, self.driver, [(place,) for place in self.places[1:]], self.gap)
+
+    async def check(self):
+        await self.bench.clocks(GAIN_MAP + 2)
+        sent = [(place,) for _ in self.expected for place in self.places]
+        assert self.source.words == sent, "the driver sent something else"
+        words = np.concatenate([gains.reshape(-1, 3) for gains in self.expected]).tolist()
+        want = [
+            (red | green << GAIN_WIDTH | blue << 2 * GAIN_WIDTH, place)
+            for (red, green, blue), (place,) in zip(words, sent, strict=True)
+        ]
+        for index, (got, wanted) in enumerate(zip(self.sink.words, want, strict=True)):
+            frame, pixel = divmod(index, len(self.places))
+            assert got == wanted, f"frame {frame} of {len(self.expected)}, pixel {pixel}: {got}, not {wanted}"
+        assert self.sink.starts == [clock + GAIN_MAP for clock in self.source.starts]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def at_power_up(dut):
+    """A reference of 128 everywhere; both banks read so."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start(written=False)
+    await device.send()
+    device.gains.change()
+    await device.send()
+    await device.check()
+    assert all(np.all(gains == 1 << 20) for gains in device.expected)
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)]))
+async def frames_while_the_bus_rewrites(dut, gap, pause):
+    """The first frame after a change-over has the new gains from first pixel to last, the one before it the old."""
+    device = Map(dut, gap, pause)
+    await device.start()
+    await device.gains.write(random_gains(device.config, device.bench.random))
+    device.gains.due = True
+    going_on = [True]
+    rewriter = cocotb.start_soon(device.gains.rewrite(device.bench.random, lambda: going_on[0]))
+    await device.send(device.frames)
+    going_on.clear()
+    going_on.append(False)
+    await rewriter
+    await device.check()
+    used = {gains.tobytes() for gains in device.expected}
+    assert len(used) > 1, "no change-over was seen: a poor test"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut):
+    """In mid-frame: gains and banks stay; a change-over that is due is made; the next frame is right."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    columns = device.config.columns
+    for count in (1, 2, 3, 4, 6, columns, 2 * columns + 3, 5 * columns // 2):
+        await device.gains.write(random_gains(device.config, device.bench.random))
+        await send_apart(device.bench, device.driver, [(place,) for place in device.places[:count]], 0.0)
+        if count % 2:
+            device.gains.change()
+        await device.bench.reset()
+        device.expected.clear()
+        device.source.forget()
+        device.sink.forget()
+        await device.send()
+        await device.check()
