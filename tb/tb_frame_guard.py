@@ -131,7 +131,7 @@ STALLS = {
 }
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def long_silences(dut):
     """Every bit of the timeout and of the count: it is set to a little before the end of what would take too long."""
     bench = Bench(dut)
@@ -148,7 +148,7 @@ async def long_silences(dut):
         assert bench.collector.faults == ["timed_out"], f"not given up after {timeout} clocks"
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
 async def faults(dut, kind, stalls):
     """A good frame, a broken one, a good one, for every position of the break."""
@@ -165,7 +165,7 @@ async def faults(dut, kind, stalls):
         bench.forget()
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(stalls=list(STALLS))
 async def words_before_the_first_frame(dut, stalls):
     """Any number of them: dropped, one fault; the frame after them is right."""
@@ -180,7 +180,7 @@ async def words_before_the_first_frame(dut, stalls):
         assert [frame.bad for frame in want.frames] == [False]
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def silence(dut):
     """At every position `timeout` clocks are waited, not one more; with 0, or between frames, any number."""
     bench = Bench(dut)
@@ -198,7 +198,7 @@ async def silence(dut):
                 bench.forget()
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def silence_without_movement(dut):
     """Clocks with en low are not silence; a timeout written late counts from where the silence began."""
     bench = Bench(dut)
@@ -220,7 +220,7 @@ async def silence_without_movement(dut):
     assert bench.collector.faults == ["timed_out"]
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def long_time_outs(dut):
     """Every bit of the register counts. Most of the silence is written into its counter, not waited for."""
     bench = Bench(dut)
@@ -237,7 +237,7 @@ async def long_time_outs(dut):
         assert bench.collector.faults == ["timed_out"], f"timeout {timeout}"
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(clocks=[1, 2, 16])
 async def resets(dut, clocks):
     """At every position of a good frame and of the filler of a broken one; the next frame is right."""
