@@ -15,6 +15,7 @@ ROW_REORDER = 2  # from the last word of a row
 TRANSPOSE = 2  # from the first word of the last row
 DIVERGENCE = 2
 GRADIENT_LOOKUP = 2
+QUADRATIC_GRADIENT = 11
 FRAME_GUARD = 1
 AXIS_SKID = 1
 THOMAS_TABLE = 3
