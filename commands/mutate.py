@@ -70,6 +70,7 @@ CORES = {
     "threshold_comparator": Core(protocols.threshold_comparator),
     "frame_guard": Core(protocols.frame_guard, outside=("silence",)),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
+    "quadratic_gradient": Core(protocols.quadratic_gradient, (1,)),
     "thomas_table": Core(protocols.thomas_table),
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
     "divergence": Core(protocols.divergence, (5,)),

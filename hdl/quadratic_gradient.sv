@@ -94,14 +94,14 @@ module quadratic_gradient #(
   logic [Colours-1:0][DeviationWidth-1:0] deviation;
   assign deviation = {in_blue, in_green, in_red};
 
+  logic [2*Colours*SumWidth-1:0] sums;  // of the products up to each colour
   logic [2*Width-1:0] slopes;
   logic [1:0] clipped;
 
   for (genvar axis = 0; axis < 2; axis++) begin : g_axis
-    logic [Colours-1:0][SumWidth-1:0] sum;
-
     for (genvar colour = 0; colour < Colours; colour++) begin : g_colour
       localparam int Polynomial = Colours * axis + colour;
+      localparam int Before = colour == 0 ? Polynomial : Polynomial - 1;
 
       // The words of this polynomial, one a clock: at a frame's first pixel A, B, D, E; at other rows' F, H.
       logic [IndexWidth-1:0] offset;  // of the entry on the bus
@@ -166,15 +166,15 @@ module quadratic_gradient #(
           product <= deviation_q * coefficient_q;
         end
       end
-      if (colour == 0) begin : g_chain_begins
-        always_ff @(posedge clk) if (en) sum[0] <= SumWidth'(product);
-      end else begin : g_chain
-        always_ff @(posedge clk) if (en) sum[colour] <= sum[colour-1] + SumWidth'(product);
-      end
+      logic signed [SumWidth-1:0] sum_before;
+      assign sum_before = colour == 0 ? '0 : $signed(sums[SumWidth*Before+:SumWidth]);
+      always_ff @(posedge clk) if (en) sums[SumWidth*Polynomial+:SumWidth] <= sum_before + SumWidth'(product);
     end
 
     round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(Width)) u_round (
-      .in($signed(sum[Colours-1])), .out(slopes[Width*axis+:Width]), .clipped(clipped[axis])
+      .in($signed(sums[SumWidth*Colours*(axis+1)-1-:SumWidth])),
+      .out(slopes[Width*axis+:Width]),
+      .clipped(clipped[axis])
     );
   end
 
