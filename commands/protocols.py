@@ -118,7 +118,6 @@ def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
   reg begun = 1'b0, second_row = 1'b0, read = 1'b0;
   reg still = 1'b0, valid_before;
   reg [3:0] place_before;
-  wire begins_row = in_place[1], begins_frame = in_place[1] & in_place[0];
   always @(posedge clk) begin
     still <= ~en & ~rst;
     valid_before <= in_valid;
@@ -130,12 +129,12 @@ def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
       column <= 2'd0;
     end else if (en & in_valid) begin
       begun <= 1'b1;
-      column <= begins_row ? 2'd0 : column + (column != 2'd3);
-      if (begins_row) second_row <= ~begins_frame;
+      column <= in_place[1] ? 2'd0 : column + (column != 2'd3);
+      if (in_place[1]) second_row <= ~in_place[0];
     end
   end
 """
-    marks = "begun ? (~begins_row | column == 2'd3) & (~begins_frame | second_row) : begins_frame"
+    marks = "begun ? ~in_place[1] | (column == 2'd3 & (~in_place[0] | second_row)) : &in_place[1:0]"
     assume = (
         f"~in_valid | rst | ({marks})",
         "~still | rst | (in_valid == valid_before & (~in_valid | in_place == place_before))",

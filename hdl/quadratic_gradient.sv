@@ -137,14 +137,10 @@ module quadratic_gradient #(
       always_ff @(posedge clk) begin
         if (en) begin
           if (first[2+colour]) row_value <= word;
-          if (first[3+colour]) row_step <= word;
+          if (row[2+colour]) row_value <= row_value + row_rise;
+          if (first[3+colour] | row[3+colour]) row_step <= word + (row[3+colour] ? row_step : '0);
           if (first[4+colour]) bend <= word;
-          if (first[5+colour]) row_rise <= word;
-          if (row[2+colour]) begin
-            row_value <= row_value + row_rise;
-            row_rise <= row_rise + word;
-          end
-          if (row[3+colour]) row_step <= row_step + word;
+          if (first[5+colour] | row[2+colour]) row_rise <= word + (row[2+colour] ? row_rise : '0);
           if (valid_q[ToCoefficient-1+colour]) begin
             value <= begins_row ? row_value : value + step;
             step <= begins_row ? row_step : step + bend;
