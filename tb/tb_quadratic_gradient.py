@@ -5,6 +5,7 @@ The reference follows the pins, clock by clock: a frame's slopes are those of th
 began with.
 """
 
+import itertools
 from pathlib import Path
 
 import cocotb
@@ -286,12 +287,17 @@ async def rewritten_while_frames_stream(dut, gap, pause):
 async def reset_keeps_the_words_and_takes_the_bank_over(dut):
     device = Gradient(dut)
     await device.start()
-    for pixels in (*range(1, 14), 15, 20):
+    for pixels, moving in itertools.product((*range(1, 14), 15, 20), (False, True)):
         await device.rewrite(device.any_words())
         await device.send(3, 8, pixels)
         if device.random.random() < 0.5:
             await device.commit()
-        await device.bench.reset()
+        if moving:  # with en
+            dut.rst.value = 1
+            await RisingEdge(dut.clk)
+            dut.rst.value = 0
+        else:
+            await device.bench.reset()
         device.forget()
         if pixels % 2:
             await device.bench.clocks(QUADRATIC_GRADIENT + 2)
