@@ -22,12 +22,14 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from commands.simulator import ROOT, sources
 from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
-from models.rom_files import write_words
+from models.rom_files import write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
@@ -107,6 +109,12 @@ class Outcome:
 def gradient_rom(folder: Path) -> None:
     """Eight pairs of slopes of one bit, every pair twice."""
     write_words(folder / "gradient.hex", [bin * 5 % 4 for bin in range(8)], 2)
+
+
+def quadratic_roms(folder: Path) -> None:
+    """Words of one bit, arbitrary ones, another order in every polynomial."""
+    choose = random.Random(1)
+    write_quadratic(folder, np.array([choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
 
 
 def transform_roms(folder: Path) -> None:
@@ -256,6 +264,17 @@ PROOFS: tuple[Proof, ...] = (
         "slopes of the pixel's own index in the bank its frame began with, latency 2; reads of the other bank",
         f"{WORD_FREE}; one bit a channel has the same index",
         roms=gradient_rom,
+    ),
+    *(
+        Proof(
+            "quadratic_gradient",
+            "the coefficient of the pixel's own place, words written or from power-up; latency 11",
+            f"additions are exact at any width; the shortest rows; each colour, both axes; {ROUNDING}",
+            {"Polynomial": polynomial},
+            depth=30,
+            roms=quadratic_roms,
+        )
+        for polynomial in (0, 4, 2)
     ),
     *(
         Proof(

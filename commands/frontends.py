@@ -17,12 +17,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from commands import simulator as simulation
 from commands import yosys
 from models import tridiagonal_solver
 from models.calibration import synthetic
 from models.configuration import Configuration
-from models.rom_files import write_words
+from models.rom_files import write_quadratic, write_words
 from models.spectral_divide import reciprocals
 from models.tactile_depth import top_parameters, write_roms
 
@@ -35,6 +37,7 @@ SPECTRAL = Configuration(**CHOICES)
 SPECTRAL_NEUMANN = Configuration(**CHOICES, neumann=True)
 TRIDIAGONAL = Configuration(**CHOICES, rows=8, solver="tridiagonal")
 TRIDIAGONAL_NEUMANN = Configuration(**CHOICES, rows=8, solver="tridiagonal", neumann=True)
+QUADRATIC = {"Width": 3, "DeviationWidth": 3, "CoeffWidth": 3, "WordWidth": 5}
 ROM = {"Width": 7, "Depth": 12}
 FIELD = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Drop": 25, "OutWidth": 4, "Flat": 8}
 CAPTURE = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Width": 12, "GainFraction": 14, "MaxLog2": 2}
@@ -90,6 +93,7 @@ def cases() -> list[Case]:
         *(Case("gain_map", {"Rows": rows, "Columns": 8, "BlockLog2": 1}) for rows in (3, 5)),
         Case("gradient_lookup", {"Width": SPECTRAL.gradient.width, "BitsPerChannel": SPECTRAL.bits_per_channel}),
         Case("mode_pairs", {"Width": 3, "Size": 8}),
+        *(Case("quadratic_gradient", QUADRATIC | {"Drop": drop}) for drop in (3, -1)),
         *(Case("ram", {"Width": 3, "Depth": 8, "Style": style}) for style in (0, 1, 2)),
         Case("reference_capture", CAPTURE),
         Case("rom", ROM),
@@ -181,6 +185,7 @@ def prove(case: Case, folder: Path = FOLDER) -> tuple[str, float]:
     place.mkdir(parents=True)
     write_roms(place, synthetic(case.config.bits_per_channel), case.config)
     write_words(place / "rom.hex", (37 * i % (1 << ROM["Width"]) for i in range(ROM["Depth"])), ROM["Width"])
+    write_quadratic(place, np.arange(36).reshape(2, 3, 6), QUADRATIC["WordWidth"])
     problem = yosys.run(prepare(case.core, simulation.sources(), case.parameters, place), timeout_s=TIMEOUT_S)
     return problem, time.monotonic() - begin
 

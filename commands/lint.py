@@ -18,12 +18,14 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
+import numpy as np
+
 from commands import simulator as simulation
 from commands import yosys as yosys_runner
 from models.calibration import load
-from models.configuration import COLUMNS, Configuration
+from models.configuration import COLUMNS, POLYNOMIAL, Configuration
 from models.errors import InputError
-from models.rom_files import write_words
+from models.rom_files import write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 GRIDS = (16, 128, 512)
@@ -141,6 +143,7 @@ def yosys_cores(files: Sequence[Path]) -> str:
         write_roms(folder, load("synthetic"), Configuration(solver=solver))
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
+    write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
     return yosys([Structure(name) for name in modules(files)], files, folder)
 
 

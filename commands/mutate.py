@@ -72,6 +72,7 @@ CORES = {
     "contact_events": Core(protocols.contact_events, (1,), outside=("frame",)),
     "depth_gate": Core(protocols.depth_gate),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
+    "quadratic_gradient": Core(protocols.quadratic_gradient, (1,)),
     "thomas_table": Core(protocols.thomas_table),
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
     "divergence": Core(protocols.divergence, (5,)),

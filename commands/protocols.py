@@ -177,6 +177,44 @@ def gradient_lookup(_: Mapping[str, int]) -> Protocol:
     return Protocol(LIVE + registers, assume, compare)
 
 
+def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
+    """Frames of two rows or more, of four pixels or more, cut short by a reset alone; how long they are is left open.
+
+    Nothing is written while a change-over is due, or in the clock of a read.
+    """
+    registers = """
+  reg [1:0] column = 2'd0;  // pixels taken of this row, up to three
+  reg begun = 1'b0, second_row = 1'b0, read = 1'b0;
+  reg still = 1'b0, valid_before;
+  reg [3:0] place_before;
+  always @(posedge clk) begin
+    still <= ~en & ~rst;
+    valid_before <= in_valid;
+    place_before <= in_place;
+    read <= live & (read | table_read);
+    if (rst) begin
+      begun <= 1'b0;
+      second_row <= 1'b0;
+      column <= 2'd0;
+    end else if (en & in_valid) begin
+      begun <= 1'b1;
+      column <= in_place[1] ? 2'd0 : column + (column != 2'd3);
+      if (in_place[1]) second_row <= ~in_place[0];
+    end
+  end
+"""
+    marks = "begun ? ~in_place[1] | (column == 2'd3 & (~in_place[0] | second_row)) : &in_place[1:0]"
+    assume = (
+        f"~in_valid | rst | ({marks})",
+        "~still | rst | (in_valid == valid_before & (~in_valid | in_place == place_before))",
+        "~table_write | (live & ~rst & ~table_read & table_bank == table_in_use)",
+        "table_index < 6'd36",
+    )
+    word = f"{MOVES} & out_valid"
+    compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": MOVES, "table_in_use": "live"}
+    return Protocol(LIVE + registers, assume, compare | {"saturations": "live & ~rst", "table_read_word": "read"})
+
+
 def bursts(size: int, rows: int | None, out_size: int | None = None, word: str = "") -> Protocol:
     """Of a core between bursts: `size` words in successive enabled clocks, the first with in_start.
 

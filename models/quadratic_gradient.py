@@ -80,10 +80,14 @@ def polynomial_words(calibration: Calibration, config: Configuration, pixel_pitc
 
 def coefficient_map(words: np.ndarray, config: Configuration) -> np.ndarray:
     """What is multiplied, by pixel: int64 (2, 3, rows, columns), `COLOUR_COEFFICIENT`."""
-    wide = _evaluate(words, config.rows, config.columns)
-    half = np.int64(1) << (POLYNOMIAL.width - 1)
-    wrapped = ((wide + half) & (2 * half - 1)) - half  # as the registers would
-    return wrapped >> DROPPED
+    return coefficients(words, config.rows, config.columns, POLYNOMIAL.width, COLOUR_COEFFICIENT.width)
+
+
+def coefficients(words: np.ndarray, rows: int, columns: int, word_width: int, width: int) -> np.ndarray:
+    """The upper `width` bits of the quadratics modulo 2**word_width, int64 (2, 3, rows, columns)."""
+    half = np.int64(1) << (word_width - 1)
+    wrapped = ((_evaluate(words, rows, columns) + half) & (2 * half - 1)) - half  # as the registers would
+    return wrapped >> (word_width - width)
 
 
 def _evaluate(words: np.ndarray, rows: int, columns: int) -> np.ndarray:
@@ -97,7 +101,24 @@ def quadratic_gradient(
     deviation: np.ndarray, words: np.ndarray, config: Configuration, monitor: Monitor | None = None
 ) -> np.ndarray:
     """Slope codes: int64 (..., rows, columns, 3) of `DEVIATION` to int64 (..., rows, columns, 2) of config.gradient."""
-    coefficients = coefficient_map(words, config)
+    drop = gradient_parameters(config)["Drop"]
+    return slope_codes(deviation, coefficient_map(words, config), drop, config.gradient.width, monitor)
+
+
+def slope_codes(
+    deviation: np.ndarray, coefficients: np.ndarray, drop: int, width: int, monitor: Monitor | None = None
+) -> np.ndarray:
+    """The same of coefficients (2, 3, rows, columns), in any widths."""
     total = np.einsum("...rcn,anrc->...rca", deviation, coefficients)
-    drop = DEVIATION.fraction + COLOUR_COEFFICIENT.fraction - config.gradient.fraction
-    return round_saturate(total, drop, config.gradient.width, monitor, "quadratic_gradient")
+    return round_saturate(total, drop, width, monitor, "quadratic_gradient")
+
+
+def gradient_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/quadratic_gradient.sv."""
+    return {
+        "Width": config.gradient.width,
+        "DeviationWidth": DEVIATION.width,
+        "CoeffWidth": COLOUR_COEFFICIENT.width,
+        "WordWidth": POLYNOMIAL.width,
+        "Drop": DEVIATION.fraction + COLOUR_COEFFICIENT.fraction - config.gradient.fraction,
+    }

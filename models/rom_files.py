@@ -60,6 +60,15 @@ def write_gains(path: Path, config: Configuration) -> None:
     write_words(path, unit_gains(config)[..., 0].ravel(), GAIN_WIDTH)
 
 
+def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
+    """Words (2, 3, 6) as quadratic_gradient.sv reads them, each once for each bank: of each polynomial, and of all."""
+    flat = [word for word in pack((words.reshape(-1),), width) for _ in range(2)]
+    size = 2 * words.shape[-1]
+    for polynomial in range(len(flat) // size):
+        write_words(folder / f"quadratic_{polynomial}.hex", flat[polynomial * size :][:size], width)
+    write_words(folder / "quadratic.hex", flat, width)
+
+
 def write_thomas(folder: Path, config: Configuration) -> None:
     """The ROMs of thomas_table.sv."""
     table = thomas_table(config)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""quadratic_gradient: RTL against the model, the model against the additions that the RTL makes."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.configuration import Configuration
+from models.quadratic_gradient import coefficients, gradient_parameters, slope_codes
+from models.rom_files import write_quadratic
+from models.round_saturate import Monitor
+
+SOURCES = ["quadratic_gradient.sv", "ram.sv", "round_saturate.sv"]
+WORDS = (2, 3, 6)
+
+
+def any_words(width, seed=1):
+    return np.random.default_rng(seed).integers(-(1 << width - 1), 1 << width - 1, WORDS)
+
+
+@pytest.mark.structures(
+    "width deviation coefficient word drop",
+    both=[tuple(gradient_parameters(Configuration(columns=16)).values()), (3, 3, 3, 5, 3)],
+    icarus=[
+        tuple(gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
+        tuple(gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
+        (6, 4, 4, 4, 1),
+        (14, 4, 5, 9, 0),
+        (10, 4, 5, 9, -2),
+        (12, 4, 5, 9, -2),
+    ],
+)
+def test_rtl(run_tb, width, deviation, coefficient, word, drop):
+    run_tb(
+        "quadratic_gradient",
+        SOURCES,
+        {"Width": width, "DeviationWidth": deviation, "CoeffWidth": coefficient, "WordWidth": word, "Drop": drop},
+        roms=lambda folder: write_quadratic(folder, any_words(word), word),
+    )
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 7), st.sampled_from([6, 32]))
+def test_polynomials_run_along_the_raster_by_additions(seed, rows, columns, width):
+    words = any_words(width, seed)
+    kept = coefficients(words, rows, columns, width, 4)
+    a, b, d, e, f, h = (words[..., term] for term in range(6))
+    for row in range(rows):
+        value, step = a, b
+        for column in range(columns):
+            low = value % (1 << width)
+            expected = (low - (low >> (width - 1) << width)) >> (width - 4)
+            np.testing.assert_array_equal(kept[..., row, column], expected)
+            value, step = value + step, step + d
+        a, e, b = a + e, e + f, b + h
+
+
+def test_a_sum_of_products_is_rounded_once_to_even_and_saturated():
+    factors = np.array([[3, 1, -2], [1, 1, 1]])[..., None, None]
+    deviation = np.array([[[2, 0, 0]], [[0, 1, 0]], [[3, 1, 2]], [[100, 100, -100]]])[None]
+    monitor = Monitor()
+    factors = np.broadcast_to(factors, (2, 3, 4, 1))
+    codes = slope_codes(deviation, factors, 2, 5, monitor)
+    assert codes[0, :, 0].tolist() == [[2, 0], [0, 0], [2, 2], [15, 15]]  # 6/4, 2/4; 1/4; 6/4; out of range
+    assert monitor.saturations["quadratic_gradient"] == 2
+
+
+def test_files_hold_every_word_once_for_each_bank(tmp_path):
+    words = np.arange(36).reshape(WORDS) - 18
+    write_quadratic(tmp_path, words, 8)
+    whole = [int(line, 16) for line in (tmp_path / "quadratic.hex").read_text().split()]
+    parts = [int(line, 16) for p in range(6) for line in (tmp_path / f"quadratic_{p}.hex").read_text().split()]
+    assert whole == parts == [word % 256 for word in range(-18, 18) for _ in range(2)]
