@@ -35,7 +35,7 @@ JOBS = 2
 TIMEOUT = 900  # seconds, of one run of SymbiYosys
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
-HELPERS = ("ram_check", "burst_source", "follow_word")
+HELPERS = ("ram_check", "burst_source", "follow_word", "raster_source")
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,8 @@ class Proof:
         Of mode prove.
     roms : callable
         Writes the files that $readmemh reads into the folder given.
+    free : str
+        A wire of the core that takes any values instead of its own.
     """
 
     core: str
@@ -67,6 +69,7 @@ class Proof:
     depth: int = 20
     engine: str = "abc pdr"
     roms: Callable[[Path], None] | None = None
+    free: str = ""
 
     @property
     def name(self) -> str:
@@ -106,6 +109,11 @@ class Outcome:
 def gradient_rom(folder: Path) -> None:
     """Eight pairs of slopes of one bit, every pair twice."""
     write_words(folder / "gradient.hex", [bin * 5 % 4 for bin in range(8)], 2)
+
+
+def gain_rom(nodes: int) -> Callable[[Path], None]:
+    """Gains of one bit."""
+    return lambda folder: write_words(folder / "gain.hex", [node % 3 & 1 for node in range(nodes)], 1)
 
 
 def transform_roms(folder: Path) -> None:
@@ -222,6 +230,39 @@ PROOFS: tuple[Proof, ...] = (
         "slopes of the pixel's own index, written or from power-up; valid and place with it, latency 2",
         f"{WORD_FREE}; one bit a channel has the same index",
         roms=gradient_rom,
+    ),
+    *(
+        Proof(
+            "flat_field",
+            "a colour times its gain, whatever that is, rounded, saturated; dark pixels held and counted; latency 12",
+            f"products are exact at any width; {ROUNDING}",
+            {"Drop": 2, "Offset": offset, "OutWidth": width, "Flat": flat},
+            depth=45,
+            roms=gain_rom(2),
+            free="gains",
+        )
+        for offset, width, flat in ((0, 1, 1), (1, 2, 0))
+    ),
+    Proof(
+        "reference_capture",
+        "2^k good frames in a row behind a request; sums of an arbitrary node; done a fixed number of clocks later",
+        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+        depth=60,
+    ),
+    *(
+        Proof(
+            "gain_map",
+            claim,
+            "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
+            {"Along": along, "Columns": 4},
+            depth=45,
+            roms=gain_rom(4),
+            free="sums" if along else "",
+        )
+        for along, claim in (
+            (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
+            (1, "along a row: gains interpolated between any such sums, rounded to even; latency 9"),
+        )
     ),
     *(
         Proof(
@@ -458,6 +499,11 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         "[script]",
         f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)}",
         f"prep -flatten -top {bench}",
+        *(
+            [f"select -assert-count 1 w:dut.{proof.free}", f"cutpoint w:dut.{proof.free}", "opt_clean"]
+            if proof.free
+            else []
+        ),
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
         "[files]",

@@ -220,12 +220,14 @@ module gain_map #(
 
   // Each channel: weigh a node and the one below it, then run along the row from node to node.
 
+  logic [3*SumWidth-1:0] sums;
   logic start, node_begins, between;
   assign start = start_q[ToSum-1];
   assign node_begins = begins_q[ToSum-1];
   assign between = inner_q[ToSum-1];
   for (genvar c = 0; c < 3; c++) begin : g_along
     logic [SumWidth-1:0] product, sum, far, near;
+    assign sum = sums[c*SumWidth+:SumWidth];
     logic signed [SumWidth:0] step;
     logic [GainWidth-1:0] gain, from;
     logic signed [GainWidth-1:0] add;
@@ -240,7 +242,7 @@ module gain_map #(
     always_ff @(posedge clk) begin
       if (en) begin
         product <= SumWidth'(used_gains[c*Width+:Width]) * SumWidth'(weight_q);
-        sum <= (upper_q2 ? sum : '0) + product;
+        sums[c*SumWidth+:SumWidth] <= (upper_q2 ? sum : '0) + product;
         if (node_done) far <= sum;
         if (segment_done) begin
           near <= far;
