@@ -38,7 +38,7 @@ JOBS = 2
 TIMEOUT = 900  # seconds, of one run of SymbiYosys
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
-HELPERS = ("ram_check", "burst_source", "follow_word")
+HELPERS = ("ram_check", "burst_source", "follow_word", "raster_source")
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,8 @@ class Proof:
         Of mode prove.
     roms : callable
         Writes the files that $readmemh reads into the folder given.
+    free : str
+        A wire of the core that takes any values instead of its own.
     """
 
     core: str
@@ -70,6 +72,7 @@ class Proof:
     depth: int = 20
     engine: str = "abc pdr"
     roms: Callable[[Path], None] | None = None
+    free: str = ""
 
     @property
     def name(self) -> str:
@@ -115,6 +118,16 @@ def quadratic_roms(folder: Path) -> None:
     """Words of one bit, arbitrary ones, another order in every polynomial."""
     choose = random.Random(1)
     write_quadratic(folder, np.array([choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
+
+
+def gain_rom(nodes: int) -> Callable[[Path], None]:
+    """Gains of one bit."""
+
+    def write(folder: Path) -> None:
+        for channel in range(3):
+            write_words(folder / f"gain_{channel}.hex", [(node + channel) % 3 & 1 for node in range(nodes)], 1)
+
+    return write
 
 
 def transform_roms(folder: Path) -> None:
@@ -275,6 +288,39 @@ PROOFS: tuple[Proof, ...] = (
             roms=quadratic_roms,
         )
         for polynomial in (0, 4, 2)
+    ),
+    *(
+        Proof(
+            "flat_field",
+            "a colour times its gain, whatever that is, rounded, saturated; dark pixels held and counted; latency 12",
+            f"products are exact at any width; {ROUNDING}",
+            {"Drop": 2, "Offset": offset, "OutWidth": width, "Flat": flat},
+            depth=45,
+            roms=gain_rom(2),
+            free="gains",
+        )
+        for offset, width, flat in ((0, 1, 1), (1, 2, 0))
+    ),
+    Proof(
+        "reference_capture",
+        "2^k good frames in a row behind a request; sums of an arbitrary node; done a fixed number of clocks later",
+        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+        depth=60,
+    ),
+    *(
+        Proof(
+            "gain_map",
+            claim,
+            "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
+            {"Along": along, "Columns": 4},
+            depth=45,
+            roms=gain_rom(4),
+            free="sums" if along else "",
+        )
+        for along, claim in (
+            (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
+            (1, "along a row: gains interpolated between any such sums, rounded to even; latency 9"),
+        )
     ),
     *(
         Proof(
@@ -511,6 +557,11 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         "[script]",
         f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)}",
         f"prep -flatten -top {bench}",
+        *(
+            [f"select -assert-count 1 w:dut.{proof.free}", f"cutpoint w:dut.{proof.free}", "opt_clean"]
+            if proof.free
+            else []
+        ),
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
         "[files]",

@@ -40,6 +40,19 @@ module tactile_depth
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
   parameter int FrameLatency     = 17167,  // last pixel out of the guard to first depth out of the solver
+  parameter int FlatField        = 0,    // 1: colours relative to a reference frame
+  parameter int Quadratic        = 0,    // gradient model: 0 table, 1 quadratics, which need FlatField
+  parameter int BlockLog2        = 3,    // from here: FlatField
+  parameter int GainWidth        = 24,
+  parameter int GainFraction     = 27,
+  parameter int CaptureLog2      = 8,
+  parameter int ColourWidth      = 8,
+  parameter int ColourDrop       = 20,
+  parameter int ColourOffset     = 0,
+  parameter int ColourFlat       = 128,
+  parameter int PolynomialWidth  = 32,   // from here: Quadratic
+  parameter int ColourCoeffWidth = 18,
+  parameter int SlopeDrop        = 6,
   localparam int DepthBytes = (DataWidth + 7) / 8
 ) (
   input  logic                    clk,

@@ -6,19 +6,19 @@ from __future__ import annotations
 import io
 import math
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from models.configuration import GRADIENT_LIMITS
+from models.configuration import GRADIENT_LIMITS, GRADIENT_MODELS
 from models.errors import InputError
 from models.npy import is_file, read_header
 from models.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
 FOLDER = Path(__file__).resolve().parent.parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
-MODELS = ("lut", "quadratic")
+MODELS = GRADIENT_MODELS
 BITS_PER_CHANNEL = (1, 6)
 COEFFICIENTS = (2, 3, 6)  # slope, colour, term
 LARGEST_COEFFICIENT = 1e6
@@ -49,6 +49,8 @@ class Calibration:
         That the quadratics were fitted to: their formats hold it.
     model : str
         The better of the two.
+    reference : uint8 array (rows, cols, 3), or None
+        The sensor without contact, on the grid in use: `on_grid`.
     """
 
     name: str
@@ -57,6 +59,11 @@ class Calibration:
     coefficients: np.ndarray | None = None
     largest_slope: float = 0.0
     model: str = "lut"
+    reference: np.ndarray | None = None
+
+    def on_grid(self, pixel_scale: float, reference: np.ndarray | None = None) -> Calibration:
+        """For a grid whose pixels are so many of the camera's wide, and the sensor's frame without contact on it."""
+        return replace(self, pixel_pitch_mm=self.pixel_pitch_mm * pixel_scale, reference=reference)
 
     @property
     def table(self) -> np.ndarray:

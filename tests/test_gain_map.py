@@ -7,6 +7,7 @@ import pytest
 
 from models.configuration import Configuration
 from models.gain_map import ENTRIES_PER_NODE, gain_map_parameters, table_entries
+from models.flat_field import unit_gains
 from models.rom_files import write_gains
 
 SOURCES = ["gain_map.sv", "ram.sv", "round_saturate.sv"]
@@ -20,7 +21,7 @@ def test_rtl(run_tb, columns, rows):
         "gain_map",
         SOURCES,
         gain_map_parameters(config),
-        roms=lambda folder: write_gains(folder / "gain.hex", config),
+        roms=lambda folder: write_gains(folder, unit_gains(config)),
         environment={"CONFIGURATION": json.dumps(choices)},
     )
 
