@@ -122,12 +122,8 @@ def quadratic_roms(folder: Path) -> None:
 
 def gain_rom(nodes: int) -> Callable[[Path], None]:
     """Gains of one bit."""
-
-    def write(folder: Path) -> None:
-        for channel in range(3):
-            write_words(folder / f"gain_{channel}.hex", [(node + channel) % 3 & 1 for node in range(nodes)], 1)
-
-    return write
+    gains = np.array([node % 3 & 1 for node in range(nodes)])
+    return lambda folder: write_gains(folder, np.stack((gains, gains, gains), axis=-1), 1)
 
 
 def transform_roms(folder: Path) -> None:

@@ -69,8 +69,8 @@ module fv_gain_map #(
   // The banks as they should be.
   logic [Width-1:0] words_0[Nodes], words_1[Nodes];
   initial begin
-    $readmemh("gain.hex", words_0);
-    $readmemh("gain.hex", words_1);
+    $readmemh("gain_0.hex", words_0);
+    $readmemh("gain_0.hex", words_1);
   end
   logic bank, bus_writes;
   logic [Width-1:0] written;

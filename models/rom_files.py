@@ -54,10 +54,10 @@ def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
 
 
-def write_gains(folder: Path, gains: np.ndarray) -> None:
-    """Gains (node rows, node columns, 3) as the memories of gain_map.sv read them: a file a channel, a word a node."""
+def write_gains(folder: Path, gains: np.ndarray, width: int = GAIN_WIDTH) -> None:
+    """Gains (.., 3) as the memories of gain_map.sv read them: a file a channel, a word a node."""
     for channel, words in enumerate(np.moveaxis(gains, -1, 0)):
-        write_words(folder / f"gain_{channel}.hex", words.ravel(), GAIN_WIDTH)
+        write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
