@@ -29,7 +29,7 @@ from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
-from models.rom_files import write_quadratic, write_words
+from models.rom_files import write_gains, write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
@@ -492,17 +492,23 @@ PROOFS: tuple[Proof, ...] = (
 
 
 HANDSHAKES = (
-    *("s_axis_tready", "m_axis_tvalid", "m_axis_tlast", "m_axis_tuser"),
+    *("s_axis_tready", "m_axis_tvalid", "m_axis_tlast", "m_axis_tuser", "m_event_tvalid", "m_event_tlast"),
     *("s_axil_awready", "s_axil_wready", "s_axil_bvalid", "s_axil_bresp", "s_axil_arready", "s_axil_rvalid"),
 )
 STRUCTURES = tuple(
     Structure(
         "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
         "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
-        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10},
+        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10}
+        | colours,
     )
     for solver, rows in (("spectral", 16), ("tridiagonal", 8))
-    for neumann in (0, 1)
+    for neumann, colours in (
+        (0, {}),
+        (1, {}),
+        (1, {"flat_field": 1}),
+        (0, {"flat_field": 1, "gradient_model": "quadratic"}),
+    )
 )
 
 # Cores with nothing that a proof here would add to.
@@ -570,6 +576,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
     """The Yosys script of one structural proof; every memory of the data path is called words."""
     parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
     outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
+    quadratic = config.gradient_model == "quadratic"
     lines = [
         f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {structure.core}",
@@ -589,7 +596,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         "select -set cone_of_depth o:m_axis_tdata* %ci*",
         f"select -assert-min {3 * config.bits_per_channel} @cone_of_depth @pixels %i",
         "select -assert-min 10 @cone_of_depth @memories %i",
-        "select -assert-any @cone_of_depth */u_lookup.u_table.*words %i",
+        f"select -assert-any @cone_of_depth */*{'u_quadratic' if quadratic else 'u_lookup'}.*words %i",
     ]
     return "\n".join(lines) + "\n"
 
@@ -597,7 +604,9 @@ def structure_script(structure: Structure, config: Configuration) -> str:
 def run_structure(structure: Structure, mode: str) -> Outcome:
     """One run of Yosys, in build/formal/<name>/."""
     choices = dict(structure.choices)
-    config = Configuration(**choices | {"neumann": bool(choices["neumann"])})
+    config = Configuration(
+        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field")},
+    )
     folder = BUILD / structure.name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

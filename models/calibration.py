@@ -66,6 +66,12 @@ class Calibration:
         return replace(self, pixel_pitch_mm=self.pixel_pitch_mm * pixel_scale, reference=reference)
 
     @property
+    def models(self) -> tuple[str, ...]:
+        """Those that it holds."""
+        held = (self.gradient is not None, self.coefficients is not None)
+        return tuple(model for model, is_held in zip(MODELS, held, strict=True) if is_held)
+
+    @property
     def table(self) -> np.ndarray:
         """`gradient`.
 
@@ -80,7 +86,8 @@ class Calibration:
 
     @property
     def bits_per_channel(self) -> int:
-        return self.table.shape[0].bit_length() - 1
+        """Of the table; 4, which is as good as any, where there is none."""
+        return 4 if self.gradient is None else self.gradient.shape[0].bit_length() - 1
 
     @property
     def gradient_limit(self) -> float:
@@ -108,13 +115,18 @@ def load(name_or_path: str) -> Calibration:
 
 
 def synthetic(bits_per_channel: int = 4) -> Calibration:
-    """The synthetic sensor's table: the least-squares inverse of its colour model at each bin's centre."""
+    """The synthetic sensor: the least-squares inverse of its colour model, at each bin's centre and as quadratics.
+
+    Its light is even and its colours linear in the slopes: of each quadratic only the first term is not 0.
+    """
     step = 256 >> bits_per_channel
     centre = np.arange(0, 256, step) + (step - 1) / 2
     colour = np.stack(np.meshgrid(centre, centre, centre, indexing="ij"), axis=-1)
     gradient = (colour - REST) / GAIN @ np.linalg.pinv(LIGHTS).T
     within = np.clip(gradient, -LARGEST_SLOPE, LARGEST_SLOPE)
-    return Calibration("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM)
+    coefficients = np.zeros(COEFFICIENTS)
+    coefficients[..., 0] = REST / GAIN * np.linalg.pinv(LIGHTS)
+    return Calibration("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM, coefficients, LARGEST_SLOPE)
 
 
 def _read(name: str, path: Path) -> Calibration:

@@ -124,7 +124,7 @@ class Configuration:
         if self.gradient_model not in GRADIENT_MODELS:
             raise InputError(f"GRADIENT={self.gradient_model} is unknown: accepted are {', '.join(GRADIENT_MODELS)}")
         if self.gradient_model == "quadratic" and not self.flat_field:
-            raise InputError("GRADIENT=quadratic without a REFERENCE: it takes colours relative to one, name its picture")
+            raise InputError("GRADIENT=quadratic without a REFERENCE: it takes colours relative to one, name a picture")
         if self.solver not in COLUMNS:
             raise InputError(f"SOLVER={self.solver} is unknown: accepted are {', '.join(COLUMNS)}")
         within("N", self.columns, COLUMNS[self.solver])

@@ -21,6 +21,7 @@ from models.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
 LARGEST_CAMERA = 4096  # rows, and columns, of a frame: what a file claims must not decide how much memory is taken
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
+REST_SCENE = "flat"  # nothing touches
 ACCEPTED = f"a scene ({', '.join(SCENES)}), a .npy of uint8 (frames, rows, cols, 3), a PNG, a folder of PNGs"
 
 
@@ -150,7 +151,7 @@ def load_frames(
         A scene's name, a `.npy` of uint8 (frames, rows, cols, 3), a PNG, or a folder of PNGs.
     size : (rows, cols) of the grid
     reference : str, optional
-        Picture of the sensor without contact, as large as the frames.
+        Picture of the sensor without contact, as large as the frames; with a scene `flat`.
     seed : int
         Seed of a scene's noise.
     press : Press
@@ -188,10 +189,12 @@ def load_frames(
 
 
 def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press) -> Frames:
-    if reference is not None:
-        raise InputError(f"reference {reference} with the scene {name}: scenes need none, leave it out")
+    if reference not in (None, REST_SCENE):
+        raise InputError(f"REFERENCE={reference} with the scene {name}: accepted is REFERENCE={REST_SCENE}, or none")
     scene = render(name, *size, seed, press)
-    return Frames(scene.frames, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, scene.labels)
+    rest = render(REST_SCENE, *size, seed, Press(noise=0)).frames[0] if reference else None
+    scale = scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM
+    return Frames(scene.frames, scale, name, scene.labels, rest)
 
 
 def _to_grid(

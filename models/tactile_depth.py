@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 
 from models import spectral_solver, tridiagonal_solver
-from models.calibration import Calibration
+from models.calibration import COEFFICIENTS, Calibration
 from models.configuration import POLYNOMIAL, Configuration
 from models.divergence import divergence
 from models.flat_field import deviations, flat_codes, flat_field_parameters, reference_gains
@@ -43,7 +44,9 @@ def slope_codes(
     """Slope codes, int64 (..., rows, columns, 2), of frames: by the table or by quadratics, flat-fielded or as sent."""
     if config.gradient_model == "quadratic":
         deviation = deviations(frames, reference_gains(calibration, config), config, monitor=monitor)
-        return quadratic_gradient(deviation, polynomial_words(calibration, config, calibration.pixel_pitch_mm), config, monitor)
+        return quadratic_gradient(
+            deviation, polynomial_words(calibration, config, calibration.pixel_pitch_mm), config, monitor
+        )
     if config.flat_field:
         frames = flat_codes(frames, reference_gains(calibration, config), config, monitor=monitor)
     return gradient_lookup(frames, gradient_codes(calibration, config), config.bits_per_channel)
@@ -86,8 +89,8 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     colour["CaptureLog2"] = capture["MaxLog2"]
     if quadratic:
         slope = gradient_parameters(config)
-        colour |= {"PolynomialWidth": slope["WordWidth"], "ColourCoeffWidth": slope["CoeffWidth"]}
-        colour["SlopeDrop"] = slope["Drop"]
+        colour |= {"PolynomialWords": math.prod(COEFFICIENTS), "PolynomialWidth": slope["WordWidth"]}
+        colour |= {"ColourCoeffWidth": slope["CoeffWidth"], "SlopeDrop": slope["Drop"]}
     return colour
 
 
