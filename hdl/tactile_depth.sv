@@ -230,6 +230,16 @@ module tactile_depth
     end
   end
 
+  // Of cores that are not connected.
+  logic drop_frames, capture_request;
+  logic [3:0] capture_log2_frames;
+  logic [7:0] dark_level, debounce;
+  logic [31:0] minimum_area;
+  logic signed [31:0] off_threshold;
+  logic unused_settings;
+  assign unused_settings = ^{drop_frames, capture_request, capture_log2_frames, dark_level, debounce, minimum_area,
+                             off_threshold};
+
   axil_registers #(
     .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
     .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel)
@@ -243,10 +253,12 @@ module tactile_depth
     .event_frame_in(en & guarded_end & ~guarded_bad),
     .event_frame_out(leaves & leaving_last_of_frame),
     .event_frame_dropped(row_short | row_long | start_missing | start_early | timed_out),
+    .event_dark(1'b0), .event_depth_dropped(1'b0), .event_record_lost(1'b0),
     .saturations,
     .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
-    .busy, .contact,
-    .threshold, .timeout, .hold_contact,
+    .busy, .contact, .touching(1'b0), .record('0),
+    .threshold, .off_threshold, .minimum_area, .debounce, .timeout, .hold_contact, .drop_frames, .dark_level,
+    .capture_request, .capture_log2_frames, .capture_busy(1'b0), .capture_done(1'b0),
     .frame_start(en & guarded_start), .table_write, .table_read, .table_select, .table_index, .table_high, .table_low,
     .table_read_high(32'(table_gy)), .table_read_low(32'(table_gx)), .table_bank,
     .table_in_use
