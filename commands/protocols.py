@@ -446,7 +446,8 @@ def axil_client() -> tuple[str, tuple[str, ...], dict[str, str]]:
 def axil_registers(_: Mapping[str, int]) -> Protocol:
     registers, assume, compare = axil_client()
     held = ("threshold", "timeout", "hold_contact", "table_select", "table_index", "table_high", "table_bank")
-    compare |= dict.fromkeys((*held, "table_write", "table_read"), "live")
+    held += ("off_threshold", "minimum_area", "debounce", "drop_frames", "dark_level", "capture_log2_frames")
+    compare |= dict.fromkeys((*held, "table_write", "table_read", "capture_request"), "live")
     return Protocol(LIVE + registers, assume, compare | {"table_low": "live & table_write"})
 
 

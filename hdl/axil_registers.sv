@@ -18,6 +18,11 @@
 // core takes its bit over with the first pixel of its own next frame, or in reset, and shows the
 // bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand
 // within a frame of the head of the pipeline.
+//
+// Capture of the reference table: capture_request is high for the clock of the write that asks for it, capture_busy from
+// the clock after it to that of capture_done, which asks for the change-over of that table as TABLE_COMMIT does. While
+// capture_busy is high, and in the clock of the request, the bus neither writes that table nor asks for its change-over.
+// record: word n of the contact events in bits 32 n + 31 to 32 n; what is read is the word as it stands.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers
@@ -28,12 +33,13 @@ module axil_registers
   parameter int DataWidth        = 24,
   parameter int GradientWidth    = 20,  // bits of a slope code, at most 32
   parameter int GradientFraction = 18,
-  parameter int BitsPerChannel   = 4,
+  parameter int BitsPerChannel   = 4,   // 0: no gradient table
   parameter int CoefficientWords = 0,   // entries of these tables, 0: none
   parameter int ReferenceWords   = 0,
+  localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
   localparam int Tables = TableSelectSelectCount,
   localparam int SelectWidth = TableSelectSelectWidth,
-  localparam int GradientWords = 1 << (3 * BitsPerChannel),
+  localparam int GradientWords = BitsPerChannel == 0 ? 0 : 1 << (3 * BitsPerChannel),
   localparam int OtherWords = CoefficientWords > ReferenceWords ? CoefficientWords : ReferenceWords,
   localparam int IndexWidth = $clog2(GradientWords > OtherWords ? GradientWords : OtherWords)
 ) (
@@ -67,15 +73,30 @@ module axil_registers
   input  logic                     event_frame_in,
   input  logic                     event_frame_out,
   input  logic                     event_frame_dropped,
+  input  logic                     event_dark,
+  input  logic                     event_depth_dropped,
+  input  logic                     event_record_lost,
   input  logic [7:0]               saturations,  // values clipped in this clock
   input  logic [31:0]              first_depth_latency,
   input  logic                     first_depth_latency_valid,
   input  logic                     busy,
   input  logic                     contact,
+  input  logic                     touching,
+  input  logic [32*RecordWords-1:0] record,
 
   output logic signed [31:0]       threshold,
+  output logic signed [31:0]       off_threshold,
+  output logic [31:0]              minimum_area,
+  output logic [7:0]               debounce,
   output logic [31:0]              timeout,
   output logic                     hold_contact,
+  output logic                     drop_frames,
+  output logic [7:0]               dark_level,
+
+  output logic                     capture_request,
+  output logic [3:0]               capture_log2_frames,
+  input  logic                     capture_busy,
+  input  logic                     capture_done,
 
   input  logic                     frame_start,  // the first pixel of a frame passes the head
   output logic                     table_write,
@@ -100,7 +121,7 @@ module axil_registers
     | (GradientFraction << FormatGradientFractionLsb)
     | (BitsPerChannel << FormatBitsPerChannelLsb);
   localparam logic [Tables-1:0] Present =
-      (Tables'(1'b1) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
+      (Tables'(GradientWords != 0) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
     | (Tables'(CoefficientWords != 0) << TableCommitCoefficientsBit)
     | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit);
 
@@ -132,13 +153,18 @@ module axil_registers
   logic [Tables-1:0] bank = '0;  // no reset: it says where the tables are, which no reset touches
   logic changes;
   logic [Tables-1:0] pending;
-  logic [(1<<SelectWidth)-1:0] pending_of;
+  logic [Tables-1:0] captured;
+  logic [Tables-1:0] closed;  // to writes of the bus, and to commits
+  logic [(1<<SelectWidth)-1:0] closed_of;
 
   logic [31:0] status;  // the sticky bits
   logic [31:0] frames_in;
   logic [31:0] frames_out;
   logic [31:0] frames_dropped;
   logic [31:0] saturations_count;
+  logic [31:0] dark_pixels;
+  logic [31:0] depth_dropped;
+  logic [31:0] records_lost;
   logic [31:0] last_latency;
 
   // A register after this write: its bytes without strobe stay.
@@ -169,10 +195,11 @@ module axil_registers
   always_comb begin
     case (write_offset)
       ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableSelectOffset, TableIndexOffset,
-      TableHighOffset, TableCommitOffset:
+      TableHighOffset, TableCommitOffset, DarkLevelOffset, OffThresholdOffset, MinimumAreaOffset, DebounceOffset:
         write_refused = 1'b0;
       TableLowOffset:
-        write_refused = !inside_table || write_strobe != 4'b1111 || pending_of[table_select];
+        write_refused = !inside_table || write_strobe != 4'b1111 || closed_of[table_select];
+      CaptureOffset: write_refused = write_ones[CaptureStartBit] && !Present[TableCommitReferenceBit];
       default: write_refused = 1'b1;
     endcase
   end
@@ -184,6 +211,8 @@ module axil_registers
     | (32'(event_start_early) << StatusStartEarlyBit)
     | (32'(event_timeout) << StatusTimeoutBit)
     | (32'(event_out_of_step) << StatusOutOfStepBit)
+    | (32'(event_dark) << StatusDarkBit)
+    | (32'(event_depth_dropped) << StatusDepthDroppedBit)
     | (32'(saturations != 8'd0) << StatusSaturationBit);
   assign status_cleared = (write_taken && write_offset == StatusOffset) ? write_ones : 32'd0;
   assign counters_cleared =
@@ -207,8 +236,11 @@ module axil_registers
   assign changes = frame_start && !rst;
   assign table_bank = bank ^ (requested & {Tables{changes}});
   assign pending = requested | ((bank ^ table_in_use) & Present);
-  assign pending_of = (1 << SelectWidth)'(pending);
+  assign captured = (Tables'(capture_done) << TableCommitReferenceBit) & Present;
+  assign closed = pending | (Tables'(capture_busy) << TableCommitReferenceBit);
+  assign closed_of = (1 << SelectWidth)'(closed);
   assign commits = (write_taken && write_offset == TableCommitOffset) ? write_ones[Tables-1:0] : '0;
+  assign capture_request = write_taken && write_offset == CaptureOffset && write_ones[CaptureStartBit] && !rst;
 
   always_ff @(posedge clk) begin
     // Write channels.
@@ -234,8 +266,9 @@ module axil_registers
     // Registers that are written.
     if (write_taken) begin
       case (write_offset)
-        ControlOffset: if (write_mask[ControlHoldContactBit]) begin
-          hold_contact <= write_data[ControlHoldContactBit];
+        ControlOffset: begin
+          if (write_mask[ControlHoldContactBit]) hold_contact <= write_data[ControlHoldContactBit];
+          if (write_mask[ControlDropFramesBit]) drop_frames <= write_data[ControlDropFramesBit];
         end
         ThresholdOffset: threshold <= $signed(merged(threshold));
         TimeoutOffset: timeout <= merged(timeout);
@@ -243,6 +276,13 @@ module axil_registers
         TableSelectOffset:
           table_select <= SelectWidth'(merged(32'(table_select) << TableSelectSelectLsb) >> TableSelectSelectLsb);
         TableHighOffset: table_high <= merged(table_high);
+        DarkLevelOffset: dark_level <= 8'(merged(32'(dark_level)));
+        CaptureOffset:
+          capture_log2_frames <=
+              4'(merged(32'(capture_log2_frames) << CaptureLog2FramesLsb) >> CaptureLog2FramesLsb);
+        OffThresholdOffset: off_threshold <= $signed(merged(off_threshold));
+        MinimumAreaOffset: minimum_area <= merged(minimum_area);
+        DebounceOffset: debounce <= 8'(merged(32'(debounce)));
         default: ;
       endcase
     end
@@ -251,7 +291,7 @@ module axil_registers
     end
 
     // Banks.
-    requested <= (requested & {Tables{!frame_start}}) | (commits & Present & ~pending);
+    requested <= (requested & {Tables{!frame_start}}) | (commits & Present & ~closed) | captured;
     if (changes) bank <= table_bank;
 
     // Registers that the pipeline writes.
@@ -260,6 +300,9 @@ module axil_registers
     frames_out <= counted(frames_out, 8'(event_frame_out));
     frames_dropped <= counted(frames_dropped, 8'(event_frame_dropped));
     saturations_count <= counted(saturations_count, saturations);
+    dark_pixels <= counted(dark_pixels, 8'(event_dark));
+    depth_dropped <= counted(depth_dropped, 8'(event_depth_dropped));
+    records_lost <= counted(records_lost, 8'(event_record_lost));
     if (first_depth_latency_valid) last_latency <= first_depth_latency;
 
     // Read channels.
@@ -278,10 +321,13 @@ module axil_registers
         IdOffset: s_axil_rdata <= IdReset;
         GridOffset: s_axil_rdata <= GridWord;
         FormatOffset: s_axil_rdata <= FormatWord;
-        ControlOffset: s_axil_rdata <= 32'(hold_contact) << ControlHoldContactBit;
+        ControlOffset:
+          s_axil_rdata <=
+              (32'(hold_contact) << ControlHoldContactBit) | (32'(drop_frames) << ControlDropFramesBit);
         StatusOffset:
           s_axil_rdata <=
-              status | (32'(busy) << StatusBusyBit) | (32'(contact) << StatusContactBit);
+              status | (32'(busy) << StatusBusyBit) | (32'(contact) << StatusContactBit)
+              | (32'(touching) << StatusTouchingBit);
         ThresholdOffset: s_axil_rdata <= threshold;
         TimeoutOffset: s_axil_rdata <= timeout;
         FramesInOffset: s_axil_rdata <= frames_in;
@@ -298,6 +344,29 @@ module axil_registers
         end
         TableCommitOffset: s_axil_rdata <= 32'(pending);
         TableSizeOffset: s_axil_rdata <= table_size;
+        DarkLevelOffset: s_axil_rdata <= 32'(dark_level);
+        CaptureOffset:
+          s_axil_rdata <=
+              (32'(capture_log2_frames) << CaptureLog2FramesLsb) | (32'(capture_busy) << CaptureBusyBit);
+        DarkPixelsOffset: s_axil_rdata <= dark_pixels;
+        DepthDroppedOffset: s_axil_rdata <= depth_dropped;
+        RecordsLostOffset: s_axil_rdata <= records_lost;
+        OffThresholdOffset: s_axil_rdata <= off_threshold;
+        MinimumAreaOffset: s_axil_rdata <= minimum_area;
+        DebounceOffset: s_axil_rdata <= 32'(debounce);
+        RecordEventOffset: s_axil_rdata <= record[32*0+:32];
+        RecordFrameOffset: s_axil_rdata <= record[32*1+:32];
+        RecordTimeOffset: s_axil_rdata <= record[32*2+:32];
+        RecordAreaOffset: s_axil_rdata <= record[32*3+:32];
+        RecordPeakOffset: s_axil_rdata <= record[32*4+:32];
+        RecordPeakPlaceOffset: s_axil_rdata <= record[32*5+:32];
+        RecordLeastOffset: s_axil_rdata <= record[32*6+:32];
+        RecordGreatestOffset: s_axil_rdata <= record[32*7+:32];
+        RecordSumColumnsOffset: s_axil_rdata <= record[32*8+:32];
+        RecordSumRowsOffset: s_axil_rdata <= record[32*9+:32];
+        RecordVolumeLowOffset: s_axil_rdata <= record[32*10+:32];
+        RecordVolumeHighOffset: s_axil_rdata <= record[32*11+:32];
+        RecordCentroidOffset: s_axil_rdata <= record[32*12+:32];
         default: begin
           s_axil_rdata <= 32'd0;
           s_axil_rresp <= SlaveError;
@@ -311,7 +380,13 @@ module axil_registers
       s_axil_bvalid <= 1'b0;
       s_axil_rvalid <= 1'b0;
       hold_contact <= 1'b0;
+      drop_frames <= 1'b0;
       threshold <= ThresholdReset;
+      off_threshold <= OffThresholdReset;
+      minimum_area <= MinimumAreaReset;
+      debounce <= 8'(DebounceReset);
+      dark_level <= 8'd0;
+      capture_log2_frames <= 4'd0;
       timeout <= 32'd0;
       table_select <= '0;
       table_index <= '0;
@@ -323,6 +398,9 @@ module axil_registers
       frames_out <= 32'd0;
       frames_dropped <= 32'd0;
       saturations_count <= 32'd0;
+      dark_pixels <= 32'd0;
+      depth_dropped <= 32'd0;
+      records_lost <= 32'd0;
       last_latency <= 32'd0;
     end
   end

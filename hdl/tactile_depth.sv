@@ -130,6 +130,7 @@ module tactile_depth
   // Colours, relative to the reference if there is one, and their slopes.
 
   localparam int Tables = TableSelectSelectCount;
+  localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1;
   localparam int GradientWords = Quadratic != 0 ? 0 : 1 << (3 * BitsPerChannel);
   localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0;
   localparam int ReferenceWords = FlatField != 0 ? 4 * (Rows >> BlockLog2) * (Size >> BlockLog2) : 0;
@@ -355,8 +356,8 @@ module tactile_depth
 
   axil_registers #(
     .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
-    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
-    .GradientWords(GradientWords), .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords)
+    .GradientFraction(GradientFraction), .BitsPerChannel(Quadratic != 0 ? 0 : BitsPerChannel),
+    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords)
   ) u_registers (
     .clk, .rst,
     .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,

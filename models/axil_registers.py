@@ -20,10 +20,20 @@ BY_OFFSET = {register.offset: register for register in REGISTERS.values()}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")
 STATUS = REGISTERS["STATUS"]
 CONTROL = REGISTERS["CONTROL"]
+CAPTURE = REGISTERS["CAPTURE"]
+RECORD = tuple(name for name in REGISTERS if name.startswith("RECORD_"))  # by word
 STICKY_EVENTS = tuple(f.name for f in STATUS.fields if f.access == "w1c" and f.name != "saturation")
-FRAME_COUNTERS = {"frame_in": "FRAMES_IN", "frame_out": "FRAMES_OUT", "frame_dropped": "FRAMES_DROPPED"}
+EVENT_COUNTERS = {
+    "frame_in": "FRAMES_IN",
+    "frame_out": "FRAMES_OUT",
+    "frame_dropped": "FRAMES_DROPPED",
+    "dark": "DARK_PIXELS",
+    "depth_dropped": "DEPTH_DROPPED",
+    "record_lost": "RECORDS_LOST",
+}
 SATURATIONS = "SATURATIONS"
-COUNTERS = (*FRAME_COUNTERS.values(), SATURATIONS)
+COUNTERS = (*EVENT_COUNTERS.values(), SATURATIONS)
+REFERENCE_BIT = REGISTERS["TABLE_COMMIT"].field("reference").mask
 
 
 class Response(IntEnum):
@@ -49,7 +59,7 @@ class Build:
     @property
     def table_sizes(self) -> dict[int, int]:
         """Entries of each table that TABLE_SELECT can name; 0: the build has none."""
-        gradient_words = 1 << 3 * self.bits_per_channel
+        gradient_words = 1 << 3 * self.bits_per_channel if self.bits_per_channel else 0
         sizes = {"gradient": gradient_words, "coefficients": self.coefficient_words, "reference": self.reference_words}
         return {code: sizes[name] for name, code in TABLES.items()}
 
@@ -66,28 +76,35 @@ class Events:
     Attributes
     ----------
     flags : frozenset of str
-        Names of `STICKY_EVENTS` and keys of `FRAME_COUNTERS`.
+        Names of `STICKY_EVENTS` and keys of `EVENT_COUNTERS`; some are both.
     saturations : int
         Values clipped.
     first_depth_latency : int or None
         Reported by the frame whose first depth value leaves.
     frame_start : bool
         The first pixel of a frame is at the head of the pipeline.
+    capture_done : bool
+        The reference has been captured: its table asks to be changed over to.
     """
 
     flags: frozenset[str] = frozenset()
     saturations: int = 0
     first_depth_latency: int | None = None
     frame_start: bool = False
+    capture_done: bool = False
 
 
 @dataclass(frozen=True)
 class Live:
-    """Inputs that a read or a write of this clock sees; `in_use`: the bank of each table, bit by bit."""
+    """Inputs that a read or a write of this clock sees; `in_use`: the bank of each table, bit by bit; `record`: its
+    words."""
 
     busy: bool = False
     contact: bool = False
     in_use: int = 0
+    touching: bool = False
+    capture_busy: bool = False
+    record: tuple[int, ...] = (0,) * len(RECORD)
 
 
 def signed(word: int, width: int) -> int:
@@ -113,6 +130,8 @@ class AxilRegisters:
         Bit by bit, the bank that each table shall use, and the tables that change over with the next frame.
     table_writes : list of (table, index, high, low)
         Every entry written since the start.
+    captures : int
+        Captures of the reference asked for since the start.
     entry : callable
         The words (high, low) of an entry that is read, by table and index.
     """
@@ -123,6 +142,7 @@ class AxilRegisters:
     bank: int = 0
     requested: int = 0
     table_writes: list[tuple[int, int, int, int]] = field(default_factory=list)
+    captures: int = 0
     _committed: int = 0
 
     def __post_init__(self) -> None:
@@ -142,6 +162,11 @@ class AxilRegisters:
         )
 
     @property
+    def present(self) -> int:
+        """Bit by bit, the tables that the build has."""
+        return sum(1 << table for table, size in self.build.table_sizes.items() if size)
+
+    @property
     def table(self) -> int:
         """The table selected."""
         return self.values["TABLE_SELECT"] >> SELECT.low & (1 << SELECT.width) - 1
@@ -152,8 +177,11 @@ class AxilRegisters:
 
     def pending(self, in_use: int) -> int:
         """TABLE_COMMIT: tables that have not changed over, or will with the next frame."""
-        present = sum(1 << table for table, size in self.build.table_sizes.items() if size)
-        return self.requested | (self.bank ^ in_use) & present
+        return self.requested | (self.bank ^ in_use) & self.present
+
+    def closed(self, live: Live) -> int:
+        """Tables that the bus neither writes nor commits now."""
+        return self.pending(live.in_use) | REFERENCE_BIT * live.capture_busy
 
     def bank_wanted(self, frame_start: bool) -> int:
         """The bank that each table shall use in a clock in which a frame starts, or does not."""
@@ -181,8 +209,9 @@ class AxilRegisters:
                 return high, Response.OKAY
             self._next_entry()
             return low, Response.OKAY
-        shown = {
-            "STATUS": STATUS.pack(busy=int(live.busy), contact=int(live.contact)),
+        shown = dict(zip(RECORD, live.record, strict=True)) | {
+            "STATUS": STATUS.pack(busy=int(live.busy), contact=int(live.contact), touching=int(live.touching)),
+            "CAPTURE": CAPTURE.pack(busy=int(live.capture_busy)),
             "TABLE_COMMIT": self.pending(live.in_use),
             "TABLE_SIZE": self.table_size,
         }
@@ -196,17 +225,19 @@ class AxilRegisters:
         values, name = self.values, register.name
         strobed = data & strobed_bits(strobe)
         merged = strobed | values[name] & ~strobed_bits(strobe)
-        pending = self.pending(live.in_use)
+        closed = self.closed(live)
+        if register is CAPTURE and strobed & CAPTURE.field("start").mask:
+            if not self.present & REFERENCE_BIT:
+                return Response.SLVERR
+            self.captures += 1
         if name == "TABLE_LOW":
             index, table = values["TABLE_INDEX"], self.table
-            if index >= self.table_size or strobe != (1 << BYTES) - 1 or pending >> table & 1:
+            if index >= self.table_size or strobe != (1 << BYTES) - 1 or closed >> table & 1:
                 return Response.SLVERR
             self.table_writes.append((table, index, values["TABLE_HIGH"], data))
             self._next_entry()
         elif name == "TABLE_COMMIT":
-            for table, size in self.build.table_sizes.items():
-                if size:
-                    self._committed |= strobed & ~pending & 1 << table
+            self._committed |= strobed & self.present & ~closed
         elif name == "TABLE_INDEX":
             values[name] = merged & (1 << self.build.index_width) - 1
         else:
@@ -223,11 +254,12 @@ class AxilRegisters:
             self.bank ^= self.requested
             self.requested = 0
         self.requested |= self._committed  # not by the frame that starts in this clock
+        self.requested |= REFERENCE_BIT * events.capture_done & self.present
         self._committed = 0
         for name in STICKY_EVENTS:
             values["STATUS"] |= STATUS.pack(**{name: int(name in events.flags)})
         values["STATUS"] |= STATUS.pack(saturation=int(events.saturations > 0))
-        counts = {name: int(flag in events.flags) for flag, name in FRAME_COUNTERS.items()}
+        counts = {name: int(flag in events.flags) for flag, name in EVENT_COUNTERS.items()}
         for name, count in {**counts, SATURATIONS: events.saturations}.items():
             values[name] = min(values[name] + count, WORD)
         if events.first_depth_latency is not None:

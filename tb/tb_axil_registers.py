@@ -16,7 +16,9 @@ from cocotb_bus.drivers.amba import AXI4LiteMaster, AXIProtocolError
 from models.axil_registers import (
     BYTES,
     COUNTERS,
-    FRAME_COUNTERS,
+    EVENT_COUNTERS,
+    RECORD,
+    REFERENCE_BIT,
     STICKY_EVENTS,
     WORD,
     AxilRegisters,
@@ -28,17 +30,20 @@ from models.axil_registers import (
 )
 from models.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES
 
-FLAGS = (*STICKY_EVENTS, *FRAME_COUNTERS)
+FLAGS = tuple(dict.fromkeys((*STICKY_EVENTS, *EVENT_COUNTERS)))  # some are both
+LEVELS = ("busy", "contact", "touching")  # live bits of STATUS, and inputs
 INPUTS = (
     *(f"event_{flag}" for flag in FLAGS),
-    *("saturations", "first_depth_latency", "first_depth_latency_valid", "busy", "contact", "frame_start"),
+    *("saturations", "first_depth_latency", "first_depth_latency_valid", *LEVELS, "record", "frame_start"),
+    *("capture_busy", "capture_done"),
     *("table_read_high", "table_read_low", "table_in_use"),
     *(f"s_axil_{pin}" for pin in ("awaddr", "awvalid", "wdata", "wstrb", "wvalid", "bready")),
     *(f"s_axil_{pin}" for pin in ("araddr", "arvalid", "rready")),
 )
 OFFSET = {register.name: register.offset for register in MAP}
-STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
-COUNTER_SIGNALS = dict(zip(COUNTERS, ("frames_in", "frames_out", "frames_dropped", "saturations_count"), strict=True))
+STATUS, CONTROL, CAPTURE = REGISTERS["STATUS"], REGISTERS["CONTROL"], REGISTERS["CAPTURE"]
+COUNTER_SIGNALS = {name: name.lower() for name in COUNTERS} | {"SATURATIONS": "saturations_count"}
+HELD = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE", "TIMEOUT", "DARK_LEVEL")  # as outputs
 RANDOM_CLOCKS = 10_000
 TABLE_CLOCKS = 4  # from the one in which an entry is asked for to that which takes its words, both counted
 
@@ -105,16 +110,23 @@ class Checker:
         if self.read is not None and self.asked is None:
             self.expect("s_axil_rdata", self.read[0])
             self.expect("s_axil_rresp", self.read[1])
-        self.expect("threshold", values["THRESHOLD"])
-        self.expect("timeout", values["TIMEOUT"])
-        self.expect("hold_contact", CONTROL.unpack(values["CONTROL"])["hold_contact"])
+        for name in HELD:
+            self.expect(name.lower(), values[name])
+        for name in ("hold_contact", "drop_frames"):
+            self.expect(name, CONTROL.unpack(values["CONTROL"])[name])
+        self.expect("capture_log2_frames", CAPTURE.unpack(values["CAPTURE"])["log2_frames"])
         self.expect("table_select", model.table)
         self.expect("table_index", values["TABLE_INDEX"])
         self.expect("table_high", values["TABLE_HIGH"])
         starts = bool(self.pin("frame_start"))
         self.expect("table_bank", model.bank_wanted(starts and not resets))
 
-        live = Live(bool(self.pin("busy")), bool(self.pin("contact")), self.pin("table_in_use"))
+        record = self.pin("record")
+        live = Live(
+            **{name: bool(self.pin(name)) for name in (*LEVELS, "capture_busy")},
+            in_use=self.pin("table_in_use"),
+            record=tuple(record >> 32 * word & WORD for word in range(len(RECORD))),
+        )
         asked_before = self.asked
         table_read = False
         if self.asked is not None:
@@ -134,7 +146,7 @@ class Checker:
         elif self.fires("r"):
             self.read = None
         self.expect("table_read", table_read and not resets)
-        writes = len(model.table_writes)
+        writes, captures = len(model.table_writes), model.captures
         if self.fires("b"):
             self.address = self.data = self.written = None
         elif (
@@ -149,6 +161,7 @@ class Checker:
             self.address = self.bus("awaddr")
         if self.fires("w"):
             self.data = self.bus("wdata"), self.bus("wstrb")
+        self.expect("capture_request", model.captures - captures)
         self.expect("table_write", len(model.table_writes) - writes)
         if len(model.table_writes) > writes:
             table, index, high, low = model.table_writes[-1]
@@ -164,6 +177,7 @@ class Checker:
                     self.pin("first_depth_latency") if self.pin("first_depth_latency_valid") else None
                 ),
                 frame_start=starts and not resets,
+                capture_done=bool(self.pin("capture_done")),
             )
         )
         if resets:
@@ -326,6 +340,7 @@ async def access(dut, register) -> None:
     async with checked(dut) as checker:
         register, build = REGISTERS[register], checker.build
         everything = STATUS.mask("w1c")
+        reference = tables_present(build) & REFERENCE_BIT
         held = register.mask("rw")
         if register.name == "TABLE_INDEX":
             held = (1 << build.index_width) - 1
@@ -341,8 +356,12 @@ async def access(dut, register) -> None:
         words = [(WORD, 0), (WORD, 0xF), (0, 0xF), (WORD, 0xF), *single_bits]
         for word, strobe in [*words, *((rng.getrandbits(32), strobe) for strobe in range(1 << BYTES))]:
             old = await value(dut, register.name)
-            assert await write(dut, register.offset, word, strobe) == Response.OKAY
             strobed = strobed_bits(strobe)
+            if register is CAPTURE and word & strobed & CAPTURE.field("start").mask and not reference:
+                assert await write(dut, register.offset, word, strobe) == Response.SLVERR
+                assert await value(dut, register.name) == old
+                continue
+            assert await write(dut, register.offset, word, strobe) == Response.OKAY
             want = {
                 "ro": old & register.mask("ro"),
                 "rw": (word & strobed | old & ~strobed) & held,
@@ -367,8 +386,9 @@ async def outputs(dut) -> None:
     """What the pipeline gets of the registers, through the bus master."""
     async with checked(dut):
         master = master_of(dut)
-        await master.write(OFFSET["THRESHOLD"], -5 & WORD)
-        assert dut.threshold.value.to_signed() == -5
+        for name in ("THRESHOLD", "OFF_THRESHOLD"):
+            await master.write(OFFSET[name], -5 & WORD)
+            assert getattr(dut, name.lower()).value.to_signed() == -5
         await master.write(OFFSET["TIMEOUT"], 0x4433_2211)
         assert int(await master.read(OFFSET["TIMEOUT"])) == int(dut.timeout.value) == 0x4433_2211
 
@@ -649,9 +669,9 @@ async def sticky_bits(dut) -> None:
             assert await value(dut, "STATUS") == STATUS.pack(**{name: 1}), f"{name} was cleared unstrobed"
             await write(dut, STATUS.offset, STATUS.field(name).mask)
             assert await value(dut, "STATUS") == 0, name
-        await pulse(dut, **{f"event_{flag}": 1 for flag in FRAME_COUNTERS})
+        await pulse(dut, **{f"event_{flag}": 1 for flag in EVENT_COUNTERS if flag not in STICKY_EVENTS})
         assert await value(dut, "STATUS") == 0
-        for name in ("busy", "contact"):
+        for name in LEVELS:
             getattr(dut, name).value = 1
             assert await value(dut, "STATUS") == STATUS.pack(**{name: 1})
             await write(dut, STATUS.offset, WORD)
@@ -688,7 +708,7 @@ async def setting_wins_over_clearing(dut, register) -> None:
 async def counters(dut) -> None:
     """Each counts its own event, stays at all ones, and is cleared."""
     async with checked(dut) as checker:
-        sources = {name: {f"event_{flag}": 1} for flag, name in FRAME_COUNTERS.items()}
+        sources = {name: {f"event_{flag}": 1} for flag, name in EVENT_COUNTERS.items()}
         sources["SATURATIONS"] = {"saturations": 255}
         for name, inputs in sources.items():
             step = max(inputs.values())
@@ -727,18 +747,89 @@ async def each_address_reads_its_own(dut) -> None:
     async with checked(dut) as checker:
         rng = random.Random(cocotb.RANDOM_SEED)
         for _ in range(4):
-            for name in ("THRESHOLD", "TIMEOUT", "TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "CONTROL"):
+            for name in (*HELD, "TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "CONTROL"):
                 await write(dut, OFFSET[name], rng.getrandbits(32) & ~CONTROL.pack(clear_counters=1))
+            await write(dut, CAPTURE.offset, CAPTURE.pack(log2_frames=rng.getrandbits(4)))
             await pulse(dut, first_depth_latency=rng.getrandbits(32), first_depth_latency_valid=1)
             for name, signal in COUNTER_SIGNALS.items():
                 checker.model.values[name] = rng.getrandbits(32)
                 getattr(dut, signal).value = checker.model.values[name]
             await pulse(dut, **{f"event_{flag}": rng.getrandbits(1) for flag in STICKY_EVENTS}, saturations=1)
-            dut.busy.value, dut.contact.value = rng.getrandbits(1), rng.getrandbits(1)
+            for name in (*LEVELS, "capture_busy"):
+                getattr(dut, name).value = rng.getrandbits(1)
+            dut.record.value = rng.getrandbits(32 * len(RECORD))
             await write(dut, OFFSET["TABLE_COMMIT"], rng.getrandbits(3))
             for address in range(0, 1 << ADDRESS_WIDTH, 4):
                 await read(dut, address)  # compared by the checker
-            dut.busy.value, dut.contact.value = 0, 0
+            for name in (*LEVELS, "capture_busy"):
+                getattr(dut, name).value = 0
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def records(dut) -> None:
+    """Each word of the record is read as it stands in that clock, and at its own address."""
+    async with checked(dut):
+        rng = random.Random(cocotb.RANDOM_SEED)
+        for _ in range(3):
+            words = [rng.getrandbits(32) for _ in RECORD]
+            dut.record.value = sum(word << 32 * n for n, word in enumerate(words))
+            assert [await value(dut, name) for name in RECORD] == words
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def capture(dut) -> None:
+    """A start goes out once; while the capture is busy its table is closed, and its end asks for the change-over."""
+    async with checked(dut) as checker:
+        model, table = checker.model, TABLES["reference"]
+        start = CAPTURE.pack(start=1, log2_frames=5)
+        if not checker.build.table_sizes[table]:
+            assert await write(dut, CAPTURE.offset, start) == Response.SLVERR
+            assert await value(dut, "CAPTURE") == 0
+            assert await write(dut, CAPTURE.offset, start, strobe=0b1101) == Response.OKAY
+            assert await value(dut, "CAPTURE") == CAPTURE.pack(log2_frames=5)
+            await pulse(dut, capture_done=1)
+            assert await value(dut, "TABLE_COMMIT") == 0
+            assert not model.captures
+            return
+
+        assert await write(dut, CAPTURE.offset, start) == Response.OKAY
+        assert (model.captures, await value(dut, "CAPTURE")) == (1, CAPTURE.pack(log2_frames=5))
+        assert await write(dut, CAPTURE.offset, WORD, strobe=0b1101) == Response.OKAY
+        assert await write(dut, CAPTURE.offset, WORD & ~CAPTURE.field("start").mask) == Response.OKAY
+        assert model.captures == 1
+        dut.capture_busy.value = 1
+        assert await value(dut, "CAPTURE") == CAPTURE.pack(log2_frames=15, busy=1)
+        assert await write(dut, CAPTURE.offset, start) == Response.OKAY  # afresh
+        assert model.captures == 2
+        for other, size in checker.build.table_sizes.items():
+            await choose(dut, other, 0)
+            refused = other == table or not size
+            assert await write(dut, OFFSET["TABLE_LOW"], 1) == (Response.SLVERR if refused else Response.OKAY)
+        await write(dut, OFFSET["TABLE_COMMIT"], WORD)
+        assert await value(dut, "TABLE_COMMIT") == tables_present(checker.build) & ~REFERENCE_BIT
+        bank = int(dut.table_bank.value)
+        await pulse(dut, frame_start=1)
+        await ClockCycles(dut.clk, 2)
+        assert (int(dut.table_bank.value) ^ bank) & REFERENCE_BIT == 0
+        assert await value(dut, "TABLE_COMMIT") == 0
+
+        # A frame that starts with the end of the capture still uses the table before.
+        for together in (True, False):
+            bank = int(dut.table_bank.value)
+            dut.capture_done.value, dut.frame_start.value = 1, together
+            await RisingEdge(dut.clk)
+            dut.capture_busy.value = dut.capture_done.value = dut.frame_start.value = 0
+            assert await value(dut, "TABLE_COMMIT") == REFERENCE_BIT
+            assert int(dut.table_bank.value) == bank
+            await choose(dut, TABLES["gradient"], 0)
+            assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.OKAY
+            await choose(dut, table, 0)
+            assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.SLVERR
+            await pulse(dut, frame_start=1)
+            await ClockCycles(dut.clk, 2)
+            assert int(dut.table_bank.value) == bank ^ REFERENCE_BIT
+            assert await value(dut, "TABLE_COMMIT") == 0
+            assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.OKAY
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
@@ -786,6 +877,9 @@ async def random_traffic(dut, pressure) -> None:
             dut.frame_start.value = since_start == 0
             if rng.random() < 0.1:
                 dut.busy.value, dut.contact.value = rng.random() < 0.3, rng.random() < 0.5
+                dut.touching.value, dut.capture_busy.value = rng.random() < 0.5, rng.random() < 0.5
+                dut.record.value = rng.getrandbits(32 * len(RECORD))
+            dut.capture_done.value = rng.random() < 0.02
             dut.s_axil_bready.value = rng.random() >= pressure
             dut.s_axil_rready.value = rng.random() >= pressure
             await RisingEdge(dut.clk)
