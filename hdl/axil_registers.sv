@@ -413,7 +413,7 @@ module axil_registers
     if (Rows < 1 || Rows > 65535) $fatal(1, "%m: Rows does not fit GRID");
     if (Columns < 1 || Columns > 65535) $fatal(1, "%m: Columns does not fit GRID");
     if (GradientWidth < 2 || GradientWidth > 32) $fatal(1, "%m: GradientWidth must be 2 to 32");
-    if (BitsPerChannel < 1 || BitsPerChannel > 8) $fatal(1, "%m: BitsPerChannel must be 1 to 8");
+    if (BitsPerChannel < 0 || BitsPerChannel > 8) $fatal(1, "%m: BitsPerChannel must be 0 to 8");
   end
 `endif
 
