@@ -88,6 +88,20 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
+async def captured(dut):
+    """All nodes at once, into both banks; the bus reads the same; entries left over from before stay."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    for _ in range(2):
+        await device.gains.capture(random_gains(device.config, device.bench.random))
+        for index in range(0, 4 * device.gains.banks[0][..., 0].size, 5):
+            await device.gains.read(index)
+        device.gains.due = True
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut):
     """In mid-frame: gains and banks stay; a change-over that is due is made; the next frame is right."""
     device = Map(dut, 0.0, 0.0)
