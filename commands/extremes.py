@@ -288,6 +288,7 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
 
 
 BIAS = 5.0  # standard errors that a mean error may be from zero
+FEWEST = 32  # random blocks: a standard error from three says nothing
 DRIFT = 0.05  # by which the mean error of the first half of a run may differ from that of the second
 
 
@@ -403,12 +404,12 @@ def _blocks(
 
 
 def compliance(config: Configuration, count: int) -> list[Compliance]:
-    """Every transform core of a spectral configuration, over `count` random blocks (2-D: a 32nd of them)."""
+    """Every transform core of a spectral configuration, over `count` random blocks (2-D: a 32nd, at least `FEWEST`)."""
     rows = []
     for core, (fixed, exact, dimensions) in transforms(config).items():
         size = config.columns
         zero = not np.any(fixed(np.zeros((1, *(size,) * dimensions), np.int64), Monitor()))
-        drawn = count if dimensions == 1 else max(2, count // 32)
+        drawn = count if dimensions == 1 else max(FEWEST, count // 32)
         for name, amplitude, blocks in _blocks(core, size, dimensions, config, drawn):
             monitor = Monitor()
             error = fixed(blocks, monitor) - exact(blocks.astype(float))

@@ -27,7 +27,7 @@ from tqdm import tqdm
 
 from commands import equivalence, mutants, protocols
 from commands import simulator as simulation
-from commands.equivalence import EQUIVALENT, Protocol, settle
+from commands.equivalence import EQUIVALENT, Protocol, Spans, settle
 from models.errors import InputError
 
 OUT = simulation.ROOT / "build" / "mutate"
@@ -68,7 +68,7 @@ CORES = {
     "burst_counter": Core(protocols.burst_counter, (1,)),
     "axis_skid": Core(protocols.axis_skid),
     "threshold_comparator": Core(protocols.threshold_comparator),
-    "frame_guard": Core(protocols.frame_guard, outside=("silence",)),
+    "frame_guard": Core(protocols.frame_guard, (2,), outside=("silence",)),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
     "gain_map": Core(protocols.gain_map),
     "flat_field": Core(protocols.flat_field, (0, 1)),
@@ -76,8 +76,8 @@ CORES = {
     "thomas_table": Core(protocols.thomas_table),
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
     "divergence": Core(protocols.divergence, (5,)),
-    "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (4,)),
-    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
+    "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (5,)),
+    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (4,)),
     "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (1,)),
     "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
     "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
@@ -187,10 +187,12 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         outcome.mutants += len(made)
         outcome.killed += len(killed)
         graph = equivalence.graph(name, folder, core.protocol(structure.parameters))
+        spans = Spans(graph)
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:
             verdicts = pool.imap(
-                lambda number, graph=graph, folder=folder: settle(graph, number, folder, seconds), numbers
+                lambda number, graph=graph, spans=spans, folder=folder: settle(graph, spans, number, folder, seconds),
+                numbers,
             )
             shown = tqdm(verdicts, f"{name}, survivors", len(numbers), leave=False, disable=None)
             for number, (verdict, how) in zip(numbers, shown, strict=True):
@@ -198,7 +200,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
                 outcome.survivors.append(survivor)
         for number in sorted(killed)[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
-            if settle(graph, number, folder, 1)[0] == EQUIVALENT:
+            if settle(graph, spans, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
                 outcome.survivors.append(survivor | {"how": "killed, yet proven equivalent"})
