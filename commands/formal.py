@@ -241,13 +241,23 @@ PROOFS: tuple[Proof, ...] = (
             roms=gain_rom(2),
             free="gains",
         )
-        for offset, width, flat in ((0, 1, 1), (1, 2, 0))
+        for offset, width, flat in ((0, 1, 1), (2, 2, 0))
     ),
-    Proof(
-        "reference_capture",
-        "2^k good frames in a row behind a request; sums of an arbitrary node; done a fixed number of clocks later",
-        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
-        depth=60,
+    *(
+        Proof(
+            "reference_capture",
+            claim,
+            "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+            {"Sums": sums},
+            depth=60,
+        )
+        for sums, claim in (
+            (
+                0,
+                "2^k good frames in a row behind a request, done a fixed number of clocks later; memory as ram.sv asks",
+            ),
+            (1, "an arbitrary pixel is added once to its node, and to no other"),
+        )
     ),
     *(
         Proof(
