@@ -236,7 +236,7 @@ PROOFS: tuple[Proof, ...] = (
             "flat_field",
             "a colour times its gain, whatever that is, rounded, saturated; dark pixels held and counted; latency 12",
             f"products are exact at any width; {ROUNDING}",
-            {"Drop": 2, "Offset": offset, "OutWidth": width, "Flat": flat},
+            {"GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
             depth=45,
             roms=gain_rom(2),
             free="gains",
