@@ -271,18 +271,28 @@ PROOFS: tuple[Proof, ...] = (
             "flat_field",
             "a colour times its gain, whatever that is, rounded, saturated; dark pixels held and counted; latency 12",
             f"products are exact at any width; {ROUNDING}",
-            {"Drop": 2, "Offset": offset, "OutWidth": width, "Flat": flat},
+            {"GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
             depth=45,
             roms=gain_rom(2),
             free="gains",
         )
-        for offset, width, flat in ((0, 1, 1), (1, 2, 0))
+        for offset, width, flat in ((0, 1, 1), (2, 2, 0))
     ),
-    Proof(
-        "reference_capture",
-        "2^k good frames in a row behind a request; sums of an arbitrary node; done a fixed number of clocks later",
-        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
-        depth=60,
+    *(
+        Proof(
+            "reference_capture",
+            claim,
+            "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+            {"Sums": sums},
+            depth=60,
+        )
+        for sums, claim in (
+            (
+                0,
+                "2^k good frames in a row behind a request, done a fixed number of clocks later; memory as ram.sv asks",
+            ),
+            (1, "an arbitrary pixel is added once to its node, and to no other"),
+        )
     ),
     *(
         Proof(

@@ -75,7 +75,7 @@ CORES = {
     "quadratic_gradient": Core(protocols.quadratic_gradient, (1,)),
     "gain_map": Core(protocols.gain_map),
     "flat_field": Core(protocols.flat_field, (0, 1)),
-    "reference_capture": Core(protocols.reference_capture, (2,)),
+    "reference_capture": Core(protocols.reference_capture, (1,)),
     "thomas_table": Core(protocols.thomas_table),
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
     "divergence": Core(protocols.divergence, (5,)),

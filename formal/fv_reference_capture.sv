@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_reference_capture: a capture begins with the first whole frame behind a request, takes 2^k good frames in a row,
 // and is done a fixed number of clocks behind the last of them; no node is read before it was written, or in the clock
-// that writes it, and nothing is written while idle; before the division an arbitrary node holds the sum of its pixels.
+// that writes it, and nothing is written while idle. In a second part (Sums 1): an arbitrary pixel of a capture, the only
+// one that is not black, is added once to its node and to no other; what does nothing but add does so to all.
 //
-// One colour is looked at, and of it pixels 0 and 1 (sums of any pixels are exact; the quotients are left to
-// simulation). Assumed: places in raster order.
+// Of the three colours, red; the quotients are left to simulation. Assumed: places in raster order.
 
 module fv_reference_capture #(
   parameter int Rows    = 3,
   parameter int Columns = 4,
   parameter int MaxLog2 = 1,
+  parameter int Sums    = 0,
   localparam int Width = 8 + 2 + MaxLog2,
   localparam int Nodes = (Rows / 2) * (Columns / 2),
   localparam int NodeWidth = $clog2(Nodes)
@@ -49,16 +50,12 @@ module fv_reference_capture #(
   logic [3:0] row, column;
   raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
   logic started = 1'b0;
-  always_comb begin
-    if (!started) assume (rst);
-    assume ((in_pixel & ~24'h010000) == '0);
-  end
-
   typedef enum logic [1:0] {Idle, Armed, Summing, Dividing} state_e;
   state_e state;
   logic [NodeWidth-1:0] watched;  // chosen in the first clock, then constant
   logic [MaxLog2:0] wanted, wanted_next;
-  logic [3:0] sum, held_sum;  // of the watched node in the frames that count, and as the memory holds it
+  logic [Width-1:0] held_sum;  // of the watched node, as the memory holds it
+  logic seen, seen_here;       // the pixel, in the frames that count; at the watched node
   logic first, last, counts, in_watched;
   logic [8:0] to_done;
   assign first = en && in_valid && in_place[1:0] == 2'b11;
@@ -69,12 +66,15 @@ module fv_reference_capture #(
   always_ff @(posedge clk) begin
     started <= 1'b1;
     if (!started) watched <= chosen;
-    if (map_write && map_write_node == watched) held_sum <= 4'(map_write_gains);
+    if (map_write && map_write_node == watched) held_sum <= map_write_gains[Width-1:0];
     if (first && state == Armed) begin
       state <= Summing;
       wanted <= wanted_next;
     end
-    if (counts) sum <= (first && state == Armed ? '0 : sum) + 4'(in_watched && in_pixel[16]);
+    if (counts) begin
+      seen <= (seen && !(first && state == Armed)) || in_pixel[16];
+      seen_here <= (seen_here && !(first && state == Armed)) || (in_watched && in_pixel[16]);
+    end
     if (last && state == Summing) begin
       wanted <= wanted - (MaxLog2 + 1)'(1);
       if (in_bad) state <= Armed;
@@ -92,12 +92,31 @@ module fv_reference_capture #(
   end
 
   always_comb begin
+    if (!started) assume (rst);
+    assume ((in_pixel & ~24'h010000) == '0);
+    if (counts && seen && !(first && state == Armed)) assume (!in_pixel[16]);
+  end
+
+  localparam int GainSteps = Width + 3;
+  logic in_step;
+  int steps;
+  always_comb begin
+    steps = (32'(dut.divide_node) + 32'(dut.write_back)) * (4 + 3 * GainSteps) + 32'(dut.step);
+    if (dut.phase != 2'd3) steps = steps + 4 + 32'(dut.phase) * GainSteps;
+    in_step = 32'(to_done) == Clocks - 1 - steps && 32'(dut.step) < (dut.phase == 2'd3 ? 4 : GainSteps)
+        && !(dut.write_back && (dut.phase != 2'd3 || dut.step != '0)) && dut.state == 2'd3;
+  end
+
+  always_comb begin
     if (started) begin
-      busy_while: assert (busy == (state != Idle));
-      done_when: assert (done == (state == Dividing && to_done == '0));
-      if (state == Idle) quiet: assert (!map_write);
-      if (state == Dividing && to_done == 9'(Clocks - Summed)) sums: assert (held_sum == sum);
-      largest: cover (state == Dividing && to_done == 9'(Clocks - Summed) && sum == 4'(4 << MaxLog2));
+      if (Sums == 0) begin
+        // The divider's place by its own counters, so that the proof needs no search for it.
+        when: assert (busy == (state != Idle) && done == (state == Dividing && to_done == '0)
+            && (state != Dividing || to_done == '0 || in_step) && (state != Idle || !map_write));
+      end else begin
+        if (state == Dividing && to_done == 9'(Clocks - Summed)) sums: assert (held_sum == Width'(seen_here));
+        added: cover (state == Dividing && to_done == 9'(Clocks - Summed) && seen_here);
+      end
       afresh: cover (request && state == Dividing);
     end
   end

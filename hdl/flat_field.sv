@@ -128,4 +128,8 @@ module flat_field #(
     end
   end
 
+`ifndef SYNTHESIS
+  initial if (Offset % 2 != 0) $fatal(1, "%m: Offset must be even: it is subtracted before rounding to even");
+`endif
+
 endmodule

@@ -104,9 +104,10 @@ module reference_capture #(
   logic overflow, bit_set, reading, node_ends, write_back, divided;
   assign divisor = word[Width-1:0];
   assign whole = Width'(1) << (StepWidth'(log2) + StepWidth'(Whole));
+  // With a divisor over `whole` the quotient stays so far below 2^Bits that rounding does not carry out.
   assign twice = {remainder, 1'b0};
   assign bit_set = twice >= {1'b0, divisor};
-  assign gain = overflow | (&quotient) ? '1 : quotient[Bits-1:1] + Width'(quotient[0]);
+  assign gain = overflow ? '1 : quotient[Bits-1:1] + Width'(quotient[0]);
   assign reading = state == Dividing & phase == 2'd3 & step == StepWidth'(ReadStep);
   assign node_ends = state == Dividing & phase == 2'd2 & step == StepWidth'(Bits + 1);
   assign divided = write_back & divide_node == NodeWidth'(LastNode);

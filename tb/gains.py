@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The bus of gain_map and of flat_field around it: both banks as they should stand, writes, reads, change-overs."""
+"""Bus and capture of gain_map, and of flat_field around it: both banks as they should stand, change-overs."""
 
 import cocotb
 import numpy as np
@@ -28,7 +28,7 @@ def random_gains(config, chance):
 
 
 class Gains:
-    """Pins of the bus; `banks` are the gains that each bank should hold."""
+    """Pins of the bus and of the capture; `banks` are the gains that each bank should hold."""
 
     def __init__(self, dut, config):
         self.dut, self.config = dut, config
@@ -67,6 +67,21 @@ class Gains:
         while self.dut.table_in_use.value != self.bank:
             await RisingEdge(self.dut.clk)
 
+    async def capture(self, gains):
+        """All nodes of the bank that is not in use, as reference_capture writes them; each is read a little later."""
+        await self.changed()
+        words = [sum(word << GAIN_WIDTH * c for c, word in enumerate(node)) for node in gains.reshape(-1, 3).tolist()]
+        for clock in range(len(words) + 3):
+            writes, reads = clock < len(words), 0 <= clock - 2 < len(words)
+            self.dut.capture_write.value, self.dut.capture_read.value = int(writes), int(reads)
+            self.dut.capture_write_node.value = clock if writes else 0
+            self.dut.capture_gains.value = words[clock] if writes else 0
+            self.dut.capture_read_node.value = clock - 2 if reads else 0
+            await RisingEdge(self.dut.clk)
+            if clock >= 3:
+                assert int(self.dut.capture_read_gains.value) == words[clock - 3], f"node {clock - 3} as it is read"
+        self.banks[self.bank ^ 1] = gains.copy()
+
     async def write(self, gains):
         """All entries of the bank that is not in use, in order, one a clock; the unused ones too."""
         await self.changed()
@@ -83,7 +98,7 @@ class Gains:
             if self.due or self.dut.table_in_use.value != self.bank:
                 await self.read(chance.randrange(size))
                 continue
-            await self.write(random_gains(self.config, chance))
+            await chance.choice((self.write, self.capture))(random_gains(self.config, chance))
             for _ in range(4):
                 await self.read(chance.randrange(size))
             self.due = True

@@ -24,6 +24,7 @@ INVALID = {
     "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
     "rom": ["Depth=1"],
     "gradient_lookup": ["BitsPerChannel=0", "BitsPerChannel=9"],
+    "flat_field": ["Offset=1"],
     "gain_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
     "reference_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=11", "GainFraction=10"],
     "spectral_divide": ["Size=12", "Size=1"],
