@@ -114,7 +114,7 @@ module reference_capture #(
 
   assign map_read = (row_ends_q & ~begin_sum_q) | reading;
   assign map_read_node = reading ? divide_node : node_q;
-  assign map_write = row_ends_q3 | write_back;
+  assign map_write = (row_ends_q3 | write_back) & ~rst;  // at power-up neither is known, nor which bank is free
   assign map_write_node = write_back ? divide_node : node_q3;
   assign map_write_gains = write_back ? word : sums;
 
