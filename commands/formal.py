@@ -489,7 +489,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         "select -set cone_of_depth o:m_axis_tdata* %ci*",
         f"select -assert-min {3 * config.bits_per_channel} @cone_of_depth @pixels %i",
         "select -assert-min 10 @cone_of_depth @memories %i",
-        "select -assert-any @cone_of_depth */u_lookup.u_table.*words %i",
+        "select -assert-count 2 @cone_of_depth */u_lookup.*u_table.*words %i",
     ]
     return "\n".join(lines) + "\n"
 

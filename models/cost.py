@@ -97,7 +97,7 @@ def _pipeline(p: dict[str, int]) -> Parts:
     size, slope, data = p["Size"], p["GradientWidth"], p["DataWidth"]
     divergence = slope + 2
     memories = [
-        Memory("tables", 2 * slope, 2 << 3 * p["BitsPerChannel"]),  # of gradients, in two banks
+        *[Memory("tables", 2 * slope, 1 << 3 * p["BitsPerChannel"])] * 2,  # of gradients, in two banks
         Memory("row buffers", slope, size),  # of the divergence: the row above
         Memory("row buffers", divergence, 2 * size),  # row_reorder, in and out
         Memory("row buffers", data, 2 * size),
