@@ -12,7 +12,7 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION SEED OUT
 
-.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibration setup clean
+.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -79,9 +79,9 @@ mutate: $(TOOLS)
 report: $(STAMP)
 	@$(PY) -m commands.report $(if $(OUT),'OUT=$(OUT)')
 
-# Refits calibrations/gelsight-mini.npz from the ball presses.
-calibration: $(STAMP)
-	@$(PY) -m commands.fit_gelsight_mini
+# From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS OUT
+calibrate: $(STAMP)
+	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS OUT,$(if $($(v)),'$(v)=$($(v))'))
 
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -54,5 +55,49 @@ def draw_depth(
         axis.set_title(name)
     if len(depth) > count:
         figure.supxlabel(f"the first {count} of {len(depth)} frames")
+    figure.savefig(path, dpi=80)
+    plt.close(figure)
+
+
+@dataclass(frozen=True)
+class DrawnPress:
+    """A ball press as `draw_presses` shows it. Lengths in mm."""
+
+    name: str
+    frame: np.ndarray  # uint8 (size, size, 3)
+    slopes: np.ndarray  # (size, size, 2)
+    depth: np.ndarray  # (size, size)
+    circle: tuple[np.ndarray, np.ndarray]  # columns, rows
+    across: np.ndarray  # (size,), from the centre
+    ball: np.ndarray  # (size,), height over the contact circle; NaN outside
+    cuts: dict[str, np.ndarray]  # of the depth by each model, height over the contact circle
+
+
+def draw_presses(path: Path, presses: list[DrawnPress], width_mm: float, title: str) -> None:
+    """Frame, both slopes, depth and a cut through the contact, one row a press."""
+    extent = (0, width_mm, width_mm, 0)
+    figure, axes = plt.subplots(
+        len(presses), 5, figsize=(17, 3 * len(presses) + 0.6), squeeze=False, layout="constrained"
+    )
+    figure.suptitle(title)
+    for press, row in zip(presses, axes, strict=True):
+        row[0].imshow(press.frame, extent=extent, interpolation="nearest")
+        limit = float(np.abs(press.slopes).max()) or 1.0
+        for axis, which in zip(row[1:3], (0, 1), strict=True):
+            shown = axis.imshow(press.slopes[..., which], cmap="PuOr", vmin=-limit, vmax=limit, extent=extent)
+            figure.colorbar(shown, ax=axis, shrink=0.85)
+        shown = row[3].imshow(press.depth, cmap="cividis", extent=extent)
+        figure.colorbar(shown, ax=row[3], label="mm", shrink=0.85)
+        for axis in row[:4]:
+            axis.plot(*press.circle, color="white" if axis in (row[0], row[3]) else "black", linewidth=0.7)
+            axis.set(xlim=(0, width_mm), ylim=(width_mm, 0))
+        for model, cut in press.cuts.items():
+            row[4].plot(press.across, cut, label=model)
+        row[4].plot(press.across, press.ball, "k--", label="ball")
+        row[4].set_ylabel("mm over the contact circle")
+        row[4].legend()
+        row[0].set_ylabel(f"{press.name}\nmm")
+    for axis, name in zip(axes[0], ("frame", "dz/dx", "dz/dy", "depth", "row through the centre"), strict=True):
+        axis.set_title(name)
     figure.savefig(path, dpi=80)
     plt.close(figure)

@@ -128,7 +128,7 @@ def _uniform(gx: float, gy: float) -> Draw:
 
 def _steepest(config: Configuration) -> np.ndarray:
     """Everywhere the colour of the largest gx + gy, and of the smallest."""
-    total = load(CALIBRATION).gradient.sum(axis=-1)
+    total = load(CALIBRATION).table.sum(axis=-1)
     step = 256 >> config.bits_per_channel
     bins = [np.unravel_index(at, total.shape) for at in (total.argmax(), total.argmin())]
     colours = np.array(bins, np.uint8) * step

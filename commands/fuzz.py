@@ -37,9 +37,9 @@ import atheris
 import numpy as np
 from tqdm import tqdm
 
-from commands import fit_gelsight_mini, sim
+from commands import calibrate, sim
 from commands import simulator as simulation
-from commands.fit_gelsight_mini import Press, read_presses
+from commands.calibrate import read_presses
 from commands.sim import Request, parse
 from models import calibration as calibrations
 from models import frames as pictures
@@ -47,6 +47,7 @@ from models.calibration import Calibration, load
 from models.configuration import Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
+from models.quadratic_gradient import polynomial_words
 
 FOLDER = simulation.ROOT / "build" / "fuzz"
 SECONDS_A_RUN = 10
@@ -204,10 +205,15 @@ def npz(data: Bytes) -> bytes:
     store = io.BytesIO()
     with warnings.catch_warnings(), zipfile.ZipFile(store, "w") as archive:
         warnings.simplefilter("ignore")  # a name may come twice
-        for wanted in ("gradient", "pixel_pitch_mm"):
+        keys = ["gradient", "pixel_pitch_mm", "coefficients", "largest_slope", "model"]
+        for wanted in keys[: data.PickValueInList([2, 2, 4, 5])]:
             name = data.PickValueInList([wanted, wanted, wanted, wanted, "other", f"../{wanted}", "pixel_pitch_mm"])
             if wanted == "gradient":
                 content = npy(data, bins, ["<f8", "<f4", "<f2"])
+            elif wanted == "coefficients":
+                content = npy(data, [(2, 3, 6)], ["<f8", "<f4"])
+            elif wanted == "model":
+                content = npy(data, [()], ["<U3", "<U9"])
             else:
                 content = npy(data, [()], ["<f8", "<i8", "<f4"])
             method = data.PickValueInList([zipfile.ZIP_DEFLATED, zipfile.ZIP_STORED, zipfile.ZIP_LZMA])
@@ -267,12 +273,18 @@ def calibration(data: Bytes, folder: Path) -> None:
     path = folder / "sensor.npz"
     path.write_bytes(damaged(data, data.PickValueInList([npz, npz, npz, npz, npz, plain])(data)))
     result: Calibration = load(str(path))
-    b = result.bits_per_channel
-    assert result.gradient.shape == (1 << b, 1 << b, 1 << b, 2)
-    assert result.gradient.dtype == np.float64
-    assert np.isfinite(result.gradient).all()
     assert 0 < result.pixel_pitch_mm < float("inf")
-    Configuration(columns=16, gradient_limit=result.gradient_limit, bits_per_channel=b)
+    config = Configuration(columns=16, gradient_limit=result.gradient_limit)
+    if result.gradient is not None:
+        b = result.bits_per_channel
+        assert result.gradient.shape == (1 << b, 1 << b, 1 << b, 2)
+        assert result.gradient.dtype == np.float64
+        assert np.isfinite(result.gradient).all()
+        Configuration(columns=16, gradient_limit=result.gradient_limit, bits_per_channel=b)
+    if result.coefficients is not None:
+        assert np.isfinite(result.coefficients).all()
+        polynomial_words(result, config, result.pixel_pitch_mm)
+    assert (result.gradient if result.model == "lut" else result.coefficients) is not None
 
 
 def plain(data: Bytes) -> bytes:
@@ -280,20 +292,22 @@ def plain(data: Bytes) -> bytes:
 
 
 def presses(data: Bytes, folder: Path) -> None:
-    columns = ["frame", "centre_x_px", "centre_y_px", "contact_radius_px", "ball_radius_px"]
-    if data.ConsumeIntInRange(0, 3) == 0:
-        columns = columns[: data.ConsumeIntInRange(0, 5)]
+    columns = ["frame", data.PickValueInList(["diameter_mm", "diameter_mm", "ball_diameter_mm", "size"])]
+    columns += ["centre_x_px", "centre_y_px", "contact_radius_px", "ball_radius_px"][: data.ConsumeIntInRange(0, 4)]
     lines = [",".join(columns)]
     for _ in range(data.ConsumeIntInRange(0, 3)):
         cells = ["1.png"]
-        for _ in range(data.PickValueInList([4, 4, 4, 3, 5])):
+        for _ in range(len(columns) - 1 + data.PickValueInList([0, 0, 0, -1, 1])):
             cells.append(data.PickValueInList(["12.5", "30", "-1", "nan", "inf", "1e400", "", '"', "x", "1_0"]))
         lines.append(",".join(cells))
     (folder / "presses.csv").write_bytes(damaged(data, "\n".join(lines).encode()))
-    for press in read_presses(folder):
-        assert isinstance(press, Press)
-        assert np.isfinite([press.x, press.y, press.contact_radius, press.ball_radius]).all()
-        assert 0 < press.contact_radius < press.ball_radius
+    rows, notes = read_presses(folder)
+    assert all(note.isprintable() for note in notes)
+    for row in rows:
+        assert 0 < row.diameter_mm < float("inf")
+        if row.circle:
+            assert np.isfinite([row.circle.x, row.circle.y]).all()
+            assert 0 < row.circle.radius < (row.ball_radius or float("inf"))
 
 
 KEYS = ["N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REPEAT", "SEED"]
@@ -388,7 +402,7 @@ def attempt(reader: str, data: bytes, folder: Path) -> str:
 
 def guide() -> None:
     """Let the fuzzer see which branches of the readers are taken."""
-    for module in (fit_gelsight_mini, sim, calibrations, pictures, np.lib.format, zipfile):
+    for module in (calibrate, sim, calibrations, pictures, np.lib.format, zipfile):
         for function in vars(module).values():
             if inspect.isfunction(function):
                 atheris.instrument_func(function)

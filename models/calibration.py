@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calibrations: tables from colour to slope."""
+"""Calibrations: from colour to slope, by a table or by quadratics."""
 
 from __future__ import annotations
 
@@ -18,9 +18,13 @@ from models.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
 FOLDER = Path(__file__).resolve().parent.parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
+MODELS = ("lut", "quadratic")
 BITS_PER_CHANNEL = (1, 6)
+COEFFICIENTS = (2, 3, 6)  # slope, colour, term
+LARGEST_COEFFICIENT = 1e6
 SYNTHETIC_PIXEL_PITCH_MM = scene_pixel_pitch_mm(128)  # of a synthetic camera of 128 columns
 LARGEST_MEMBER = 2 * (1 << BITS_PER_CHANNEL[1]) ** 3 * np.dtype(np.longdouble).itemsize + 1024  # bytes, with a header
+KEYS = ("gradient", "pixel_pitch_mm", "coefficients", "largest_slope", "model")
 PIXEL_PITCHES_MM = (1e-6, 1e3)
 ROUNDING = 2.0**-8  # share by which rounding to a table's format may enlarge the largest slope
 LARGEST_SLOPE = 0.99  # in the synthetic table, so that its gradient limit is 1
@@ -28,37 +32,62 @@ LARGEST_SLOPE = 0.99  # in the synthetic table, so that its gradient limit is 1
 
 @dataclass(frozen=True)
 class Calibration:
-    """A table from colour to slope.
+    """From colour to slope, in one or both of two models.
 
     Attributes
     ----------
     name : str
-    gradient : float64 array (2**b, 2**b, 2**b, 2)
-        Slope dz/dx (along the columns) and dz/dy (down the rows) by the top b bits of red, green and blue, in
-        pixels per pixel; depth z is positive pressed in.
+    gradient : float64 array (2**b, 2**b, 2**b, 2), or None
+        Model `lut`: slope dz/dx (along the columns) and dz/dy (down the rows) by the top b bits of red, green and
+        blue, in pixels per pixel; depth z is positive pressed in. Real sensors are flat-fielded first: 128 I / ref.
     pixel_pitch_mm : float
         Of the camera; that of the grid is larger where frames are averaged.
+    coefficients : float64 array (2, 3, 6), or None
+        Model `quadratic`: slope = sum over red, green, blue of C (I / ref - 1), C = a quadratic in the position:
+        terms 1, x, y, x^2, x y, y^2, in mm from the picture's centre, x along the columns, y down the rows.
+    largest_slope : float
+        That the quadratics were fitted to: their formats hold it.
+    model : str
+        The better of the two.
     """
 
     name: str
-    gradient: np.ndarray
+    gradient: np.ndarray | None
     pixel_pitch_mm: float
+    coefficients: np.ndarray | None = None
+    largest_slope: float = 0.0
+    model: str = "lut"
+
+    @property
+    def table(self) -> np.ndarray:
+        """`gradient`.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        if self.gradient is None:
+            raise InputError(f"{self.name}: no `gradient` in it: the table is needed here")
+        return self.gradient
 
     @property
     def bits_per_channel(self) -> int:
-        return self.gradient.shape[0].bit_length() - 1
+        return self.table.shape[0].bit_length() - 1
 
     @property
     def gradient_limit(self) -> float:
-        """A power of two that no slope of the table reaches, exact or rounded to 1/256 of it or finer."""
-        largest = float(np.abs(self.gradient).max()) * (1 + ROUNDING)
+        """A power of two that no slope of either model reaches, exact or rounded to 1/256 of it or finer."""
+        table = 0.0 if self.gradient is None else float(np.abs(self.gradient).max())
+        largest = max(table, self.largest_slope) * (1 + ROUNDING)
         return 2.0 ** math.ceil(math.log2(largest)) if largest > 0 else 1.0
 
 
 def load(name_or_path: str) -> Calibration:
     """A built-in calibration by its name, or one from an `.npz`.
 
-    The file holds `gradient`, float (2**b, 2**b, 2**b, 2), b in 1..6, and `pixel_pitch_mm`; more may be in.
+    The file holds `pixel_pitch_mm`, and `gradient`, float (2**b, 2**b, 2**b, 2), b in 1..6, or `coefficients`, float
+    (2, 3, 6), with `largest_slope`, or all; then `model` says which is the default. More may be in.
 
     Raises
     ------
@@ -88,16 +117,27 @@ def _read(name: str, path: Path) -> Calibration:
     arrays = {}
     try:
         with zipfile.ZipFile(path) as archive:
-            for key in ("gradient", "pixel_pitch_mm"):
+            for key in KEYS:
                 if f"{key}.npy" in archive.namelist():
                     arrays[key] = _member(archive, f"{key}.npy")
     except Exception as error:  # numpy, zipfile and zlib raise a dozen kinds over a damaged file
         reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(f"{path}: not a readable .npz ({reason}): write it with numpy.savez_compressed") from error
-    for key in ("gradient", "pixel_pitch_mm"):
+    held = {model: key in arrays for model, key in zip(MODELS, ("gradient", "coefficients"), strict=True)}
+    if not any(held.values()):
+        raise InputError(f"{path}: no `gradient` and no `coefficients` in it: a calibration holds one of them or both")
+    needed = ["pixel_pitch_mm", *(["largest_slope"] if held["quadratic"] else [])]
+    for key in needed:
         if key not in arrays:
-            raise InputError(f"{path}: no `{key}` in it: a calibration holds `gradient` and `pixel_pitch_mm`")
-    return Calibration(name, _gradient(path, arrays["gradient"]), _pitch(path, arrays["pixel_pitch_mm"]))
+            raise InputError(f"{path}: no `{key}` in it: a calibration holds {' and '.join(f'`{k}`' for k in needed)}")
+    return Calibration(
+        name,
+        _gradient(path, arrays["gradient"]) if held["lut"] else None,
+        _pitch(path, arrays["pixel_pitch_mm"]),
+        _coefficients(path, arrays["coefficients"]) if held["quadratic"] else None,
+        _largest_slope(path, arrays["largest_slope"]) if held["quadratic"] else 0.0,
+        _model(path, arrays.get("model"), [model for model in MODELS if held[model]]),
+    )
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> np.ndarray:
@@ -126,12 +166,43 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
     if bad := np.count_nonzero(~np.isfinite(gradient)):
         raise InputError(f"{path}: `gradient` holds {bad} values that are NaN or infinite: fill empty bins")
     largest = float(np.abs(gradient).max())
-    if largest and not GRADIENT_LIMITS[0] <= largest <= GRADIENT_LIMITS[1] * (1 - ROUNDING):
-        raise InputError(
-            f"{path}: the largest slope in `gradient` is {largest:.3g}: accepted are {GRADIENT_LIMITS[0]:g} to "
-            f"{GRADIENT_LIMITS[1]:g}, in pixels per pixel"
-        )
+    if largest:
+        _within_limits(path, "the largest slope in `gradient`", largest)
     return gradient.astype(np.float64)
+
+
+def _coefficients(path: Path, coefficients: np.ndarray) -> np.ndarray:
+    if coefficients.shape != COEFFICIENTS or coefficients.dtype.kind != "f":
+        raise InputError(
+            f"{path}: `coefficients` is {coefficients.dtype} {coefficients.shape}: accepted is float {COEFFICIENTS}"
+        )
+    if not (np.abs(coefficients) <= LARGEST_COEFFICIENT).all():  # NaN is not
+        raise InputError(
+            f"{path}: `coefficients` holds NaN, or values over {LARGEST_COEFFICIENT:g}: is x in mm from the centre?"
+        )
+    return coefficients.astype(np.float64)
+
+
+def _largest_slope(path: Path, slope: np.ndarray) -> float:
+    if slope.shape != () or slope.dtype.kind not in "iuf":
+        raise InputError(f"{path}: `largest_slope` is {slope.dtype} {slope.shape}: accepted is one number")
+    _within_limits(path, "`largest_slope`", float(slope))
+    return float(slope)
+
+
+def _within_limits(path: Path, what: str, slope: float) -> None:
+    low, high = GRADIENT_LIMITS
+    if not low <= slope <= high * (1 - ROUNDING):
+        raise InputError(f"{path}: {what} is {slope:.3g}: accepted are {low:g} to {high:g}, in pixels per pixel")
+
+
+def _model(path: Path, model: np.ndarray | None, held: list[str]) -> str:
+    if model is None:
+        return held[0]
+    name = str(model) if model.shape == () and model.dtype.kind == "U" else f"{model.dtype} {model.shape}"
+    if name not in held:
+        raise InputError(f"{path}: `model` is {name}: accepted is a model that the file holds: {', '.join(held)}")
+    return name
 
 
 def _pitch(path: Path, pitch: np.ndarray) -> float:

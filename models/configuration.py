@@ -36,6 +36,12 @@ DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 
+# Flat-fielding. The reference is as smooth as the lighting: a grid of block means, 16 across the picture, costs nothing
+# that shows in the gradients of real presses, where 8 across do.
+REFERENCE_NODES = 16
+SMALLEST_BLOCK = 2
+GAIN_WIDTH, GAIN_FRACTION = 24, 27  # of an unsigned gain word: a reference of 8 grey levels is full scale
+
 
 @dataclass(frozen=True)
 class Format:
@@ -57,6 +63,14 @@ class Format:
     @property
     def lsb(self) -> float:
         return 2.0**-self.fraction
+
+
+DEVIATION = Format(14, 12)
+"""A colour relative to the reference, I / ref - 1: finer than 8-bit pixels, so that rounding it shows in no depth."""
+POLYNOMIAL = Format(32, 28)
+"""A coefficient of the quadratic model as it runs along the raster: one register of the AXI4-Lite map."""
+COLOUR_COEFFICIENT = Format(18, 14)
+"""Its upper bits, which are multiplied: the narrow port of a DSP48E2."""
 
 
 @dataclass(frozen=True)
@@ -177,6 +191,17 @@ class Configuration:
         The spectral divide changes units; the tridiagonal solver has no place for that, so slopes come in its unit.
         """
         return self.depth_limit_px / 2.0**self.depth_limit_log2 if self.solver == "tridiagonal" else 1.0
+
+    @property
+    def reference_block_log2(self) -> int:
+        """Blocks of 2**this by 2**this pixels share a gain."""
+        block = min(max(self.columns // REFERENCE_NODES, SMALLEST_BLOCK), self.rows)
+        return block.bit_length() - 1
+
+    @property
+    def reference_nodes(self) -> tuple[int, int]:
+        """Rows and columns of the grid of gains; a last row of blocks that the frame cuts has none of its own."""
+        return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
     # Formats, in the order of the stream. Slopes, divergence and forward modes count in `unit_px`; everything behind
     # the solve along the columns counts in units of `depth_limit_px`.

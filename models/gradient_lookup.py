@@ -13,7 +13,7 @@ from models.configuration import Configuration
 
 def gradient_codes(calibration: Calibration, config: Configuration) -> np.ndarray:
     """Slope codes, slope = code * config.gradient_lsb, by bin {red, green, blue}, int64 (bins, 2): gx, gy."""
-    slopes = calibration.gradient.reshape(-1, 2)
+    slopes = calibration.table.reshape(-1, 2)
     return np.rint(slopes / config.gradient_lsb).astype(np.int64)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
 from models.calibration import Calibration
+from models.configuration import Configuration
 from models.divergence import divergence
 
 
@@ -35,7 +36,56 @@ def slopes(frames: np.ndarray, calibration: Calibration) -> np.ndarray:
     float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
     """
     red, green, blue = np.moveaxis(frames >> (8 - calibration.bits_per_channel), -1, 0)
-    return calibration.gradient[red, green, blue]
+    return calibration.table[red, green, blue]
+
+
+def gains(no_contact: np.ndarray, config: Configuration) -> np.ndarray:
+    """1 / reference at each pixel: of means over blocks, interpolated between their centres, constant beyond them.
+
+    Parameters
+    ----------
+    no_contact : array (..., rows, cols, 3): one or more frames of the grid
+
+    Returns
+    -------
+    float64 array (rows, cols, 3)
+    """
+    block = 1 << config.reference_block_log2
+    rows, columns = config.reference_nodes
+    frame = no_contact.reshape(-1, *no_contact.shape[-3:]).mean(axis=0)[: rows * block, : columns * block]
+    found = 1 / frame.reshape(rows, block, columns, block, 3).mean(axis=(1, 3))
+    for axis, pixels in ((0, config.rows), (1, config.columns)):
+        nodes = found.shape[axis]
+        at = np.clip((np.arange(pixels) + 0.5) / block - 0.5, 0, nodes - 1)
+        weights = np.maximum(0, 1 - np.abs(at[:, None] - np.arange(nodes)))
+        found = np.moveaxis(np.tensordot(weights, found, (1, axis)), 0, axis)
+    return found
+
+
+def quadratic_slopes(deviation: np.ndarray, calibration: Calibration, pixel_pitch_mm: float) -> np.ndarray:
+    """Slopes by the calibration's quadratics.
+
+    Parameters
+    ----------
+    deviation : float array (..., rows, cols, 3), I / ref - 1: frames * gains - 1
+    pixel_pitch_mm : float
+        Of the grid.
+
+    Returns
+    -------
+    float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
+    """
+    assert calibration.coefficients is not None
+    rows, columns = deviation.shape[-3:-1]
+    terms = quadratic_terms(rows, columns, pixel_pitch_mm)
+    return np.einsum("...rcn,ant,rct->...rca", deviation, calibration.coefficients, terms, optimize=True)
+
+
+def quadratic_terms(rows: int, columns: int, pixel_pitch_mm: float) -> np.ndarray:
+    """1, x, y, x^2, x y, y^2 at each pixel, in mm from the picture's centre: float64 (rows, cols, 6)."""
+    y, x = np.indices((rows, columns), dtype=np.float64)
+    x, y = (x - (columns - 1) / 2) * pixel_pitch_mm, (y - (rows - 1) / 2) * pixel_pitch_mm
+    return np.stack((np.ones_like(x), x, y, x * x, x * y, y * y), axis=-1)
 
 
 def solve(f: np.ndarray, neumann: bool = False) -> np.ndarray:

@@ -7,33 +7,13 @@ import zipfile
 import numpy as np
 import pytest
 
-from commands import fit_gelsight_mini
-from commands.fit_gelsight_mini import (
-    data_folder,
-    depth_of_codes,
-    fill,
-    fit,
-    held_out,
-    load_press,
-    read_presses,
-)
-from models.calibration import BUILT_IN, FOLDER, Calibration, load, synthetic
+from models.calibration import BITS_PER_CHANNEL, BUILT_IN, FOLDER, Calibration, load, synthetic
 from models.configuration import Configuration
 from models.errors import InputError
-from models.frames import load_frames
-from models.reference import depth
 from models.scenes import GAIN, LIGHTS, REST
 
 GOOD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
-CAP_BOUND = 0.20  # of the true cap height; the worst of the held-out presses is 0.15 off
-
-
-@pytest.fixture(scope="module")
-def presses_folder():
-    try:
-        return data_folder()
-    except InputError as error:
-        pytest.skip(f"the real ball presses are absent: {error}")
+QUADRATIC = {"coefficients": np.zeros((2, 3, 6)), "largest_slope": 0.7}
 
 
 def saved(folder, **changed):
@@ -58,7 +38,8 @@ def test_built_in_calibrations_fit_the_default_configuration(name):
     calibration = load(name)
     config = Configuration()
     assert calibration.name == name
-    assert calibration.bits_per_channel == config.bits_per_channel
+    low, high = BITS_PER_CHANNEL
+    assert low <= calibration.bits_per_channel <= high
     assert calibration.gradient_limit == config.gradient_limit
     assert calibration.pixel_pitch_mm > 0
 
@@ -109,6 +90,30 @@ def test_a_file_is_read_as_written(tmp_path, bits, dtype):
     np.testing.assert_array_equal(calibration.gradient, gradient)
 
 
+@pytest.mark.parametrize("table", [True, False])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_quadratics_are_read_as_written(tmp_path, table, dtype):
+    coefficients = np.random.default_rng(1).normal(size=(2, 3, 6)).astype(dtype)
+    changed = {"coefficients": coefficients, "largest_slope": 1.5, "model": "quadratic"}
+    calibration = load(str(saved(tmp_path, **changed, **({} if table else {"gradient": None}))))
+    np.testing.assert_array_equal(calibration.coefficients, coefficients)
+    assert calibration.model == "quadratic"
+    assert calibration.gradient_limit == 2
+    assert (calibration.gradient is not None) == table
+
+
+def test_a_file_says_nothing_of_its_model_and_has_the_one_it_holds(tmp_path):
+    assert load(str(saved(tmp_path))).model == "lut"
+    assert load(str(saved(tmp_path, **QUADRATIC))).model == "lut"
+    assert load(str(saved(tmp_path, **QUADRATIC, gradient=None))).model == "quadratic"
+
+
+def test_a_missing_table_is_named_where_it_is_needed(tmp_path):
+    calibration = load(str(saved(tmp_path, **QUADRATIC, gradient=None)))
+    with pytest.raises(InputError, match="no `gradient` in it: the table is needed here"):
+        _ = calibration.bits_per_channel
+
+
 def test_an_unknown_name_is_answered_with_the_known_ones():
     message = refused("gelsihgt")
     assert "gelsihgt" in message
@@ -151,7 +156,18 @@ def test_an_array_in_place_of_an_npz_is_named(tmp_path):
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"gradient": None}, "no `gradient`"),
+        ({"gradient": None}, "no `gradient` and no `coefficients`"),
+        ({"coefficients": np.zeros((2, 3, 6))}, "no `largest_slope`"),
+        (QUADRATIC | {"coefficients": np.zeros((2, 3, 5))}, "(2, 3, 5)"),
+        (QUADRATIC | {"coefficients": np.zeros((2, 3, 6), int)}, "int64"),
+        (QUADRATIC | {"coefficients": np.full((2, 3, 6), np.nan)}, "holds NaN"),
+        (QUADRATIC | {"coefficients": np.full((2, 3, 6), 1e9)}, "over 1e+06"),
+        (QUADRATIC | {"largest_slope": 0.0}, "`largest_slope` is 0:"),
+        (QUADRATIC | {"largest_slope": np.nan}, "`largest_slope` is nan:"),
+        (QUADRATIC | {"largest_slope": [0.7]}, "`largest_slope` is float64 (1,)"),
+        (QUADRATIC | {"model": "cubic"}, "`model` is cubic: accepted is a model that the file holds: lut, quadratic"),
+        (QUADRATIC | {"model": 1}, "`model` is int64 ()"),
+        ({"model": "quadratic"}, "`model` is quadratic: accepted is a model that the file holds: lut"),
         ({"pixel_pitch_mm": None}, "no `pixel_pitch_mm`"),
         ({"gradient": np.zeros((4, 4, 4, 3))}, "(4, 4, 4, 3)"),
         ({"gradient": np.zeros((4, 4, 8, 2))}, "(4, 4, 8, 2)"),
@@ -174,64 +190,6 @@ def test_wrong_contents_are_named(tmp_path, changed, said):
     message = refused(path)
     assert str(path) in message
     assert said in message
-
-
-# The fit.
-
-
-def test_empty_bins_take_the_mean_of_their_neighbours():
-    table, known = np.zeros((4, 4, 4, 2)), np.zeros((4, 4, 4), bool)
-    table[0, 0, 0], known[0, 0, 0] = (0.5, -0.25), True
-    table[2, 0, 0], known[2, 0, 0] = (0.1, 0.25), True
-    filled = fill(table, known)
-    np.testing.assert_allclose(filled[1, 0, 0], (0.3, 0.0))  # beside both
-    np.testing.assert_allclose(filled[0, 1, 0], (0.5, -0.25))  # beside one
-    np.testing.assert_array_equal(filled[known], table[known])
-    np.testing.assert_allclose(fill(np.full((4, 4, 4, 2), 0.3) * known[..., None], known), 0.3)
-
-
-def test_the_presses_held_out_are_whole_and_recorded(presses_folder):
-    test = held_out(read_presses(presses_folder))
-    assert len(test) >= 6
-    assert all(press.on_grid(240).margin(240) >= 0 for press in test)
-    with np.load(FOLDER / "gelsight-mini.npz") as data:
-        assert data["held_out"].tolist() == [press.name for press in test]
-
-
-def test_the_shipped_table_is_what_the_script_fits(presses_folder):
-    presses = read_presses(presses_folder)
-    test = held_out(presses)
-    gradient = fit(presses_folder, [press for press in presses if press not in test])
-    # One unit of the stored fraction: sums may be rounded differently on another machine.
-    np.testing.assert_allclose(load("gelsight-mini").gradient, gradient, atol=2**-12)
-
-
-def test_held_out_presses_keep_their_cap_height_through_the_bit_accurate_model(presses_folder):
-    calibration = load("gelsight-mini")
-    config = Configuration(columns=128, gradient_limit=calibration.gradient_limit)
-    ratios = {}
-    for press in held_out(read_presses(presses_folder)):
-        found = depth_of_codes(load_press(presses_folder, press, (128, 128)), calibration, config)
-        ratios[press.name] = press.on_grid(128).recovered(found)
-    off = {name: round(ratio, 3) for name, ratio in ratios.items() if abs(ratio - 1) > CAP_BOUND}
-    assert not off, f"cap height over the true one: {off}"
-    assert abs(np.mean(list(ratios.values())) - 1) < 0.05  # measured: 0.99
-
-
-def test_the_no_contact_frame_reads_flat(presses_folder):
-    path = str(presses_folder / "background.png")
-    found = depth(load_frames(path, (128, 128), path).pixels, load("gelsight-mini"))
-    assert np.abs(found).max() < 0.001  # pixels; measured: 0.0007
-
-
-def test_the_calibration_command_reports_and_changes_nothing(presses_folder, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(fit_gelsight_mini, "FOLDER", tmp_path)
-    fit_gelsight_mini.main()
-    report = capsys.readouterr().out
-    assert "11 held out" in report
-    assert "mean" in report.splitlines()[-1]
-    fitted, shipped = (np.load(folder / "gelsight-mini.npz")["gradient"] for folder in (tmp_path, FOLDER))
-    np.testing.assert_array_equal(fitted, shipped)
 
 
 # Files that are made to harm.
@@ -288,25 +246,3 @@ def test_a_pitch_of_no_camera_is_named(tmp_path, pitch):
 
 def test_a_path_too_long_for_the_system_is_named():
     assert "too long" in refused("x" * 5000)
-
-
-@pytest.mark.parametrize(
-    "table",
-    [
-        b"",
-        b"frame,centre_x_px\n1.png,3\n",
-        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,5\n",
-        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,5,x\n",
-        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,nan,4,5,6\n",
-        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,6,5\n",
-        b"frame,centre_x_px,centre_y_px,contact_radius_px,ball_radius_px\n1.png,3,4,5,inf\n",
-        b"\xff\xfe",
-    ],
-)
-def test_a_table_of_presses_that_is_none_is_named(tmp_path, table):
-    (tmp_path / "presses.csv").write_bytes(table)
-    if not table:
-        assert read_presses(tmp_path) == []
-        return
-    with pytest.raises(InputError, match=r"presses.csv: not a table of frame"):
-        read_presses(tmp_path)

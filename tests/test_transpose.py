@@ -18,6 +18,7 @@ SOURCES = ["burst_counter.sv", "ram.sv", "transpose.sv"]
         (8, 16, 0, 1),
         (8, 16, 1, 0),
         (8, 16, 1, 1),
+        (4, 5, 0, 1),
     ],
 )
 def test_rtl(run_tb, size, width, makhoul_in, makhoul_out):
