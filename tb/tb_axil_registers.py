@@ -531,6 +531,12 @@ async def table_entries(dut, table) -> None:
             assert await value(dut, "TABLE_HIGH") == entry(table, index)[0]
             assert await value(dut, "TABLE_LOW") == entry(table, index)[1]
 
+        for bit in range(size.bit_length()):  # neighbours of the last entry
+            index = (size - 1) ^ 1 << bit
+            if index < size:
+                await choose(dut, table, index)
+                assert await write(dut, OFFSET["TABLE_LOW"], 5) == Response.OKAY
+                assert await value(dut, "TABLE_INDEX") == index + 1
         for strobe in range((1 << BYTES) - 1):
             assert await write(dut, OFFSET["TABLE_LOW"], 5, strobe) == Response.SLVERR, f"strobe {strobe:04b}"
         if size < 1 << checker.build.index_width:
@@ -758,7 +764,7 @@ async def each_address_reads_its_own(dut) -> None:
             for name in (*LEVELS, "capture_busy"):
                 getattr(dut, name).value = rng.getrandbits(1)
             dut.record.value = rng.getrandbits(32 * len(RECORD))
-            await write(dut, OFFSET["TABLE_COMMIT"], rng.getrandbits(3))
+            await write(dut, OFFSET["TABLE_COMMIT"], WORD)  # from here on all that the build has are pending
             for address in range(0, 1 << ADDRESS_WIDTH, 4):
                 await read(dut, address)  # compared by the checker
             for name in (*LEVELS, "capture_busy"):
