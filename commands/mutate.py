@@ -91,8 +91,10 @@ CORES = {
     "frame_tags": Core(protocols.frame_tags),
     "axil_registers": Core(
         protocols.axil_registers,
-        outside=("frames_in", "frames_out", "frames_dropped", "saturations_count")
-        + ("dark_pixels", "depth_dropped", "records_lost"),
+        outside=(
+            *("frames_in", "frames_out", "frames_dropped", "saturations_count"),
+            *("dark_pixels", "depth_dropped", "records_lost"),
+        ),
     ),
     "spectral_solver": Core(
         lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE

@@ -15,7 +15,7 @@ module fv_axil_registers
   parameter int BitsPerChannel   = 4,
   parameter int CoefficientWords = 36,
   parameter int ReferenceWords   = 1024,
-  localparam int RecordWords = 13,
+  localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
   localparam int Tables = TableSelectSelectCount,
   localparam int SelectWidth = TableSelectSelectWidth,
   localparam int IndexWidth = 3 * BitsPerChannel
@@ -321,7 +321,8 @@ module fv_axil_registers
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
       // What leaves for the pipeline.
       outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
-      contact_settings: assert ($unsigned(off_threshold) == off && minimum_area == area && 32'(debounce) == frames_needed);
+      contact_settings: assert ($unsigned(off_threshold) == off && minimum_area == area
+          && 32'(debounce) == frames_needed);
       stream_settings: assert (drop_frames == drop && 32'(dark_level) == dim && 32'(capture_log2_frames) == averaged);
       captures: assert (capture_request
           == (writes_capture && data[CaptureStartBit] && mask[CaptureStartBit] && !rst));

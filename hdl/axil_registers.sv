@@ -19,10 +19,10 @@
 // bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand
 // within a frame of the head of the pipeline.
 //
-// Capture of the reference table: capture_request is high for the clock of the write that asks for it, capture_busy from
-// the clock after it to that of capture_done, which asks for the change-over of that table as TABLE_COMMIT does. While
-// capture_busy is high, and in the clock of the request, the bus neither writes that table nor asks for its change-over.
-// record: word n of the contact events in bits 32 n + 31 to 32 n; what is read is the word as it stands.
+// Capture of the reference table: capture_request is high in the clock in which its write takes effect. From the
+// clock after it to that of capture_done, capture_busy shall be high: then the bus neither writes that table nor asks
+// for its change-over. capture_done asks for that, as TABLE_COMMIT does. record: word n of the contact events in
+// bits 32 n + 31 to 32 n; what is read is the word as it stands.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers
