@@ -24,7 +24,7 @@ from commands import sim
 from commands import simulator as simulation
 from models.calibration import Calibration, load
 from models.certificate import Node, certify, slope_response
-from models.configuration import Configuration
+from models.configuration import GRADIENT_MODELS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
 from models.gradient_lookup import gradient_codes
@@ -234,9 +234,11 @@ def run(request: sim.Request, rtl: bool = True) -> int:
         simulation.check(request.simulator)
     calibration = load(request.calibration)
     grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
-    scene = load_frames(request.frames, (grid.rows, grid.columns), request.reference, request.seed, request.press)
-    pixel_pitch_mm = calibration.pixel_pitch_mm * scene.pixel_scale
-    config = sim.configure(request, calibration, pixel_pitch_mm)
+    scene = load_frames(request.frames, (grid.rows, grid.columns), None, request.seed, request.press)
+    # It holds for all slopes, whatever the colours: they are taken as a table without a reference reads them.
+    calibration = calibration.on_grid(scene.pixel_scale)
+    pixel_pitch_mm = calibration.pixel_pitch_mm
+    config = sim.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
     shape = f"{config.rows}x{config.columns}"
     name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
     if request.depth_range_mm == math.inf:

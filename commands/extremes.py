@@ -191,7 +191,7 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     given += [f"SOLVER={solver}", f"SIM={simulator}", f"REPEAT={extreme.repeat}", *extreme.variables]
     request = sim.parse(given)
     calibration = load(CALIBRATION)
-    config = sim.configure(request, calibration, calibration.pixel_pitch_mm)
+    config = sim.configure(request, calibration)
     frames = np.ascontiguousarray(extreme.draw(config))
     streamed = certificate.stream(request, config, calibration, frames)
     codes = streamed.codes

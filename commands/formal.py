@@ -29,7 +29,7 @@ from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
-from models.rom_files import write_quadratic, write_words
+from models.rom_files import write_gains, write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
@@ -38,7 +38,7 @@ JOBS = 2
 TIMEOUT = 900  # seconds, of one run of SymbiYosys
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
-HELPERS = ("ram_check", "burst_source", "follow_word")
+HELPERS = ("ram_check", "burst_source", "follow_word", "raster_source")
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,8 @@ class Proof:
         Of mode prove.
     roms : callable
         Writes the files that $readmemh reads into the folder given.
+    free : str
+        A wire of the core that takes any values instead of its own.
     """
 
     core: str
@@ -70,6 +72,7 @@ class Proof:
     depth: int = 20
     engine: str = "abc pdr"
     roms: Callable[[Path], None] | None = None
+    free: str = ""
 
     @property
     def name(self) -> str:
@@ -115,6 +118,12 @@ def quadratic_roms(folder: Path) -> None:
     """Words of one bit, arbitrary ones, another order in every polynomial."""
     choose = random.Random(1)
     write_quadratic(folder, np.array([choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
+
+
+def gain_rom(nodes: int) -> Callable[[Path], None]:
+    """Gains of one bit."""
+    gains = np.array([node % 3 & 1 for node in range(nodes)])
+    return lambda folder: write_gains(folder, np.stack((gains, gains, gains), axis=-1), 1)
 
 
 def transform_roms(folder: Path) -> None:
@@ -275,6 +284,39 @@ PROOFS: tuple[Proof, ...] = (
             roms=quadratic_roms,
         )
         for polynomial in (0, 4, 2)
+    ),
+    *(
+        Proof(
+            "flat_field",
+            "a colour times its gain, whatever that is, rounded, saturated; dark pixels held and counted; latency 12",
+            f"products are exact at any width; {ROUNDING}",
+            {"Drop": 2, "Offset": offset, "OutWidth": width, "Flat": flat},
+            depth=45,
+            roms=gain_rom(2),
+            free="gains",
+        )
+        for offset, width, flat in ((0, 1, 1), (1, 2, 0))
+    ),
+    Proof(
+        "reference_capture",
+        "2^k good frames in a row behind a request; sums of an arbitrary node; done a fixed number of clocks later",
+        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+        depth=60,
+    ),
+    *(
+        Proof(
+            "gain_map",
+            claim,
+            "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
+            {"Along": along, "Columns": 4},
+            depth=45,
+            roms=gain_rom(4),
+            free="sums" if along else "",
+        )
+        for along, claim in (
+            (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
+            (1, "along a row: gains interpolated between any such sums, rounded to even; latency 9"),
+        )
     ),
     *(
         Proof(
@@ -450,17 +492,23 @@ PROOFS: tuple[Proof, ...] = (
 
 
 HANDSHAKES = (
-    *("s_axis_tready", "m_axis_tvalid", "m_axis_tlast", "m_axis_tuser"),
+    *("s_axis_tready", "m_axis_tvalid", "m_axis_tlast", "m_axis_tuser", "m_event_tvalid", "m_event_tlast"),
     *("s_axil_awready", "s_axil_wready", "s_axil_bvalid", "s_axil_bresp", "s_axil_arready", "s_axil_rvalid"),
 )
 STRUCTURES = tuple(
     Structure(
         "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
         "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
-        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10},
+        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10}
+        | colours,
     )
     for solver, rows in (("spectral", 16), ("tridiagonal", 8))
-    for neumann in (0, 1)
+    for neumann, colours in (
+        (0, {}),
+        (1, {}),
+        (1, {"flat_field": 1}),
+        (0, {"flat_field": 1, "gradient_model": "quadratic"}),
+    )
 )
 
 # Cores with nothing that a proof here would add to.
@@ -511,6 +559,11 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         "[script]",
         f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)}",
         f"prep -flatten -top {bench}",
+        *(
+            [f"select -assert-count 1 w:dut.{proof.free}", f"cutpoint w:dut.{proof.free}", "opt_clean"]
+            if proof.free
+            else []
+        ),
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
         "[files]",
@@ -523,6 +576,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
     """The Yosys script of one structural proof; every memory of the data path is called words."""
     parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
     outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
+    quadratic = config.gradient_model == "quadratic"
     lines = [
         f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {structure.core}",
@@ -542,7 +596,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         "select -set cone_of_depth o:m_axis_tdata* %ci*",
         f"select -assert-min {3 * config.bits_per_channel} @cone_of_depth @pixels %i",
         "select -assert-min 10 @cone_of_depth @memories %i",
-        "select -assert-any @cone_of_depth */u_lookup.u_table.*words %i",
+        f"select -assert-any @cone_of_depth */*{'u_quadratic' if quadratic else 'u_lookup'}.*words %i",
     ]
     return "\n".join(lines) + "\n"
 
@@ -550,7 +604,9 @@ def structure_script(structure: Structure, config: Configuration) -> str:
 def run_structure(structure: Structure, mode: str) -> Outcome:
     """One run of Yosys, in build/formal/<name>/."""
     choices = dict(structure.choices)
-    config = Configuration(**choices | {"neumann": bool(choices["neumann"])})
+    config = Configuration(
+        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field")},
+    )
     folder = BUILD / structure.name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

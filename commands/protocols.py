@@ -323,6 +323,82 @@ def divergence(parameters: Mapping[str, int]) -> Protocol:
     )
 
 
+def raster(parameters: Mapping[str, int]) -> tuple[str, str]:
+    """Registers and an assumption: places of pixels in raster order, whole frames but for a reset."""
+    rows, columns = parameters["Rows"], parameters["Columns"]
+    registers = f"""
+  reg [15:0] in_row = 16'd0, in_column = 16'd0;
+  wire [3:0] place = {{
+    in_column == 16'd{columns - 1}, in_row == 16'd{rows - 1}, in_column == 16'd0, in_row == 16'd0
+  }};
+  always @(posedge clk) begin
+    if (rst) begin
+      in_row <= 16'd0;
+      in_column <= 16'd0;
+    end else if (en & in_valid) begin
+      in_column <= place[3] ? 16'd0 : in_column + 16'd1;
+      if (place[3]) in_row <= place[2] ? 16'd0 : in_row + 16'd1;
+    end
+  end
+"""
+    return registers, "~in_valid | rst | in_place == place"
+
+
+def gain_map(parameters: Mapping[str, int]) -> Protocol:
+    """Bus and capture one at a time, neither while a change-over is due, but for what the bus reads."""
+    registers, in_order = raster(parameters)
+    nodes = (parameters["Rows"] >> parameters["BlockLog2"]) * (parameters["Columns"] >> parameters["BlockLog2"])
+    registers += """
+  reg [1:0] read_left = 2'd0;  // clocks until what was read stands
+  reg read = 1'b0, captured = 1'b0;
+  always @(posedge clk) begin
+    captured <= capture_read;
+    if (rst) begin
+      read_left <= 2'd0;
+      read <= 1'b0;
+    end else begin
+      read_left <= table_read ? 2'd2 : read_left - (read_left != 2'd0);
+      read <= read | table_read;
+    end
+  end
+"""
+    settled = "table_bank == table_in_use"
+    assume = (
+        in_order,
+        f"~(table_write | capture_write | capture_read) | ({settled} & ~rst & ~table_read & read_left == 2'd0)",
+        "~table_read | ~rst & read_left == 2'd0",
+        "~table_write | ~capture_write & ~capture_read",
+        "~capture_write | ~capture_read | capture_write_node != capture_read_node",
+        f"(table_index >> 2) < {nodes} & capture_write_node < {nodes} & capture_read_node < {nodes}",
+    )
+    word = f"{MOVES} & out_valid"
+    compare = {
+        "out_valid": MOVES,
+        "out_place": word,
+        "out_gains": word,
+        "table_in_use": "live",
+        "table_read_gain": "live & read & read_left == 2'd0",
+        "capture_read_gains": "captured",
+    }
+    return Protocol(LIVE + registers, assume, compare)
+
+
+def flat_field(parameters: Mapping[str, int]) -> Protocol:
+    inside = gain_map(parameters)
+    compare = dict(inside.compare)
+    del compare["out_gains"]
+    compare |= {f"out_{colour}": compare["out_place"] for colour in ("red", "green", "blue")}
+    return Protocol(inside.registers, inside.assume, compare | dict.fromkeys(("dark", "saturations"), "live & ~rst"))
+
+
+def reference_capture(parameters: Mapping[str, int]) -> Protocol:
+    """Whatever the memory answers."""
+    registers, in_order = raster(parameters)
+    compare = dict.fromkeys(("busy", "done", "map_read", "map_write"), "live & ~rst")
+    compare |= dict.fromkeys(("map_write_node", "map_write_gains"), "live & ~rst & map_write")
+    return Protocol(LIVE + registers, (in_order,), compare | {"map_read_node": "live & ~rst & map_read"})
+
+
 def frame_output(_: Mapping[str, int]) -> Protocol:
     """Anything may come; in_bad and in_data count where a model looks at them. Unlike the testbench: in reset too."""
     word = f"{MOVES} & out_valid"

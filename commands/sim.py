@@ -27,7 +27,7 @@ from models import latency, reference
 from models.accuracy import errors
 from models.calibration import Calibration, load
 from models.certificate import deepest
-from models.configuration import COLUMNS, Configuration
+from models.configuration import COLUMNS, GRADIENT_MODELS, Configuration
 from models.errors import InputError
 from models.frames import Frames, load_frames
 from models.npy import is_file
@@ -62,6 +62,7 @@ class Request:
     press: Press
     reference: str | None
     calibration: str
+    gradient: str  # a model; "": the calibration's own
     repeat: int
     seed: int
     gaps: float
@@ -79,7 +80,7 @@ def parse(arguments: list[str]) -> Request:
     """
     accepted = (
         "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE "
-        "CALIBRATION REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
+        "CALIBRATION GRADIENT REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
     )
     given: dict[str, str] = {}
     for argument in arguments:
@@ -107,7 +108,7 @@ def parse(arguments: list[str]) -> Request:
     def choice(key: str, accepted: tuple[str, ...]) -> str:
         value = given.get(key, accepted[0])
         if value not in accepted:
-            raise InputError(f"{key}={value} is unknown: accepted are {', '.join(accepted)}")
+            raise InputError(f"{key}={value} is unknown: accepted are {', '.join(filter(None, accepted))}")
         return value
 
     def position(key: str) -> tuple[float, float]:
@@ -139,6 +140,7 @@ def parse(arguments: list[str]) -> Request:
         ),
         reference=given.get("REFERENCE"),
         calibration=given.get("CALIBRATION", "synthetic"),
+        gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
         seed=int(number("SEED", 1, 0, 10**9)),
         gaps=number("GAPS", 0, 0, 0.99, float),
@@ -177,15 +179,18 @@ def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[st
     return {key: str(value) for key, value in values.items() if key not in replaced}
 
 
-def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float) -> Configuration:
-    """The pipeline for a request; the depth range becomes grid pixels."""
+def configure(request: Request, calibration: Calibration) -> Configuration:
+    """The pipeline for a request and a calibration on its grid; the depth range becomes grid pixels."""
+    model = request.gradient or (calibration.model if calibration.reference is not None else GRADIENT_MODELS[0])
+    if model not in calibration.models:
+        raise InputError(f"GRADIENT={model}: {calibration.name} holds only {', '.join(calibration.models)}")
     neumann = request.boundary == "neumann"
     depth_range = request.depth_range_mm
     if depth_range == math.inf:
         Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
         depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
     else:
-        depth_range_px = None if depth_range is None else depth_range / pixel_pitch_mm
+        depth_range_px = None if depth_range is None else depth_range / calibration.pixel_pitch_mm
     return Configuration(
         columns=request.columns,
         rows=request.rows,
@@ -196,6 +201,8 @@ def configure(request: Request, calibration: Calibration, pixel_pitch_mm: float)
         depth_range_px=depth_range_px,
         gradient_limit=calibration.gradient_limit,
         bits_per_channel=calibration.bits_per_channel,
+        flat_field=calibration.reference is not None,
+        gradient_model=model,
     )
 
 
@@ -336,11 +343,13 @@ def run(request: Request, frames: Frames | None = None) -> int:
     grid = (request.rows, request.columns)
     if frames is None:
         frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
-    pixel_pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
-    config = configure(request, calibration, pixel_pitch_mm)
+    calibration = calibration.on_grid(frames.pixel_scale, frames.reference)
+    pixel_pitch_mm = calibration.pixel_pitch_mm
+    config = configure(request, calibration)
     shape = f"{config.rows}x{config.columns}"
     widths = f"d{config.data_width}-c{config.coefficient_width}"
-    name = f"{request.solver}-{request.boundary}-{shape}-{widths}-{request.simulator}"
+    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    name = f"{request.solver}-{request.boundary}-{shape}-{widths}{colours}-{request.simulator}"
     out = request.out or simulation.ROOT / "build" / "sim" / name
     if out.exists() and not out.is_dir():
         raise InputError(f"OUT={out} is a file: give a folder")
@@ -353,7 +362,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         played = simulate(request, config, frames, calibration, work)
         monitor = Monitor()
         codes = tactile_depth(frames.pixels, calibration, config, monitor)
-        reference_px = reference.depth(frames.pixels, calibration, config.neumann)
+        reference_px = reference.depth_of(frames.pixels, calibration, config)
         seen = played.codes.reshape(request.repeat, *codes.shape)
         depth = seen.reshape(-1, *codes.shape[1:])
         bit_exact = bool((seen == codes).all())
@@ -375,6 +384,8 @@ def run(request: Request, frames: Frames | None = None) -> int:
             "coefficient_table_words": coefficient_words(config),
             "contact_threshold_mm": CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
             "calibration": calibration.name,
+            "gradient_model": config.gradient_model,
+            "flat_field": config.flat_field,
             "source": frames.name,
             "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
             **measure(played),

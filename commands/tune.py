@@ -271,6 +271,8 @@ def config_file(request: sim.Request, at: Widths) -> dict[str, str | int | float
     path = Path(request.calibration)
     if request.calibration != "synthetic":
         chosen["CALIBRATION"] = str(path.resolve()) if path.is_file() else request.calibration
+    if request.gradient:
+        chosen["GRADIENT"] = request.gradient
     return chosen
 
 
@@ -300,14 +302,14 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     frames = load_frames(
         request.frames, (request.rows, request.columns), request.reference, request.seed, request.press
     )
-    pitch_mm = calibration.pixel_pitch_mm * frames.pixel_scale
+    calibration = calibration.on_grid(frames.pixel_scale, frames.reference)
     built: dict[Widths, Configuration | None] = {}
     refusals: list[InputError] = []
 
     def build(at: Widths) -> Configuration | None:
         if at not in built:
             try:
-                built[at] = sim.configure(shaped(at), calibration, pitch_mm)
+                built[at] = sim.configure(shaped(at), calibration)
             except InputError as error:
                 built[at] = None
                 refusals.append(error)
@@ -316,14 +318,15 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     solvers = [s for s in solvers if build(Widths(s, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])) is not None]
     if not solvers:
         raise refusals[-1]
-    neumann = request.boundary == "neumann"
-    exact = reference.depth(frames.pixels, calibration, neumann)
+    widest = build(Widths(solvers[0], DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1]))
+    assert widest is not None
+    exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     print(how)
     _writable(out)
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
-        measure = _measurement(tuning, calibration, neumann, bar)
+        measure = _measurement(tuning, calibration, widest, bar)
         search = Search(build, measure, limits, limits.tolerance / MARGIN)
         best = search.cheapest(solvers)
         if best is None:
@@ -408,9 +411,9 @@ def _writable(out: Path) -> None:
 
 
 def _measurement(
-    tuning: Frames, calibration: Calibration, neumann: bool, bar: tqdm
+    tuning: Frames, calibration: Calibration, any_of_them: Configuration, bar: tqdm
 ) -> Callable[[Configuration], float]:
-    exact = reference.depth(tuning.pixels, calibration, neumann)
+    exact = reference.depth_of(tuning.pixels, calibration, any_of_them)
 
     def measure(config: Configuration) -> float:
         rms = errors(depth_px(tuning.pixels, config, calibration), exact)["rms_percent_of_peak"]

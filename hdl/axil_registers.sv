@@ -33,13 +33,13 @@ module axil_registers
   parameter int DataWidth        = 24,
   parameter int GradientWidth    = 20,  // bits of a slope code, at most 32
   parameter int GradientFraction = 18,
-  parameter int BitsPerChannel   = 4,
+  parameter int BitsPerChannel   = 4,   // 0: no gradient table
   parameter int CoefficientWords = 0,   // entries of these tables, 0: none
   parameter int ReferenceWords   = 0,
   localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
   localparam int Tables = TableSelectSelectCount,
   localparam int SelectWidth = TableSelectSelectWidth,
-  localparam int GradientWords = 1 << (3 * BitsPerChannel),
+  localparam int GradientWords = BitsPerChannel == 0 ? 0 : 1 << (3 * BitsPerChannel),
   localparam int OtherWords = CoefficientWords > ReferenceWords ? CoefficientWords : ReferenceWords,
   localparam int IndexWidth = $clog2(GradientWords > OtherWords ? GradientWords : OtherWords)
 ) (
@@ -121,7 +121,7 @@ module axil_registers
     | (GradientFraction << FormatGradientFractionLsb)
     | (BitsPerChannel << FormatBitsPerChannelLsb);
   localparam logic [Tables-1:0] Present =
-      (Tables'(1'b1) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
+      (Tables'(GradientWords != 0) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
     | (Tables'(CoefficientWords != 0) << TableCommitCoefficientsBit)
     | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit);
 
@@ -413,7 +413,7 @@ module axil_registers
     if (Rows < 1 || Rows > 65535) $fatal(1, "%m: Rows does not fit GRID");
     if (Columns < 1 || Columns > 65535) $fatal(1, "%m: Columns does not fit GRID");
     if (GradientWidth < 2 || GradientWidth > 32) $fatal(1, "%m: GradientWidth must be 2 to 32");
-    if (BitsPerChannel < 1 || BitsPerChannel > 8) $fatal(1, "%m: BitsPerChannel must be 1 to 8");
+    if (BitsPerChannel < 0 || BitsPerChannel > 8) $fatal(1, "%m: BitsPerChannel must be 0 to 8");
   end
 `endif
 

@@ -19,7 +19,6 @@ module flat_field #(
   parameter int Offset    = 0,
   parameter int OutWidth  = 8,
   parameter int Flat      = 128,
-  parameter     File      = "gain.hex",
   localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)))
 ) (
   input  logic                   clk,
@@ -63,7 +62,7 @@ module flat_field #(
   logic [3:0] gain_place;
   logic [3*GainWidth-1:0] gains;
   gain_map #(
-    .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth), .File(File)
+    .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth)
   ) u_map (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
     .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,

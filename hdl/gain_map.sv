@@ -11,15 +11,14 @@
 // index 4 node + channel: red 0, green 1, blue 2; 3 is not written and reads 0) or by the capture (all gains of a node,
 // read one clock later). Nothing is written while a change-over is due (table_bank is not table_in_use). A table_read
 // stands on table_read_gain from 3 clocks later until the next, en or not; no write until then. What the bus reads
-// while the capture reads is left open. File gives both banks at power-up; a memory without contents there must be
-// written before the first frame. Bit-accurate model: models/gain_map.py.
+// while the capture reads is left open. gain_0, 1 and 2.hex give both banks at power-up; a memory without contents there
+// must be written before the first frame. Bit-accurate model: models/gain_map.py.
 
 module gain_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
   parameter int Width     = 24,
-  parameter     File      = "gain.hex",  // a word of each node
   localparam int NodeColumns = Columns / (1 << BlockLog2),
   localparam int NodeRows = Rows / (1 << BlockLog2),
   localparam int NodeWidth = $clog2(NodeRows * NodeColumns)
@@ -137,7 +136,7 @@ module gain_map #(
         .Width(Width),
         .Depth(NodeRows * NodeColumns),
         .Style(1),
-        .File (File)
+        .File ({"gain_", 8'(48 + c), ".hex"})
       ) u_gains (
         .clk,
         .write_en     (free & (capture_write | (table_write & table_index[1:0] == 2'(c)))),
@@ -220,12 +219,14 @@ module gain_map #(
 
   // Each channel: weigh a node and the one below it, then run along the row from node to node.
 
+  logic [3*SumWidth-1:0] sums;
   logic start, node_begins, between;
   assign start = start_q[ToSum-1];
   assign node_begins = begins_q[ToSum-1];
   assign between = inner_q[ToSum-1];
   for (genvar c = 0; c < 3; c++) begin : g_along
     logic [SumWidth-1:0] product, sum, far, near;
+    assign sum = sums[c*SumWidth+:SumWidth];
     logic signed [SumWidth:0] step;
     logic [GainWidth-1:0] gain, from;
     logic signed [GainWidth-1:0] add;
@@ -240,7 +241,7 @@ module gain_map #(
     always_ff @(posedge clk) begin
       if (en) begin
         product <= SumWidth'(used_gains[c*Width+:Width]) * SumWidth'(weight_q);
-        sum <= (upper_q2 ? sum : '0) + product;
+        sums[c*SumWidth+:SumWidth] <= (upper_q2 ? sum : '0) + product;
         if (node_done) far <= sum;
         if (segment_done) begin
           near <= far;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactile_depth: RGB frames of a lit gel in, depth maps and contact out.
 //
-//   axis_skid -> frame_guard -> gradient_lookup -> divergence -> solver -> frame_output -> axis_skid
-//                     |                                                                  |             |
-//                     +------------------------- frame_tags -----------------------------+     threshold_comparator
+//   axis_skid -> frame_guard -> [flat_field] -> gradient -> divergence -> solver -> frame_output -> depth_gate
+//                     |                                                                 |               |
+//                     +--------------------------- frame_tags --------------------------+   threshold_comparator
+//                     +- [reference_capture]                                                contact_events
+//   gradient: gradient_lookup or quadratic_gradient, from its parameter; with FlatField what stands in brackets.
 //
 // Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, one pixel per clock sustained.
 // Stream out: depth codes in raster order (tridiagonal: bottom row first), tuser with the first of a frame, tlast with
@@ -40,6 +42,20 @@ module tactile_depth
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
   parameter int FrameLatency     = 17167,  // last pixel out of the guard to first depth out of the solver
+  parameter int FlatField        = 0,    // 1: colours relative to a reference frame
+  parameter int Quadratic        = 0,    // gradient model: 0 table, 1 quadratics, which need FlatField
+  parameter int BlockLog2        = 3,    // from here: FlatField
+  parameter int GainWidth        = 24,
+  parameter int GainFraction     = 27,
+  parameter int CaptureLog2      = 8,
+  parameter int ColourWidth      = 8,
+  parameter int ColourDrop       = 20,
+  parameter int ColourOffset     = 0,
+  parameter int ColourFlat       = 128,
+  parameter int PolynomialWords  = 36,   // from here: Quadratic
+  parameter int PolynomialWidth  = 32,
+  parameter int ColourCoeffWidth = 18,
+  parameter int SlopeDrop        = 6,
   localparam int DepthBytes = (DataWidth + 7) / 8
 ) (
   input  logic                    clk,
@@ -58,6 +74,11 @@ module tactile_depth
   output logic                    m_axis_tuser,
 
   output logic                    contact,
+
+  output logic [31:0]             m_event_tdata,
+  output logic                    m_event_tvalid,
+  input  logic                    m_event_tready,
+  output logic                    m_event_tlast,
 
   input  logic [AddressWidth-1:0] s_axil_awaddr,
   input  logic                    s_axil_awvalid,
@@ -106,31 +127,121 @@ module tactile_depth
     .row_short, .row_long, .start_missing, .start_early, .timed_out
   );
 
-  // Depth.
+  // Colours, relative to the reference if there is one, and their slopes.
 
   localparam int Tables = TableSelectSelectCount;
-  logic table_write, table_read, gradient_selected, gradient_bank, gradient_in_use;
+  localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1;
+  localparam int GradientWords = Quadratic != 0 ? 0 : 1 << (3 * BitsPerChannel);
+  localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0;
+  localparam int ReferenceWords = FlatField != 0 ? 4 * (Rows >> BlockLog2) * (Size >> BlockLog2) : 0;
+  localparam int SlopeWords = GradientWords > CoefficientWords ? GradientWords : CoefficientWords;
+  localparam int IndexWidth = $clog2(SlopeWords > ReferenceWords ? SlopeWords : ReferenceWords);
+  logic table_write, table_read, gradient_selected, coefficients_selected, reference_selected;
   logic [TableSelectSelectWidth-1:0] table_select;
-  logic [3*BitsPerChannel-1:0] table_index;
-  logic [31:0] table_high, table_low;
+  logic [IndexWidth-1:0] table_index;
+  logic [31:0] table_high, table_low, table_read_high, table_read_low, reference_word, slope_high, slope_low;
   logic [Tables-1:0] table_bank, table_in_use;
-  logic signed [GradientWidth-1:0] table_gx, table_gy, gx, gy;
+  logic slope_bank, slope_in_use, reference_bank, reference_in_use;
   // Constants of the package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.
-  assign gradient_bank = table_bank[TableSelectGradient];
-  assign table_in_use = Tables'(gradient_in_use) << TableSelectGradient;
+  assign slope_bank = Quadratic != 0 ? table_bank[TableSelectCoefficients] : table_bank[TableSelectGradient];
+  assign reference_bank = table_bank[TableSelectReference];
+  assign table_in_use = (Tables'(reference_in_use) << TableSelectReference)
+      | (Tables'(slope_in_use) << (Quadratic != 0 ? TableSelectCoefficients : TableSelectGradient));
   assign gradient_selected = table_select == TableSelectSelectWidth'(TableSelectGradient);
+  assign coefficients_selected = table_select == TableSelectSelectWidth'(TableSelectCoefficients);
+  assign reference_selected = table_select == TableSelectSelectWidth'(TableSelectReference);
+  assign table_read_high = reference_selected ? 32'd0 : slope_high;
+  assign table_read_low = reference_selected ? reference_word : slope_low;
+
+  logic colour_valid, dark, capture_request, capture_busy, capture_done;
+  logic [3:0] colour_place, capture_log2_frames;
+  logic [ColourWidth-1:0] red, green, blue;
+  logic [7:0] dark_level;
+  logic [1:0] colour_saturations, slope_saturations;
+  if (FlatField != 0) begin : g_flat_field
+    localparam int NodeWidth = $clog2(ReferenceWords / 4);
+    logic capture_write, capture_read;
+    logic [NodeWidth-1:0] capture_write_node, capture_read_node;
+    logic [3*GainWidth-1:0] captured, capture_read_gains;
+    logic [GainWidth-1:0] table_read_gain;
+    flat_field #(
+      .Rows(Rows), .Columns(Size), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
+      .Offset(ColourOffset), .OutWidth(ColourWidth), .Flat(ColourFlat)
+    ) u_flat_field (
+      .clk, .rst, .en, .dark_level,
+      .table_bank(reference_bank), .table_in_use(reference_in_use),
+      .table_write(table_write & reference_selected), .table_read(table_read & reference_selected),
+      .table_index(table_index[NodeWidth+1:0]), .table_gain(table_low[GainWidth-1:0]), .table_read_gain,
+      .capture_write, .capture_write_node, .capture_gains(captured),
+      .capture_read, .capture_read_node, .capture_read_gains,
+      .in_valid(guarded_valid), .in_pixel(guarded_data), .in_place(guarded_place),
+      .out_valid(colour_valid), .out_place(colour_place), .out_red(red), .out_green(green), .out_blue(blue),
+      .dark, .saturations(colour_saturations)
+    );
+    reference_capture #(
+      .Rows(Rows), .Columns(Size), .BlockLog2(BlockLog2), .Width(GainWidth), .GainFraction(GainFraction),
+      .MaxLog2(CaptureLog2)
+    ) u_capture (
+      .clk, .rst, .en, .request(capture_request), .log2_frames(capture_log2_frames),
+      .busy(capture_busy), .done(capture_done),
+      .in_valid(guarded_valid), .in_pixel(guarded_data), .in_place(guarded_place), .in_bad(guarded_bad),
+      .map_write(capture_write), .map_write_node(capture_write_node), .map_write_gains(captured),
+      .map_read(capture_read), .map_read_node(capture_read_node), .map_read_gains(capture_read_gains)
+    );
+    assign reference_word = 32'(table_read_gain);
+  end else begin : g_as_sent
+    assign {red, blue, green} = guarded_data;
+    assign colour_valid = guarded_valid;
+    assign colour_place = guarded_place;
+    assign {dark, colour_saturations, capture_busy, capture_done, reference_in_use} = '0;
+    assign reference_word = '0;
+    logic unused_reference;
+    assign unused_reference = ^{dark_level, capture_request, capture_log2_frames, reference_bank};
+  end
+
   logic slope_valid;
   logic [3:0] slope_place;
-  gradient_lookup #(.Width(GradientWidth), .BitsPerChannel(BitsPerChannel)) u_lookup (
-    .clk, .rst, .en,
-    .table_bank(gradient_bank), .table_in_use(gradient_in_use),
-    .table_write(table_write & gradient_selected), .table_read(table_read & gradient_selected), .table_index,
-    .table_gx(table_low[GradientWidth-1:0]), .table_gy(table_high[GradientWidth-1:0]),
-    .table_read_gx(table_gx), .table_read_gy(table_gy),
-    .in_valid(guarded_valid), .in_pixel(guarded_data), .in_place(guarded_place),
-    .out_valid(slope_valid), .out_place(slope_place),
-    .out_gx(gx), .out_gy(gy)
-  );
+  logic signed [GradientWidth-1:0] gx, gy;
+  if (Quadratic != 0) begin : g_quadratic
+    logic signed [PolynomialWidth-1:0] table_read_word;
+    quadratic_gradient #(
+      .Width(GradientWidth), .DeviationWidth(ColourWidth), .CoeffWidth(ColourCoeffWidth),
+      .WordWidth(PolynomialWidth), .Drop(SlopeDrop)
+    ) u_quadratic (
+      .clk, .rst, .en,
+      .table_bank(slope_bank), .table_in_use(slope_in_use),
+      .table_write(table_write & coefficients_selected), .table_read(table_read & coefficients_selected),
+      .table_index(table_index[$clog2(PolynomialWords)-1:0]),
+      .table_word(table_low[PolynomialWidth-1:0]), .table_read_word,
+      .in_valid(colour_valid), .in_place(colour_place),
+      .in_red(red), .in_green(green), .in_blue(blue),
+      .out_valid(slope_valid), .out_place(slope_place), .out_gx(gx), .out_gy(gy), .saturations(slope_saturations)
+    );
+    assign slope_high = '0;
+    assign slope_low = 32'(table_read_word);
+    logic unused_selected;
+    assign unused_selected = gradient_selected;
+  end else begin : g_lookup
+    logic signed [GradientWidth-1:0] table_read_gx, table_read_gy;
+    gradient_lookup #(.Width(GradientWidth), .BitsPerChannel(BitsPerChannel)) u_lookup (
+      .clk, .rst, .en,
+      .table_bank(slope_bank), .table_in_use(slope_in_use),
+      .table_write(table_write & gradient_selected), .table_read(table_read & gradient_selected),
+      .table_index(table_index[3*BitsPerChannel-1:0]),
+      .table_gx(table_low[GradientWidth-1:0]), .table_gy(table_high[GradientWidth-1:0]),
+      .table_read_gx, .table_read_gy,
+      .in_valid(colour_valid), .in_pixel({red, blue, green}), .in_place(colour_place),
+      .out_valid(slope_valid), .out_place(slope_place),
+      .out_gx(gx), .out_gy(gy)
+    );
+    assign slope_high = 32'(table_read_gy);
+    assign slope_low = 32'(table_read_gx);
+    assign slope_saturations = '0;
+    logic unused_selected;
+    assign unused_selected = coefficients_selected;
+  end
+
+  // Depth.
 
   logic divergence_valid, divergence_frame_start;
   logic signed [GradientWidth+1:0] divergence_data;
@@ -188,13 +299,15 @@ module tactile_depth
     .out_valid(depth_valid), .out_data(depth_data), .out_last(depth_last), .out_user(depth_user)
   );
 
-  logic leaving_last_of_frame;
-  logic signed [DataWidth-1:0] leaving_data;
-  axis_skid #(.Width(DataWidth + 3)) u_skid_out (
-    .clk, .rst,
-    .s_valid(depth_valid), .s_ready(en), .s_data({solved_last, depth_user, depth_last, depth_data}),
-    .m_valid(m_axis_tvalid), .m_ready(m_axis_tready),
-    .m_data({leaving_last_of_frame, m_axis_tuser, m_axis_tlast, leaving_data})
+  logic drop_frames, depth_dropped, leaving_last_of_frame, look_valid, look_user, look_last, look_frame_end;
+  logic signed [DataWidth-1:0] leaving_data, look_data;
+  depth_gate #(.Width(DataWidth)) u_gate (
+    .clk, .rst, .drop_frames, .en,
+    .in_valid(depth_valid), .in_user(depth_user), .in_last(depth_last), .in_frame_end(solved_last),
+    .in_data(depth_data), .event_dropped(depth_dropped),
+    .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_user(m_axis_tuser), .m_last(m_axis_tlast),
+    .m_frame_end(leaving_last_of_frame), .m_data(leaving_data),
+    .look_valid, .look_user, .look_last, .look_frame_end, .look_data
   );
   assign m_axis_tdata = (8 * DepthBytes)'(leaving_data);
 
@@ -202,13 +315,24 @@ module tactile_depth
   logic signed [31:0] threshold;
   assign leaves = m_axis_tvalid & m_axis_tready;
   threshold_comparator #(.Width(DataWidth)) u_comparator (
-    .clk, .rst, .in_valid(leaves), .in_user(m_axis_tuser), .in_data(leaving_data),
+    .clk, .rst, .in_valid(look_valid), .in_user(look_user), .in_data(look_data),
     .threshold, .hold(hold_contact), .contact
+  );
+
+  logic touching, record_lost, unused_record_valid;
+  logic signed [31:0] off_threshold;
+  logic [31:0] minimum_area, depth_begun;
+  logic [7:0] debounce;
+  logic [32*RecordWords-1:0] record;
+  contact_events #(.Width(DataWidth), .Rows(Rows), .Columns(Size), .BottomFirst(Tridiagonal)) u_events (
+    .clk, .rst, .in_valid(look_valid), .in_user(look_user), .in_last(look_last), .in_frame_end(look_frame_end),
+    .in_data(look_data), .in_time(depth_begun), .on_threshold(threshold), .off_threshold, .minimum_area, .debounce,
+    .touching, .record_valid(unused_record_valid), .record, .event_lost(record_lost),
+    .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
 
   // Clocks from the first pixel taken to the first depth on the output. Whether a frame is in flight.
 
-  logic [31:0] depth_begun;
   logic depth_awaited, latency_valid, taking, busy;
   assign busy = pixel_valid | guarded_start | taking | tags_held | depth_active;
   assign latency_valid = depth_awaited & m_axis_tvalid & m_axis_tuser;
@@ -230,19 +354,10 @@ module tactile_depth
     end
   end
 
-  // Of cores that are not connected.
-  logic drop_frames, capture_request;
-  logic [3:0] capture_log2_frames;
-  logic [7:0] dark_level, debounce;
-  logic [31:0] minimum_area;
-  logic signed [31:0] off_threshold;
-  logic unused_settings;
-  assign unused_settings = ^{drop_frames, capture_request, capture_log2_frames, dark_level, debounce, minimum_area,
-                             off_threshold};
-
   axil_registers #(
     .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
-    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel)
+    .GradientFraction(GradientFraction), .BitsPerChannel(Quadratic != 0 ? 0 : BitsPerChannel),
+    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords)
   ) u_registers (
     .clk, .rst,
     .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
@@ -253,15 +368,14 @@ module tactile_depth
     .event_frame_in(en & guarded_end & ~guarded_bad),
     .event_frame_out(leaves & leaving_last_of_frame),
     .event_frame_dropped(row_short | row_long | start_missing | start_early | timed_out),
-    .event_dark(1'b0), .event_depth_dropped(1'b0), .event_record_lost(1'b0),
-    .saturations,
+    .event_dark(dark), .event_depth_dropped(depth_dropped), .event_record_lost(record_lost),
+    .saturations(saturations + 8'(colour_saturations) + 8'(slope_saturations)),
     .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
-    .busy, .contact, .touching(1'b0), .record('0),
-    .threshold, .off_threshold, .minimum_area, .debounce, .timeout, .hold_contact, .drop_frames, .dark_level,
-    .capture_request, .capture_log2_frames, .capture_busy(1'b0), .capture_done(1'b0),
+    .busy, .contact, .touching, .record, .capture_busy, .capture_done,
+    .threshold, .timeout, .hold_contact, .dark_level, .capture_request, .capture_log2_frames, .drop_frames,
+    .off_threshold, .minimum_area, .debounce,
     .frame_start(en & guarded_start), .table_write, .table_read, .table_select, .table_index, .table_high, .table_low,
-    .table_read_high(32'(table_gy)), .table_read_low(32'(table_gx)), .table_bank,
-    .table_in_use
+    .table_read_high, .table_read_low, .table_bank, .table_in_use
   );
 
   logic unused_tables;  // banks of the tables that this build has not, bits of wider entries than it has

@@ -59,7 +59,7 @@ class Build:
     @property
     def table_sizes(self) -> dict[int, int]:
         """Entries of each table that TABLE_SELECT can name; 0: the build has none."""
-        gradient_words = 1 << 3 * self.bits_per_channel
+        gradient_words = 1 << 3 * self.bits_per_channel if self.bits_per_channel else 0
         sizes = {"gradient": gradient_words, "coefficients": self.coefficient_words, "reference": self.reference_words}
         return {code: sizes[name] for name, code in TABLES.items()}
 

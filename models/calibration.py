@@ -6,19 +6,19 @@ from __future__ import annotations
 import io
 import math
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from models.configuration import GRADIENT_LIMITS
+from models.configuration import GRADIENT_LIMITS, GRADIENT_MODELS
 from models.errors import InputError
 from models.npy import is_file, read_header
 from models.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
 FOLDER = Path(__file__).resolve().parent.parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
-MODELS = ("lut", "quadratic")
+MODELS = GRADIENT_MODELS
 BITS_PER_CHANNEL = (1, 6)
 COEFFICIENTS = (2, 3, 6)  # slope, colour, term
 LARGEST_COEFFICIENT = 1e6
@@ -49,6 +49,8 @@ class Calibration:
         That the quadratics were fitted to: their formats hold it.
     model : str
         The better of the two.
+    reference : uint8 array (rows, cols, 3), or None
+        The sensor without contact, on the grid in use: `on_grid`.
     """
 
     name: str
@@ -57,6 +59,17 @@ class Calibration:
     coefficients: np.ndarray | None = None
     largest_slope: float = 0.0
     model: str = "lut"
+    reference: np.ndarray | None = None
+
+    def on_grid(self, pixel_scale: float, reference: np.ndarray | None = None) -> Calibration:
+        """For a grid whose pixels are so many of the camera's wide, and the sensor's frame without contact on it."""
+        return replace(self, pixel_pitch_mm=self.pixel_pitch_mm * pixel_scale, reference=reference)
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Those that it holds."""
+        held = (self.gradient is not None, self.coefficients is not None)
+        return tuple(model for model, is_held in zip(MODELS, held, strict=True) if is_held)
 
     @property
     def table(self) -> np.ndarray:
@@ -73,7 +86,8 @@ class Calibration:
 
     @property
     def bits_per_channel(self) -> int:
-        return self.table.shape[0].bit_length() - 1
+        """Of the table; 4, which is as good as any, where there is none."""
+        return 4 if self.gradient is None else self.gradient.shape[0].bit_length() - 1
 
     @property
     def gradient_limit(self) -> float:
@@ -101,13 +115,18 @@ def load(name_or_path: str) -> Calibration:
 
 
 def synthetic(bits_per_channel: int = 4) -> Calibration:
-    """The synthetic sensor's table: the least-squares inverse of its colour model at each bin's centre."""
+    """The synthetic sensor: the least-squares inverse of its colour model, at each bin's centre and as quadratics.
+
+    Its light is even and its colours linear in the slopes: of each quadratic only the first term is not 0.
+    """
     step = 256 >> bits_per_channel
     centre = np.arange(0, 256, step) + (step - 1) / 2
     colour = np.stack(np.meshgrid(centre, centre, centre, indexing="ij"), axis=-1)
     gradient = (colour - REST) / GAIN @ np.linalg.pinv(LIGHTS).T
     within = np.clip(gradient, -LARGEST_SLOPE, LARGEST_SLOPE)
-    return Calibration("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM)
+    coefficients = np.zeros(COEFFICIENTS)
+    coefficients[..., 0] = REST / GAIN * np.linalg.pinv(LIGHTS)
+    return Calibration("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM, coefficients, LARGEST_SLOPE)
 
 
 def _read(name: str, path: Path) -> Calibration:

@@ -34,6 +34,7 @@ COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
+GRADIENT_MODELS = ("lut", "quadratic")
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 
 # Flat-fielding. The reference is as smooth as the lighting: a grid of block means, 16 across the picture, costs nothing
@@ -97,6 +98,10 @@ class Configuration:
         Largest slope, a power of two.
     bits_per_channel : int
         Bits of each colour that index the gradient table.
+    flat_field : bool
+        Colours are taken relative to a reference frame.
+    gradient_model : str
+        `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
     """
 
     columns: int = 128
@@ -108,12 +113,18 @@ class Configuration:
     depth_range_px: float | None = None
     gradient_limit: float = 1.0
     bits_per_channel: int = 4
+    flat_field: bool = False
+    gradient_model: str = "lut"
 
     def __post_init__(self) -> None:
         def within(name: str, value: int, accepted: tuple[int, int]) -> None:
             if not accepted[0] <= value <= accepted[1]:
                 raise InputError(f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}")
 
+        if self.gradient_model not in GRADIENT_MODELS:
+            raise InputError(f"GRADIENT={self.gradient_model} is unknown: accepted are {', '.join(GRADIENT_MODELS)}")
+        if self.gradient_model == "quadratic" and not self.flat_field:
+            raise InputError("GRADIENT=quadratic without a REFERENCE: it takes colours relative to one, name a picture")
         if self.solver not in COLUMNS:
             raise InputError(f"SOLVER={self.solver} is unknown: accepted are {', '.join(COLUMNS)}")
         within("N", self.columns, COLUMNS[self.solver])

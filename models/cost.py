@@ -96,14 +96,32 @@ def _pipeline(p: dict[str, int]) -> Parts:
     """hdl/tactile_depth.sv."""
     size, slope, data = p["Size"], p["GradientWidth"], p["DataWidth"]
     divergence = slope + 2
+    multipliers, tables = _colours(p)
     memories = [
-        Memory("tables", 2 * slope, 2 << 3 * p["BitsPerChannel"]),  # of gradients, in two banks
+        *tables,
         Memory("row buffers", slope, size),  # of the divergence: the row above
         Memory("row buffers", divergence, 2 * size),  # row_reorder, in and out
         Memory("row buffers", data, 2 * size),
     ]
     solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
-    return solver[0], memories + solver[1]
+    return multipliers + solver[0], memories + solver[1]
+
+
+def _colours(p: dict[str, int]) -> Parts:
+    """From pixels to slopes: flat_field.sv, and gradient_lookup.sv or quadratic_gradient.sv, in two banks each."""
+    multipliers, memories = [], []
+    if p["FlatField"]:
+        gain, log2 = p["GainWidth"], p["BlockLog2"]
+        # A node by its share of the rows, a colour by its gain; both unsigned, so a bit wider.
+        multipliers += [Multiplier(gain + 1, log2 + 3), Multiplier(gain + 1, 9)] * 3
+        memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Size"] >> log2))] * 6
+    if p["Quadratic"]:
+        multipliers += [Multiplier(p["ColourWidth"], p["ColourCoeffWidth"])] * 6
+        memories += [Memory("tables", p["PolynomialWidth"], 2 * p["PolynomialWords"])]  # read back
+        memories += [Memory("tables", p["PolynomialWidth"], 2 * p["PolynomialWords"] // 6)] * 6
+    else:
+        memories += [Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"])] * 2
+    return multipliers, memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:

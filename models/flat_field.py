@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from models.calibration import Calibration
 from models.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration
 from models.round_saturate import Monitor, round_half_even, round_saturate
 
@@ -54,6 +55,13 @@ def flat_field_parameters(config: Configuration, quadratic: bool) -> dict[str, i
         "OutWidth": DEVIATION.width if quadratic else CODE_WIDTH,
         "Flat": 0 if quadratic else FLAT_CODE,
     }
+
+
+def reference_gains(calibration: Calibration, config: Configuration) -> np.ndarray:
+    """The gains of a calibration's reference frame, int64 (node rows, node columns, 3)."""
+    if calibration.reference is None:
+        return unit_gains(config)
+    return captured_gains(calibration.reference[None], config)
 
 
 def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:

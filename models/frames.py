@@ -21,6 +21,7 @@ from models.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
 LARGEST_CAMERA = 4096  # rows, and columns, of a frame: what a file claims must not decide how much memory is taken
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
+REST_SCENE = "flat"  # nothing touches
 ACCEPTED = f"a scene ({', '.join(SCENES)}), a .npy of uint8 (frames, rows, cols, 3), a PNG, a folder of PNGs"
 
 
@@ -37,12 +38,15 @@ class Frames:
         What was loaded.
     labels : tuple of str
         One per frame.
+    reference : uint8 array (rows, cols, 3), or None
+        The sensor without contact.
     """
 
     pixels: np.ndarray
     pixel_scale: float
     name: str
     labels: tuple[str, ...]
+    reference: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -89,11 +93,6 @@ def resampling(camera: tuple[int, int], grid: tuple[int, int]) -> Resampling:
     row_weights, top = weights(rows, height)
     column_weights, left = weights(cols, width)
     return Resampling(row_weights, column_weights, (top, left), numerator, denominator)
-
-
-def flat_field(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """128 + 128 (I - ref) / ref, unrounded; a reference of 0 counts as 1."""
-    return 128 * image.astype(np.float64) / np.maximum(reference, 1)
 
 
 def read_picture(path: Path) -> np.ndarray:
@@ -152,7 +151,7 @@ def load_frames(
         A scene's name, a `.npy` of uint8 (frames, rows, cols, 3), a PNG, or a folder of PNGs.
     size : (rows, cols) of the grid
     reference : str, optional
-        Picture of the sensor without contact, as large as the frames: they are flat-fielded by it.
+        Picture of the sensor without contact, as large as the frames; with a scene `flat`.
     seed : int
         Seed of a scene's noise.
     press : Press
@@ -190,10 +189,12 @@ def load_frames(
 
 
 def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press) -> Frames:
-    if reference is not None:
-        raise InputError(f"reference {reference} with the scene {name}: scenes need none, leave it out")
+    if reference not in (None, REST_SCENE):
+        raise InputError(f"REFERENCE={reference} with the scene {name}: accepted is REFERENCE={REST_SCENE}, or none")
     scene = render(name, *size, seed, press)
-    return Frames(scene.frames, scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM, name, scene.labels)
+    rest = render(REST_SCENE, *size, seed, Press(noise=0)).frames[0] if reference else None
+    scale = scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM
+    return Frames(scene.frames, scale, name, scene.labels, rest)
 
 
 def _to_grid(
@@ -226,10 +227,10 @@ def _to_grid(
                 f"{name}: {label} is {height} x {width}, {labels[0]} is {camera[0]} x {camera[1]}: "
                 "all frames must be of one size"
             )
-        value = plan.average(image if no_contact is None else flat_field(image, no_contact))
-        pixels[index] = np.clip(np.rint(value), 0, 255)
+        pixels[index] = np.rint(plan.average(image))
     assert plan is not None
-    return Frames(pixels, plan.scale, name, labels)
+    on_grid = None if no_contact is None else np.rint(plan.average(no_contact)).astype(np.uint8)
+    return Frames(pixels, plan.scale, name, labels, on_grid)
 
 
 def _read_array(path: Path) -> np.ndarray:

@@ -67,7 +67,9 @@ def frame_latency(config: Configuration) -> int:
     """From the last pixel of a frame out of the guard to its first depth out of the solver: when that is due."""
     tridiagonal = config.solver == "tridiagonal"
     solver = (tridiagonal_solver_latency if tridiagonal else spectral_solver_latency)(config.columns)
-    return GRADIENT_LOOKUP + DIVERGENCE + solver
+    colour = FLAT_FIELD if config.flat_field else 0
+    slope = QUADRATIC_GRADIENT if config.gradient_model == "quadratic" else GRADIENT_LOOKUP
+    return colour + slope + DIVERGENCE + solver
 
 
 def last_pixel_to_first_depth(config: Configuration) -> int:

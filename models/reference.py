@@ -9,6 +9,7 @@ from scipy.fft import dctn, dstn, idctn, idstn
 from models.calibration import Calibration
 from models.configuration import Configuration
 from models.divergence import divergence
+from models.flat_field import flat_codes, reference_gains
 
 
 def eigenvalues(size: int, neumann: bool = False) -> np.ndarray:
@@ -60,6 +61,22 @@ def gains(no_contact: np.ndarray, config: Configuration) -> np.ndarray:
         weights = np.maximum(0, 1 - np.abs(at[:, None] - np.arange(nodes)))
         found = np.moveaxis(np.tensordot(weights, found, (1, axis)), 0, axis)
     return found
+
+
+def slopes_of(frames: np.ndarray, calibration: Calibration, config: Configuration) -> np.ndarray:
+    """Slopes by the model that a configuration takes: of the table's 8-bit colours, or of unrounded deviations.
+
+    Returns
+    -------
+    float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
+    """
+    if config.gradient_model == "quadratic":
+        assert calibration.reference is not None
+        deviation = frames * gains(calibration.reference, config) - 1
+        return quadratic_slopes(deviation, calibration, calibration.pixel_pitch_mm)
+    if config.flat_field:
+        frames = flat_codes(frames, reference_gains(calibration, config), config)
+    return slopes(frames, calibration)
 
 
 def quadratic_slopes(deviation: np.ndarray, calibration: Calibration, pixel_pitch_mm: float) -> np.ndarray:
@@ -121,3 +138,8 @@ def depth(frames: np.ndarray, calibration: Calibration, neumann: bool = False) -
     float64 array (..., rows, cols), in grid pixels, positive pressed in
     """
     return solve(divergence(slopes(frames, calibration), neumann), neumann)
+
+
+def depth_of(frames: np.ndarray, calibration: Calibration, config: Configuration) -> np.ndarray:
+    """The same by the gradient model of a configuration, `slopes_of`."""
+    return solve(divergence(slopes_of(frames, calibration, config), config.neumann), config.neumann)

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from models.configuration import GAIN_WIDTH, Configuration
-from models.flat_field import unit_gains
 from models.sdf_fft import stages
 from models.spectral_divide import reciprocal_rom, reciprocals
 from models.thomas_table import thomas_table
@@ -55,9 +54,10 @@ def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
 
 
-def write_gains(path: Path, config: Configuration) -> None:
-    """The gains at power-up, as the memories of gain_map.sv read them: a word a node, the same for all channels."""
-    write_words(path, unit_gains(config)[..., 0].ravel(), GAIN_WIDTH)
+def write_gains(folder: Path, gains: np.ndarray, width: int = GAIN_WIDTH) -> None:
+    """Gains (.., 3) as the memories of gain_map.sv read them: a file a channel, a word a node."""
+    for channel, words in enumerate(np.moveaxis(gains, -1, 0)):
+        write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:

@@ -3,17 +3,21 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 
 from models import spectral_solver, tridiagonal_solver
-from models.calibration import Calibration
-from models.configuration import Configuration
+from models.calibration import COEFFICIENTS, Calibration
+from models.configuration import POLYNOMIAL, Configuration
 from models.divergence import divergence
+from models.flat_field import deviations, flat_codes, flat_field_parameters, reference_gains
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import frame_latency
-from models.rom_files import write_gains, write_gradient, write_solver
+from models.quadratic_gradient import gradient_parameters, polynomial_words, quadratic_gradient
+from models.reference_capture import reference_capture_parameters
+from models.rom_files import write_gains, write_gradient, write_quadratic, write_solver
 from models.round_saturate import Monitor
 
 
@@ -30,8 +34,22 @@ def tactile_depth(
     -------
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
-    slopes = gradient_lookup(frames, gradient_codes(calibration, config), config.bits_per_channel)
+    slopes = slope_codes(frames, calibration, config, monitor)
     return solve(divergence(slopes, config.neumann), config, monitor)
+
+
+def slope_codes(
+    frames: np.ndarray, calibration: Calibration, config: Configuration, monitor: Monitor | None = None
+) -> np.ndarray:
+    """Slope codes, int64 (..., rows, columns, 2), of frames: by the table or by quadratics, flat-fielded or as sent."""
+    if config.gradient_model == "quadratic":
+        deviation = deviations(frames, reference_gains(calibration, config), config, monitor=monitor)
+        return quadratic_gradient(
+            deviation, polynomial_words(calibration, config, calibration.pixel_pitch_mm), config, monitor
+        )
+    if config.flat_field:
+        frames = flat_codes(frames, reference_gains(calibration, config), config, monitor=monitor)
+    return gradient_lookup(frames, gradient_codes(calibration, config), config.bits_per_channel)
 
 
 def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
@@ -55,11 +73,34 @@ def top_parameters(config: Configuration) -> dict[str, int]:
         "GradientWidth": config.gradient.width,
         "GradientFraction": config.gradient.fraction,
         "FrameLatency": frame_latency(config),
+        **_colour_parameters(config),
     }
+
+
+def _colour_parameters(config: Configuration) -> dict[str, int]:
+    """Of what stands between the pixels and their slopes."""
+    quadratic = config.gradient_model == "quadratic"
+    if not config.flat_field:
+        return {"FlatField": 0, "Quadratic": 0}
+    flat, capture = flat_field_parameters(config, quadratic), reference_capture_parameters(config)
+    colour = {f"Colour{name}": flat[name] for name in ("Drop", "Offset", "Flat")}
+    colour |= {"FlatField": 1, "Quadratic": int(quadratic), "BlockLog2": flat["BlockLog2"]}
+    colour |= {"GainWidth": flat["GainWidth"], "GainFraction": capture["GainFraction"], "ColourWidth": flat["OutWidth"]}
+    colour["CaptureLog2"] = capture["MaxLog2"]
+    if quadratic:
+        slope = gradient_parameters(config)
+        colour |= {"PolynomialWords": math.prod(COEFFICIENTS), "PolynomialWidth": slope["WordWidth"]}
+        colour |= {"ColourCoeffWidth": slope["CoeffWidth"], "SlopeDrop": slope["Drop"]}
+    return colour
 
 
 def write_roms(folder: Path, calibration: Calibration, config: Configuration) -> None:
     """Every file that the RTL reads."""
     write_solver(folder, config)
-    write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)
-    write_gains(folder / "gain.hex", config)
+    if config.flat_field:
+        write_gains(folder, reference_gains(calibration, config))
+    if config.gradient_model == "quadratic":
+        words = polynomial_words(calibration, config, calibration.pixel_pitch_mm)
+        write_quadratic(folder, words, POLYNOMIAL.width)
+    else:
+        write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)

@@ -45,7 +45,21 @@ module frame_bench
   parameter int MomentDrop       = 7,
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
-  parameter int FrameLatency     = 17167
+  parameter int FrameLatency     = 17167,
+  parameter int FlatField        = 0,
+  parameter int Quadratic        = 0,
+  parameter int BlockLog2        = 3,
+  parameter int GainWidth        = 24,
+  parameter int GainFraction     = 27,
+  parameter int CaptureLog2      = 8,
+  parameter int ColourWidth      = 8,
+  parameter int ColourDrop       = 20,
+  parameter int ColourOffset     = 0,
+  parameter int ColourFlat       = 128,
+  parameter int PolynomialWords  = 36,
+  parameter int PolynomialWidth  = 32,
+  parameter int ColourCoeffWidth = 18,
+  parameter int SlopeDrop        = 6
 ) (
   input  logic                    clk,
   input  logic                    rst,
@@ -83,6 +97,9 @@ module frame_bench
   logic signed [DepthWidth-1:0] m_axis_tdata;
   logic m_axis_tvalid, m_axis_tready, m_axis_tlast, m_axis_tuser;
   logic contact, resetting;
+  logic [31:0] m_event_tdata;  // records are seen in the testbench of the top
+  logic m_event_tvalid, m_event_tlast, unused_events;
+  assign unused_events = ^{m_event_tdata, m_event_tvalid, m_event_tlast};
 
   tactile_depth #(
     .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Size(Size),
@@ -92,11 +109,16 @@ module frame_bench
     .RowInverseOut(RowInverseOut), .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop),
     .StoreDrop(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth),
     .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
-    .MeanDrop(MeanDrop), .FrameLatency(FrameLatency)
+    .MeanDrop(MeanDrop), .FrameLatency(FrameLatency),
+    .FlatField(FlatField), .Quadratic(Quadratic), .BlockLog2(BlockLog2), .GainWidth(GainWidth),
+    .GainFraction(GainFraction), .CaptureLog2(CaptureLog2), .ColourWidth(ColourWidth), .ColourDrop(ColourDrop),
+    .ColourOffset(ColourOffset), .ColourFlat(ColourFlat), .PolynomialWords(PolynomialWords),
+    .PolynomialWidth(PolynomialWidth), .ColourCoeffWidth(ColourCoeffWidth), .SlopeDrop(SlopeDrop)
   ) dut (
     .clk, .rst(rst | resetting),
     .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
     .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact,
+    .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
     .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid,
     .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready

@@ -21,13 +21,15 @@ from tb_axil_registers import master_of, response_of
 
 from models.axil_registers import WORD, Response
 from models.calibration import synthetic
+from models.contact_events import ContactEvents, Settings
+from models.contact_events import record as record_of
 from models.divergence import divergence
 from models.frame_guard import FAULTS, frame_guard
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import first_depth_latency, last_pixel_to_first_depth
 from models.register_map import MAP, REGISTERS, TABLES
 from models.round_saturate import Monitor
-from models.tactile_depth import solve, top_parameters
+from models.tactile_depth import solve, tactile_depth, top_parameters
 from models.threshold_comparator import ThresholdComparator
 
 OFFSET = {register.name: register.offset for register in MAP}
@@ -66,7 +68,7 @@ class Pipeline:
             Pipeline.table = gradient_codes(synthetic(bits), self.config)
         self.timeout, self.stalled = timeout, accepts != "none"
         self.profiles = offers, accepts
-        dut.rst.value = 1
+        dut.rst.value, dut.m_event_tready.value = 1, 1
         if SECOND_CLIENT:
             self.source = SecondSource(dut, profile(offers, 1))
             self.sink = SecondSink(dut, profile(accepts, 2))
@@ -79,12 +81,16 @@ class Pipeline:
         self.out = AxisMonitor(dut, "m_axis", prefix="t")
         self.comparator = ThresholdComparator()
         self.contacts = []  # clocks in which contact rose
+        self.packets = []  # of contact events, in words
+        self.events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
+        self.settings = []  # of contact events, as they stood with the first depth of each frame
         self.tables = None  # of each frame that comes, if they differ
         self.expect_reset_values()
 
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
         cocotb.start_soon(self.watch_contact())
+        cocotb.start_soon(self.watch_events())
         functional_coverage.start(self.dut, self.config, *self.profiles)
         await self.reset(3)
         if self.timeout:
@@ -102,6 +108,7 @@ class Pipeline:
         self.dut.rst.value = 0
         await RisingEdge(self.dut.clk)  # AXI: the first edge out of reset comes before the first word
         self.forget()
+        self.events.reset()
         self.expect_reset_values()
 
     def forget(self):
@@ -110,6 +117,8 @@ class Pipeline:
         self.into.forget()
         self.out.forget()
         self.contacts.clear()
+        self.packets.clear()
+        self.settings.clear()
 
     async def watch_contact(self):
         """contact is what the beats up to the clock before make of it; thresholds as the registers say."""
@@ -131,6 +140,23 @@ class Pipeline:
             if dut.m_axis_tvalid.value and dut.m_axis_tready.value:
                 threshold, hold = dut.threshold.value.to_signed(), bool(dut.hold_contact.value)
                 model.beat(self.signed(dut.m_axis_tdata.value), bool(dut.m_axis_tuser.value), threshold, hold)
+
+    async def watch_events(self):
+        """Packets that leave, and what was set when the first depth of each frame left."""
+        dut, words, edge = self.dut, [], RisingEdge(self.dut.clk)
+        names = ("threshold", "off_threshold", "minimum_area", "debounce")
+        while True:
+            await edge
+            if dut.rst.value:
+                words = []
+                continue
+            if dut.look_valid.value and dut.look_user.value:
+                self.settings.append(Settings(*(getattr(dut, name).value.to_signed() for name in names)))
+            if dut.m_event_tvalid.value:
+                words.append(int(dut.m_event_tdata.value))
+                if dut.m_event_tlast.value:
+                    self.packets.append(words)
+                    words = []
 
     def signed(self, data):
         width = 8 * ((self.config.data_width + 7) // 8)
@@ -187,7 +213,15 @@ class Pipeline:
         return video((self.random.getrandbits(24) for _ in range(self.pixels)), self.columns)
 
     def frame_of(self, wanted):
-        """Words of a frame whose slopes are those of the table nearest to wanted, (rows, columns, 2)."""
+        """Words of a frame whose slopes are those of the table nearest to wanted, (rows, columns, 2).
+
+        With flat-fielding, by a reference of 128: of its colours.
+        """
+        if self.config.flat_field:
+            sensor = synthetic(self.config.bits_per_channel)
+            deviation = wanted @ np.linalg.pinv(sensor.coefficients[..., 0]).T
+            rgb = np.clip(np.rint(128 * (1 + deviation)), 0, 255).astype(int)
+            return video([pixel(*colour) for colour in rgb.reshape(-1, 3)], self.columns)
         slopes = self.table * self.config.gradient_lsb
         bins = ((wanted.reshape(-1, 1, 2) - slopes) ** 2).sum(axis=-1).argmin(axis=1)
         bits = self.config.bits_per_channel
@@ -205,6 +239,9 @@ class Pipeline:
             return np.zeros((0, self.rows, self.columns), np.int64), 0
         rgb = colours(frames).reshape(-1, self.rows, self.columns, 3)
         monitor = Monitor()
+        if self.config.flat_field:
+            sensor = synthetic(self.config.bits_per_channel)
+            return tactile_depth(rgb, sensor, self.config, monitor), monitor.saturations.total()
         tables = [self.table] * len(rgb) if self.tables is None else self.tables
         pairs = zip(rgb, tables, strict=True)
         slopes = np.stack([gradient_lookup(frame, table, self.config.bits_per_channel) for frame, table in pairs])
@@ -257,6 +294,7 @@ class Pipeline:
             if not self.stalled:
                 drained = depth - self.into.taken[frame.last]
                 assert drained == last_pixel_to_first_depth(self.config), f"last pixel to first depth: {drained}"
+        self.check_events(got, [guarded.frames[index].first for index in good])
         self.counters["FRAMES_IN"] += len(good)
         self.counters["FRAMES_OUT"] += len(good)
         self.counters["FRAMES_DROPPED"] += len(guarded.faults)
@@ -269,6 +307,21 @@ class Pipeline:
         self.forget()
         return got
 
+    def check_events(self, depth, first):
+        """A packet a frame, each as the model has it; `first`: the place of each frame's first pixel in the input."""
+        wanted = []
+        for codes, settings in zip(depth, self.settings, strict=True):
+            beats = zip(codes.flat, range(self.pixels), strict=True)
+            for code, place in beats:
+                row_ends = place % self.columns == self.columns - 1
+                record = self.events.beat(int(code), not place, row_ends, place == self.pixels - 1, settings, 0)
+            wanted.append(record)
+        seen = [record_of(words) for words in self.packets]
+        assert [record._replace(time=0) for record in seen] == wanted, "records of contact events"
+        times = [record.time for record in seen]
+        taken = [self.into.taken[place] for place in first]
+        assert [time - times[0] for time in times] == [clock - taken[0] for clock in taken], "time stamps"
+
     async def check_registers(self, counters=True):
         """Counters, sticky bits, busy, contact and the latency that the hardware counted."""
         if counters:
@@ -278,6 +331,7 @@ class Pipeline:
         status = STATUS.unpack(await self.read("STATUS"))
         assert not status.pop("busy"), "busy after everything left"
         assert status.pop("contact") == self.comparator.contact
+        assert status.pop("touching") == self.events.touching
         bits = {name for name, value in status.items() if value}
         assert bits == self.sticky, f"sticky bits {bits}, should be {self.sticky}"
         latency = await self.read("FIRST_DEPTH_LATENCY")

@@ -120,7 +120,7 @@ class Device:
         dut = self.dut
         for pin in ("s_axis_tvalid", "s_axil_awvalid", "s_axil_wvalid", "s_axil_arvalid", "s_axil_bready"):
             getattr(dut, pin).value = 0
-        dut.s_axil_rready.value, dut.m_axis_tready.value, dut.rst.value = 1, 1, 1
+        dut.s_axil_rready.value, dut.m_axis_tready.value, dut.m_event_tready.value, dut.rst.value = 1, 1, 1, 1
         for _ in range(2):
             await RisingEdge(dut.clk)
         dut.rst.value = 0

@@ -31,6 +31,13 @@ EXTREMES = {
 }
 
 
-@pytest.mark.parametrize("parameters", [built(Configuration(columns=128)), EXTREMES], ids=["128", "extremes"])
+QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0}
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [built(Configuration(columns=128)), EXTREMES, QUADRATIC],
+    ids=["128", "extremes", "without-gradient-table"],
+)
 def test_axil_registers(run_tb, parameters):
     run_tb("axil_registers", SOURCES, parameters=parameters)

@@ -111,7 +111,7 @@ def test_a_file_says_nothing_of_its_model_and_has_the_one_it_holds(tmp_path):
 def test_a_missing_table_is_named_where_it_is_needed(tmp_path):
     calibration = load(str(saved(tmp_path, **QUADRATIC, gradient=None)))
     with pytest.raises(InputError, match="no `gradient` in it: the table is needed here"):
-        _ = calibration.bits_per_channel
+        _ = calibration.table
 
 
 def test_an_unknown_name_is_answered_with_the_known_ones():

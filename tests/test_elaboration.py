@@ -24,6 +24,8 @@ INVALID = {
     "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
     "rom": ["Depth=1"],
     "gradient_lookup": ["BitsPerChannel=0", "BitsPerChannel=9"],
+    "gain_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
+    "reference_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=11", "GainFraction=10"],
     "spectral_divide": ["Size=12", "Size=1"],
     "thomas_table": ["Size=12", "Rows=1"],
     "twiddle_multiply": ["Size=12", "Size=1", "Block=12", "Block=1", "Block=256"],

@@ -32,7 +32,7 @@ def test_rtl(run_tb, columns, rows, quadratic):
         "flat_field",
         SOURCES,
         flat_field_parameters(config, quadratic),
-        roms=lambda folder: write_gains(folder / "gain.hex", config),
+        roms=lambda folder: write_gains(folder, unit_gains(config)),
         environment={"CONFIGURATION": json.dumps(choices)},
     )
 

@@ -13,7 +13,7 @@ from skimage import io
 
 from models.calibration import synthetic
 from models.errors import InputError
-from models.frames import LARGEST_CAMERA, flat_field, load_frames, resampling
+from models.frames import LARGEST_CAMERA, load_frames, resampling
 from models.scenes import SCENES, render, scene_pixel_pitch_mm
 
 
@@ -102,27 +102,16 @@ def test_averages_are_rounded_to_even_once(tmp_path):
     assert (pixels[..., 1] == 2).all()
 
 
-# Flat field.
+# Reference.
 
 
-def test_flat_field_is_relative_to_the_reference_and_survives_black():
-    image = np.array([[[50, 100, 200]], [[0, 5, 255]]], np.uint8)
-    reference = np.array([[[100, 100, 100]], [[0, 0, 255]]], np.uint8)
-    np.testing.assert_allclose(flat_field(image, reference), [[[64, 128, 256]], [[0, 640, 128]]])
-
-
-def test_flat_field_comes_before_the_average_and_is_clipped_after(tmp_path):
-    image, reference = np.full((32, 32, 3), 60, np.uint8), np.full((32, 32, 3), 120, np.uint8)
-    reference[:, ::2] = 40  # 128 * 60 / 40 = 192 beside 64: 128; averaged first it would be 96
-    image[:16, :, 2] = 255
+def test_the_reference_comes_to_the_grid_as_the_frames_do(tmp_path):
+    image, reference = noise(2, 24, 30, 3)
     loaded = load_frames(str(picture(tmp_path / "i.png", image)), (16, 16), str(picture(tmp_path / "r.png", reference)))
-    assert (loaded.pixels[..., :2] == 128).all()
-    assert (loaded.pixels[0, :8, :, 2] == 255).all()
-
-
-def test_the_reference_itself_reads_128(tmp_path):
-    path = picture(tmp_path / "r.png", np.maximum(noise(24, 30, 3), 1))
-    assert (load_frames(str(path), (16, 16), str(path)).pixels == 128).all()
+    as_frame = load_frames(str(tmp_path / "r.png"), (16, 16))
+    np.testing.assert_array_equal(loaded.reference, as_frame.pixels[0])
+    np.testing.assert_array_equal(loaded.pixels, load_frames(str(tmp_path / "i.png"), (16, 16)).pixels)
+    assert as_frame.reference is None
 
 
 # Sources.

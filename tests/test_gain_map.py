@@ -6,6 +6,7 @@ import json
 import pytest
 
 from models.configuration import Configuration
+from models.flat_field import unit_gains
 from models.gain_map import ENTRIES_PER_NODE, gain_map_parameters, table_entries
 from models.rom_files import write_gains
 
@@ -20,7 +21,7 @@ def test_rtl(run_tb, columns, rows):
         "gain_map",
         SOURCES,
         gain_map_parameters(config),
-        roms=lambda folder: write_gains(folder / "gain.hex", config),
+        roms=lambda folder: write_gains(folder, unit_gains(config)),
         environment={"CONFIGURATION": json.dumps(choices)},
     )
 

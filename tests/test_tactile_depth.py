@@ -34,8 +34,13 @@ TRIDIAGONAL = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
         ({"columns": 32, "data_width": 12, "bits_per_channel": 3}, LARGER),
         (TRIDIAGONAL | {"bits_per_channel": 2}, ""),
         (TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
+        (TRIDIAGONAL | {"flat_field": True, "gradient_model": "quadratic"}, FORMATS),
+        ({"columns": 16, "flat_field": True, "neumann": True}, FORMATS),
     ],
-    ids=["16-24", "16-27-neumann", "32-12", "tridiagonal-8x16", "tridiagonal-21x16-neumann"],
+    ids=[
+        *("16-24", "16-27-neumann", "32-12", "tridiagonal-8x16", "tridiagonal-21x16-neumann"),
+        *("tridiagonal-8x16-quadratic", "16-flat-neumann"),
+    ],
 )
 def test_rtl(run_tb, simulator, choices, tests):
     config = Configuration(**choices)

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_flat_field: what leaves for a pixel is round(I gain / 2^Drop) - Offset, saturated, with the gain that gain_map has
+// for it; a dark pixel takes over what left before it in its row, the first of a row Flat; dark ones and clipped
+// colours are counted once. Valid and place travel along, 12 enabled clocks; while en is low they hold.
+//
+// One colour is looked at, and whether all three are dark. Assumed: places in raster order; of each colour the lowest
+// bits alone differ from zero (products of any width are exact).
+
+module fv_flat_field #(
+  parameter int Rows      = 3,
+  parameter int Columns   = 4,
+  parameter int GainWidth = 3,
+  parameter int Drop      = 2,
+  parameter int Offset    = 0,
+  parameter int OutWidth  = 1,
+  parameter int Flat      = 1,
+  localparam int NodeWidth = 1
+) (
+  input logic                   clk,
+  input logic                   rst,
+  input logic                   en,
+  input logic [7:0]             dark_level,
+  input logic                   table_bank,
+  input logic                   table_write,
+  input logic                   table_read,
+  input logic [NodeWidth+1:0]   table_index,
+  input logic [GainWidth-1:0]   table_gain,
+  input logic                   in_valid,
+  input logic [23:0]            in_pixel,
+  input logic [3:0]             in_place
+);
+
+  logic table_in_use, out_valid, dark;
+  logic [GainWidth-1:0] table_read_gain;
+  logic [3*GainWidth-1:0] capture_read_gains;
+  logic [3:0] out_place;
+  logic [OutWidth-1:0] out_red, out_green, out_blue;
+  logic [1:0] saturations;
+  flat_field #(
+    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset),
+    .OutWidth(OutWidth), .Flat(Flat)
+  ) dut (
+    .clk, .rst, .en, .dark_level, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
+    .table_read_gain, .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0),
+    .capture_read_node('0), .capture_read_gains, .in_valid, .in_pixel, .in_place,
+    .out_valid, .out_place, .out_red, .out_green, .out_blue, .dark, .saturations
+  );
+
+  logic [3:0] row, column;
+  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  logic started = 1'b0;
+  always_ff @(posedge clk) started <= 1'b1;
+  always_comb begin
+    if (!started) assume (rst);
+    assume ((in_pixel & ~24'h010101) == '0);
+  end
+
+  bind fv_flat_field.dut flat_field_check #(
+    .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset), .OutWidth(OutWidth), .Flat(Flat)
+  ) u_check (
+    .clk, .rst, .en, .dark_level, .in_valid, .in_pixel, .in_place, .gains, .out_valid, .out_place,
+    .out_red, .out_green, .out_blue, .dark, .saturations
+  );
+
+endmodule
+
+// Inside the core, beside its gain_map.
+module flat_field_check #(
+  parameter int GainWidth = 3,
+  parameter int Drop      = 2,
+  parameter int Offset    = 0,
+  parameter int OutWidth  = 1,
+  parameter int Flat      = 1
+) (
+  input logic                   clk,
+  input logic                   rst,
+  input logic                   en,
+  input logic [7:0]             dark_level,
+  input logic                   in_valid,
+  input logic [23:0]            in_pixel,
+  input logic [3:0]             in_place,
+  input logic [3*GainWidth-1:0] gains,
+  input logic                   out_valid,
+  input logic [3:0]             out_place,
+  input logic [OutWidth-1:0]    out_red,
+  input logic [OutWidth-1:0]    out_green,
+  input logic [OutWidth-1:0]    out_blue,
+  input logic                   dark,
+  input logic [1:0]             saturations
+);
+
+  localparam int Latency = 12;
+  localparam int ToGain = 9;
+  localparam int Lowest = Offset == 0 ? 0 : -(1 << (OutWidth - 1));
+  localparam int Highest = Offset == 0 ? (1 << OutWidth) - 1 : (1 << (OutWidth - 1)) - 1;
+
+  logic started = 1'b0;
+  logic [7:0] level, level_now;
+  logic [3:0] now;  // is dim, and its lowest bits
+  always_comb begin
+    level_now = in_place[1:0] == 2'b11 ? dark_level : level;
+    now = {in_pixel[23:16] < level_now && in_pixel[15:8] < level_now && in_pixel[7:0] < level_now,
+        in_pixel[8], in_pixel[0], in_pixel[16]};
+  end
+
+  logic [Latency-1:0] valid;
+  logic [4*Latency-1:0] place;
+  logic [4*ToGain-1:0] colours;
+  logic [3:0] then;  // of the pixel whose gains are present
+  assign then = colours[4*ToGain-1-:4];
+  logic signed [GainWidth+9:0] result[3];
+  logic [2:0] clips;
+  logic is_dark;
+  always_comb begin
+    is_dark = then[3] || gains[GainWidth-1] || gains[2*GainWidth-1] || gains[3*GainWidth-1];
+    for (int c = 0; c < 3; c++) begin
+      logic [GainWidth-1:0] product, whole;
+      product = then[c] ? gains[c*GainWidth+:GainWidth] : '0;
+      whole = product >> Drop;
+      if (product[Drop-1] && (Drop > 1 && (product & GainWidth'((1 << (Drop - 1)) - 1)) != '0 || whole[0])) begin
+        result[c] = $signed((GainWidth + 10)'(whole)) + 1 - Offset;
+      end else begin
+        result[c] = $signed((GainWidth + 10)'(whole)) - Offset;
+      end
+      clips[c] = result[c] < Lowest || result[c] > Highest;
+      if (result[c] < Lowest) result[c] = (GainWidth + 10)'(Lowest);
+      if (result[c] > Highest) result[c] = (GainWidth + 10)'(Highest);
+    end
+  end
+
+  logic [1:0] dark_q;
+  logic [5:0] clips_q;
+  logic [6*OutWidth-1:0] results_q;
+  logic [3*OutWidth-1:0] expected, out_q;  // {blue, green, red}
+  logic expected_dark, held, known;
+  logic [1:0] expected_clips;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_blue, out_green, out_red};
+    expected_dark <= en && !rst && valid[Latency-2] && dark_q[1];
+    expected_clips <= en && !rst && valid[Latency-2] && !dark_q[1]
+        ? 2'(clips_q[3]) + 2'(clips_q[4]) + 2'(clips_q[5]) : '0;
+    if (en) begin
+      if (in_valid) level <= level_now;
+      valid <= {valid[Latency-2:0], in_valid};
+      place <= {place[4*Latency-5:0], in_place};
+      colours <= {colours[4*ToGain-5:0], now};
+      dark_q <= {dark_q[0], is_dark};
+      clips_q <= {clips_q[2:0], clips};
+      results_q <= {results_q[3*OutWidth-1:0], OutWidth'(result[2]), OutWidth'(result[1]), OutWidth'(result[0])};
+      if (valid[Latency-2]) begin
+        known <= 1'b1;
+        if (!dark_q[1]) expected <= results_q[6*OutWidth-1-:3*OutWidth];
+        else if (place[4*Latency-7]) expected <= {3{OutWidth'(Flat)}};
+      end
+    end
+    if (rst) begin
+      valid <= '0;
+      known <= 1'b0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      valid_travels: assert (out_valid == valid[Latency-1]);
+      if (out_valid) place_travels: assert (out_place == place[4*Latency-1-:4]);
+      if (out_valid && known) colours_follow: assert ({out_blue, out_green, out_red} == expected);
+      if (held) holds: assert ({out_blue, out_green, out_red} == out_q);
+      dark_counted: assert (dark == expected_dark);
+      clipped_counted: assert (saturations == expected_clips);
+      several_dark: cover (dark && !out_place[1] && out_red == '0 && out_valid);
+      clipped: cover (saturations == 2'd2);
+    end
+  end
+
+endmodule

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_reference_capture: a capture begins with the first whole frame behind a request, takes 2^k good frames in a row,
+// and is done a fixed number of clocks behind the last of them; no node is read before it was written, or in the clock
+// that writes it, and nothing is written while idle; before the division an arbitrary node holds the sum of its pixels.
+//
+// One colour is looked at, and of it pixels 0 and 1 (sums of any pixels are exact; the quotients are left to
+// simulation). Assumed: places in raster order.
+
+module fv_reference_capture #(
+  parameter int Rows    = 3,
+  parameter int Columns = 4,
+  parameter int MaxLog2 = 1,
+  localparam int Width = 8 + 2 + MaxLog2,
+  localparam int Nodes = (Rows / 2) * (Columns / 2),
+  localparam int NodeWidth = $clog2(Nodes)
+) (
+  input logic                 clk,
+  input logic                 rst,
+  input logic                 en,
+  input logic                 request,
+  input logic [3:0]           log2_frames,
+  input logic                 in_valid,
+  input logic [23:0]          in_pixel,
+  input logic [3:0]           in_place,
+  input logic                 in_bad,
+  input logic [NodeWidth-1:0] chosen
+);
+
+  localparam int Clocks = Nodes * (4 + 3 * (Width + 3)) + 2;  // from the last pixel to done
+  localparam int Summed = 5;                                  // to the last sum in its place
+
+  logic busy, done, map_write, map_read;
+  logic [NodeWidth-1:0] map_write_node, map_read_node;
+  logic [3*Width-1:0] map_write_gains, map_read_gains;
+  reference_capture #(
+    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .GainFraction(Width), .MaxLog2(MaxLog2)
+  ) dut (
+    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_pixel, .in_place, .in_bad,
+    .map_write, .map_write_node, .map_write_gains, .map_read, .map_read_node, .map_read_gains
+  );
+  ram #(.Width(3 * Width), .Depth(Nodes)) u_ram (
+    .clk, .write_en(map_write), .write_address(map_write_node), .write_data(map_write_gains),
+    .read_en(map_read), .read_address(map_read_node), .read_data(map_read_gains)
+  );
+  ram_check #(.Depth(Nodes)) u_check (
+    .clk, .write_en(map_write), .write_address(map_write_node), .read_en(map_read), .read_address(map_read_node)
+  );
+
+  logic [3:0] row, column;
+  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  logic started = 1'b0;
+  always_comb begin
+    if (!started) assume (rst);
+    assume ((in_pixel & ~24'h010000) == '0);
+  end
+
+  typedef enum logic [1:0] {Idle, Armed, Summing, Dividing} state_e;
+  state_e state;
+  logic [NodeWidth-1:0] watched;  // chosen in the first clock, then constant
+  logic [MaxLog2:0] wanted, wanted_next;
+  logic [3:0] sum, held_sum;  // of the watched node in the frames that count, and as the memory holds it
+  logic first, last, counts, in_watched;
+  logic [8:0] to_done;
+  assign first = en && in_valid && in_place[1:0] == 2'b11;
+  assign last = en && in_valid && in_place[3:2] == 2'b11;
+  assign counts = en && in_valid && (state == Summing || state == Armed && first);
+  assign in_watched = 32'(row) < Rows / 2 * 2 && 32'(row) / 2 * (Columns / 2) + 32'(column) / 2 == 32'(watched);
+  assign wanted_next = (MaxLog2 + 1)'(1) << (32'(log2_frames) > MaxLog2 ? 4'(MaxLog2) : log2_frames);
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (!started) watched <= chosen;
+    if (map_write && map_write_node == watched) held_sum <= 4'(map_write_gains);
+    if (first && state == Armed) begin
+      state <= Summing;
+      wanted <= wanted_next;
+    end
+    if (counts) sum <= (first && state == Armed ? '0 : sum) + 4'(in_watched && in_pixel[16]);
+    if (last && state == Summing) begin
+      wanted <= wanted - (MaxLog2 + 1)'(1);
+      if (in_bad) state <= Armed;
+      else if (wanted == (MaxLog2 + 1)'(1)) begin
+        state <= Dividing;
+        to_done <= 9'(Clocks - 1);
+      end
+    end
+    if (state == Dividing) begin
+      to_done <= to_done - 9'd1;
+      if (to_done == '0) state <= Idle;
+    end
+    if (request) state <= Armed;
+    if (rst) state <= Idle;
+  end
+
+  always_comb begin
+    if (started) begin
+      busy_while: assert (busy == (state != Idle));
+      done_when: assert (done == (state == Dividing && to_done == '0));
+      if (state == Idle) quiet: assert (!map_write);
+      if (state == Dividing && to_done == 9'(Clocks - Summed)) sums: assert (held_sum == sum);
+      largest: cover (state == Dividing && to_done == 9'(Clocks - Summed) && sum == 4'(4 << MaxLog2));
+      afresh: cover (request && state == Dividing);
+    end
+  end
+
+endmodule
