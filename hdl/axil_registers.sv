@@ -138,6 +138,7 @@ module axil_registers
   logic write_refused;
   logic write_now;
   logic write_taken;
+  logic asks_capture;
   logic [31:0] status_set;
   logic [31:0] status_cleared;
   logic counters_cleared;
@@ -191,6 +192,7 @@ module axil_registers
   assign write_ones = write_data & write_mask;
   assign write_now = aw_held && w_held && !s_axil_bvalid && reading == '0;
   assign write_taken = write_now && !write_refused;
+  assign asks_capture = write_ones[CaptureStartBit];  // Icarus 11 takes no select of a constant bit inside always_comb
 
   always_comb begin
     case (write_offset)
@@ -199,7 +201,7 @@ module axil_registers
         write_refused = 1'b0;
       TableLowOffset:
         write_refused = !inside_table || write_strobe != 4'b1111 || closed_of[table_select];
-      CaptureOffset: write_refused = write_ones[CaptureStartBit] && !Present[TableCommitReferenceBit];
+      CaptureOffset: write_refused = asks_capture && ReferenceWords == 0;
       default: write_refused = 1'b1;
     endcase
   end
@@ -240,7 +242,7 @@ module axil_registers
   assign closed = pending | (Tables'(capture_busy) << TableCommitReferenceBit);
   assign closed_of = (1 << SelectWidth)'(closed);
   assign commits = (write_taken && write_offset == TableCommitOffset) ? write_ones[Tables-1:0] : '0;
-  assign capture_request = write_taken && write_offset == CaptureOffset && write_ones[CaptureStartBit] && !rst;
+  assign capture_request = write_taken && write_offset == CaptureOffset && asks_capture && !rst;
 
   always_ff @(posedge clk) begin
     // Write channels.

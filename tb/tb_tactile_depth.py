@@ -842,7 +842,8 @@ async def registers_written_phase_by_phase(dut):
     columns, first = pipeline.columns, Pipeline.table[0]
 
     async def write_all():
-        names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT")
+        names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT", "OFF_THRESHOLD", "MINIMUM_AREA")
+        names += ("DEBOUNCE", "DARK_LEVEL", "CAPTURE")
         answers = [await pipeline.write(name, 0) for name in names]
         assert answers == [Response.OKAY] * len(answers)
         assert await pipeline.write_bin(0, first) == Response.OKAY
