@@ -83,6 +83,7 @@ def register_of(node: RegNode) -> dict[str, Any]:
         "name": node.inst_name,
         "offset": node.absolute_address,
         "description": node.get_property("name"),
+        "made_elsewhere": node.get_property("made_elsewhere", default=False),
         "fields": [field_of(field) for field in node.fields()],
     }
 
@@ -100,8 +101,8 @@ def package(registers: list[dict[str, Any]]) -> str:
         reset = sum((field["reset"] or 0) << field["low"] for field in register["fields"])
         if reset:
             resets.append(f"localparam int {name}Reset = 32'h{reset:08x};")
-        for field in register["fields"]:
-            if field["low"] == 0 and field["high"] == 31:
+        for field in () if register["made_elsewhere"] else register["fields"]:
+            if field["name"] == "value":  # the register is this number
                 continue
             single = field["low"] == field["high"]
             bits.append(f"localparam int {name}{camel(field['name'])}{'Bit' if single else 'Lsb'} = {field['low']};")

@@ -14,7 +14,8 @@ module fv_axil_registers
   parameter int GradientFraction = 20,
   parameter int BitsPerChannel   = 4,
   parameter int CoefficientWords = 36,
-  parameter int ReferenceWords   = 0,
+  parameter int ReferenceWords   = 1024,
+  localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
   localparam int Tables = TableSelectSelectCount,
   localparam int SelectWidth = TableSelectSelectWidth,
   localparam int IndexWidth = 3 * BitsPerChannel
@@ -39,11 +40,18 @@ module fv_axil_registers
   input logic                    event_frame_in,
   input logic                    event_frame_out,
   input logic                    event_frame_dropped,
+  input logic                    event_dark,
+  input logic                    event_depth_dropped,
+  input logic                    event_record_lost,
   input logic [7:0]              saturations,
   input logic [31:0]             first_depth_latency,
   input logic                    first_depth_latency_valid,
   input logic                    busy,
   input logic                    contact,
+  input logic                    touching,
+  input logic [32*RecordWords-1:0] record,
+  input logic                    capture_busy,
+  input logic                    capture_done,
   input logic                    frame_start,
   input logic [31:0]             table_read_high,
   input logic [31:0]             table_read_low,
@@ -56,8 +64,11 @@ module fv_axil_registers
   logic s_axil_awready, s_axil_wready, s_axil_bvalid, s_axil_arready, s_axil_rvalid;
   logic [1:0] s_axil_bresp, s_axil_rresp;
   logic [31:0] s_axil_rdata, timeout;
-  logic signed [31:0] threshold;
-  logic hold_contact, table_write, table_read;
+  logic signed [31:0] threshold, off_threshold;
+  logic [31:0] minimum_area;
+  logic [7:0] debounce, dark_level;
+  logic [3:0] capture_log2_frames;
+  logic hold_contact, drop_frames, capture_request, table_write, table_read;
   logic [SelectWidth-1:0] table_select;
   logic [IndexWidth-1:0] table_index;
   logic [31:0] table_high, table_low;
@@ -90,7 +101,7 @@ module fv_axil_registers
   logic [1:0] select;
   logic [Tables-1:0] requested, has;
   logic [Tables-1:0] bank = '0;
-  logic [3:0] waits;
+  logic [3:0] waits, closed;  // to the bus: while waiting, the reference while it is captured too
   logic [31:0] next_index;
   logic [31:0] index;
   always_comb begin
@@ -101,6 +112,8 @@ module fv_axil_registers
     has[TableCommitCoefficientsBit] = CoefficientWords != 0;
     has[TableCommitReferenceBit] = ReferenceWords != 0;
     waits = 4'(requested | ((bank ^ table_in_use) & has));
+    closed = waits;
+    if (capture_busy) closed[TableCommitReferenceBit] = 1'b1;
     next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
   end
 
@@ -114,11 +127,14 @@ module fv_axil_registers
     for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
     refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
         || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
-        || offset == TableHighOffset || offset == TableCommitOffset
-        || (offset == TableLowOffset && index < size && !waits[select] && strobes == 4'b1111));
+        || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
+        || offset == OffThresholdOffset || offset == MinimumAreaOffset || offset == DebounceOffset
+        || (offset == CaptureOffset && (ReferenceWords != 0 || !(data[CaptureStartBit] && strobes[CaptureStartBit/8])))
+        || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
   end
   logic writes_control, writes_status, writes_threshold, writes_timeout;
   logic writes_select, writes_index, writes_high, writes_low, writes_commit;
+  logic writes_dark, writes_capture, writes_off, writes_area, writes_debounce;
   assign writes_control = effective & (offset == ControlOffset);
   assign writes_status = effective & (offset == StatusOffset);
   assign writes_threshold = effective & (offset == ThresholdOffset);
@@ -128,6 +144,11 @@ module fv_axil_registers
   assign writes_high = effective & (offset == TableHighOffset);
   assign writes_low = effective & (offset == TableLowOffset) & ~refused;
   assign writes_commit = effective & (offset == TableCommitOffset);
+  assign writes_dark = effective & (offset == DarkLevelOffset);
+  assign writes_capture = effective & (offset == CaptureOffset) & ~refused;
+  assign writes_off = effective & (offset == OffThresholdOffset);
+  assign writes_area = effective & (offset == MinimumAreaOffset);
+  assign writes_debounce = effective & (offset == DebounceOffset);
 
   function automatic logic [31:0] written(input logic [31:0] word);
     return (data & mask) | (word & ~mask);
@@ -138,7 +159,8 @@ module fv_axil_registers
     return sum > 34'hffffffff ? 32'hffffffff : 32'(sum);
   endfunction
 
-  logic hold;
+  logic hold, drop;
+  logic [31:0] dim, averaged, off, area, frames_needed, dark, given_up, lost;
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
   assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
@@ -152,6 +174,8 @@ module fv_axil_registers
     happened[StatusTimeoutBit] = event_timeout;
     happened[StatusOutOfStepBit] = event_out_of_step;
     happened[StatusSaturationBit] = saturations != 0;
+    happened[StatusDarkBit] = event_dark;
+    happened[StatusDepthDroppedBit] = event_depth_dropped;
   end
 
   // What a read of this clock shall return.
@@ -163,6 +187,7 @@ module fv_axil_registers
     now = sticky;
     now[StatusBusyBit] = busy;
     now[StatusContactBit] = contact;
+    now[StatusTouchingBit] = touching;
     known = 1'b1;
     word = '0;
     if (read_offset == IdOffset) word = IdReset;
@@ -170,7 +195,10 @@ module fv_axil_registers
     else if (read_offset == FormatOffset) begin
       word = 32'(((BitsPerChannel * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
     end
-    else if (read_offset == ControlOffset) word[ControlHoldContactBit] = hold;
+    else if (read_offset == ControlOffset) begin
+      word[ControlHoldContactBit] = hold;
+      word[ControlDropFramesBit] = drop;
+    end
     else if (read_offset == StatusOffset) word = now;
     else if (read_offset == ThresholdOffset) word = limit;
     else if (read_offset == TimeoutOffset) word = silence;
@@ -183,6 +211,20 @@ module fv_axil_registers
     else if (read_offset == TableSelectOffset) word = 32'(select);
     else if (read_offset == TableCommitOffset) word = 32'(waits);
     else if (read_offset == TableSizeOffset) word = size;
+    else if (read_offset == DarkLevelOffset) word = dim;
+    else if (read_offset == CaptureOffset) begin
+      word = averaged;
+      word[CaptureBusyBit] = capture_busy;
+    end
+    else if (read_offset == DarkPixelsOffset) word = dark;
+    else if (read_offset == DepthDroppedOffset) word = given_up;
+    else if (read_offset == RecordsLostOffset) word = lost;
+    else if (read_offset == OffThresholdOffset) word = off;
+    else if (read_offset == MinimumAreaOffset) word = area;
+    else if (read_offset == DebounceOffset) word = frames_needed;
+    else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
+      word = 32'(record >> 8 * (read_offset - RecordEventOffset));
+    end
     else known = 1'b0;
   end
 
@@ -221,6 +263,12 @@ module fv_axil_registers
     rdata_q <= s_axil_rdata;
 
     if (writes_control && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
+    if (writes_control && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
+    if (writes_dark) dim <= written(dim) & 32'hff;
+    if (writes_capture) averaged <= written(averaged) & 32'hf;
+    if (writes_off) off <= written(off);
+    if (writes_area) area <= written(area);
+    if (writes_debounce) frames_needed <= written(frames_needed) & 32'hff;
     if (writes_threshold) limit <= written(limit);
     if (writes_timeout) silence <= written(silence);
     if (writes_index) index <= 32'(index_written[IndexWidth-1:0]);
@@ -230,26 +278,34 @@ module fv_axil_registers
     for (int table_number = 0; table_number < Tables; table_number++) begin
       if (frame_start && requested[table_number] && !rst) bank[table_number] <= !bank[table_number];
       if (frame_start && requested[table_number]) requested[table_number] <= 1'b0;
-      else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !waits[table_number])
+      else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !closed[table_number])
         requested[table_number] <= 1'b1;
+      if (capture_done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
     end
     sticky <= (sticky & ~(writes_status ? data & mask : '0)) | happened;
     frames_in <= counted(clears ? '0 : frames_in, 32'(event_frame_in));
     frames_out <= counted(clears ? '0 : frames_out, 32'(event_frame_out));
     frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(event_frame_dropped));
     clipped <= counted(clears ? '0 : clipped, 32'(saturations));
+    dark <= counted(clears ? '0 : dark, 32'(event_dark));
+    given_up <= counted(clears ? '0 : given_up, 32'(event_depth_dropped));
+    lost <= counted(clears ? '0 : lost, 32'(event_record_lost));
     if (first_depth_latency_valid) latency <= first_depth_latency;
 
     if (rst) begin
       {has_address, has_data, answered, asked, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
       limit <= 32'h7fffffff;
+      off <= 32'h7fffffff;
+      area <= 32'd1;
+      frames_needed <= 32'd1;
+      {drop, dim, averaged, dark, given_up, lost} <= '0;
       requested <= '0;
       {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
     end
   end
 
   always_comb begin
-    never_in_reset: assert (!((table_write || table_read) && rst));
+    never_in_reset: assert (!((table_write || table_read || capture_request) && rst));
     if (started) begin
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
@@ -265,6 +321,11 @@ module fv_axil_registers
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
       // What leaves for the pipeline.
       outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
+      contact_settings: assert ($unsigned(off_threshold) == off && minimum_area == area
+          && 32'(debounce) == frames_needed);
+      stream_settings: assert (drop_frames == drop && 32'(dark_level) == dim && 32'(capture_log2_frames) == averaged);
+      captures: assert (capture_request
+          == (writes_capture && data[CaptureStartBit] && mask[CaptureStartBit] && !rst));
       // Tables.
       table_written: assert (table_write == (writes_low && !rst));
       table_asked: assert (table_read == (since == 3'd1 && index < size && !rst));
@@ -273,6 +334,7 @@ module fv_axil_registers
       never_both: assert (!(table_write && since != 3'd0));
       banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
       if (table_write) only_settled: assert (table_bank[select] == table_in_use[select]);
+      if (table_write) not_captured: assert (!(capture_busy && select == TableSelectReference));
       absent: assert ((table_bank & ~has) == '0);
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
@@ -280,6 +342,8 @@ module fv_axil_registers
           && sticky[StatusRowLongBit]);
       refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[0]);
       refused_outside: cover (effective && offset == TableLowOffset && index == 36 && size == 36 && refused);
+      captured: cover (frame_start && requested == 3'b100 && capture_busy);
+      reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
       changes_over: cover (frame_start && requested == 3'b011);
       last_entry: cover (table_read && !upper && index == 35 && size == 36);
       second_bin: cover (table_write && table_index == IndexWidth'(1));

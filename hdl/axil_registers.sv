@@ -19,10 +19,10 @@
 // bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand
 // within a frame of the head of the pipeline.
 //
-// Capture of the reference table: capture_request is high for the clock of the write that asks for it, capture_busy from
-// the clock after it to that of capture_done, which asks for the change-over of that table as TABLE_COMMIT does. While
-// capture_busy is high, and in the clock of the request, the bus neither writes that table nor asks for its change-over.
-// record: word n of the contact events in bits 32 n + 31 to 32 n; what is read is the word as it stands.
+// Capture of the reference table: capture_request is high in the clock in which its write takes effect. From the
+// clock after it to that of capture_done, capture_busy shall be high: then the bus neither writes that table nor asks
+// for its change-over. capture_done asks for that, as TABLE_COMMIT does. record: word n of the contact events in
+// bits 32 n + 31 to 32 n; what is read is the word as it stands.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers
@@ -138,6 +138,7 @@ module axil_registers
   logic write_refused;
   logic write_now;
   logic write_taken;
+  logic asks_capture;
   logic [31:0] status_set;
   logic [31:0] status_cleared;
   logic counters_cleared;
@@ -191,6 +192,7 @@ module axil_registers
   assign write_ones = write_data & write_mask;
   assign write_now = aw_held && w_held && !s_axil_bvalid && reading == '0;
   assign write_taken = write_now && !write_refused;
+  assign asks_capture = write_ones[CaptureStartBit];  // Icarus 11 takes no select of a constant bit inside always_comb
 
   always_comb begin
     case (write_offset)
@@ -199,7 +201,7 @@ module axil_registers
         write_refused = 1'b0;
       TableLowOffset:
         write_refused = !inside_table || write_strobe != 4'b1111 || closed_of[table_select];
-      CaptureOffset: write_refused = write_ones[CaptureStartBit] && !Present[TableCommitReferenceBit];
+      CaptureOffset: write_refused = asks_capture && ReferenceWords == 0;
       default: write_refused = 1'b1;
     endcase
   end
@@ -240,7 +242,7 @@ module axil_registers
   assign closed = pending | (Tables'(capture_busy) << TableCommitReferenceBit);
   assign closed_of = (1 << SelectWidth)'(closed);
   assign commits = (write_taken && write_offset == TableCommitOffset) ? write_ones[Tables-1:0] : '0;
-  assign capture_request = write_taken && write_offset == CaptureOffset && write_ones[CaptureStartBit] && !rst;
+  assign capture_request = write_taken && write_offset == CaptureOffset && asks_capture && !rst;
 
   always_ff @(posedge clk) begin
     // Write channels.

@@ -81,22 +81,9 @@ package register_map_pkg;
   localparam int TableCommitGradientBit = 0;
   localparam int TableCommitCoefficientsBit = 1;
   localparam int TableCommitReferenceBit = 2;
-  localparam int DarkLevelValueLsb = 0;
   localparam int CaptureLog2FramesLsb = 0;
   localparam int CaptureStartBit = 8;
   localparam int CaptureBusyBit = 9;
-  localparam int DebounceValueLsb = 0;
-  localparam int RecordEventTouchingBit = 0;
-  localparam int RecordEventBeganBit = 1;
-  localparam int RecordEventEndedBit = 2;
-  localparam int RecordPeakPlaceColumnLsb = 0;
-  localparam int RecordPeakPlaceRowLsb = 16;
-  localparam int RecordLeastColumnLsb = 0;
-  localparam int RecordLeastRowLsb = 16;
-  localparam int RecordGreatestColumnLsb = 0;
-  localparam int RecordGreatestRowLsb = 16;
-  localparam int RecordCentroidColumnLsb = 0;
-  localparam int RecordCentroidRowLsb = 16;
 
   // Values of a field.
   localparam int TableSelectSelectCount = 3;

@@ -63,11 +63,13 @@ class Field:
 
 @dataclass(frozen=True)
 class Register:
-    """One 32-bit register; `offset` in bytes, a multiple of 4. One that is a single number has the field `value`."""
+    """One 32-bit register; `offset` in bytes, a multiple of 4. One that is a single number has the field `value`.
+    `made_elsewhere`: hdl/axil_registers.sv gets it as one word."""
 
     name: str
     offset: int
     description: str
+    made_elsewhere: bool
     fields: tuple[Field, ...]
 
     @property

@@ -671,7 +671,8 @@ async def sticky_bits(dut) -> None:
             assert await value(dut, "STATUS") == STATUS.pack(**{name: 1}), name
             await write(dut, STATUS.offset, WORD & ~STATUS.field(name).mask)
             assert await value(dut, "STATUS") == STATUS.pack(**{name: 1}), f"{name} was cleared by a 0"
-            await write(dut, STATUS.offset, STATUS.field(name).mask, strobe=0b1110)
+            strobe = 0xF ^ 1 << STATUS.field(name).low // 8
+            await write(dut, STATUS.offset, STATUS.field(name).mask, strobe)
             assert await value(dut, "STATUS") == STATUS.pack(**{name: 1}), f"{name} was cleared unstrobed"
             await write(dut, STATUS.offset, STATUS.field(name).mask)
             assert await value(dut, "STATUS") == 0, name
@@ -849,9 +850,11 @@ async def random_traffic(dut, pressure) -> None:
         done = False
         since_start = 0
 
+        writable = [register.offset for register in MAP if register.writable] + 3 * [OFFSET["TABLE_LOW"]]
+
         def any_offset() -> int:
             unmapped_too = range(0, 1 << ADDRESS_WIDTH, BYTES)
-            return rng.choice(tuple(OFFSET.values()) if rng.random() < 0.9 else unmapped_too)
+            return rng.choice(rng.choice((writable, tuple(OFFSET.values()))) if rng.random() < 0.9 else unmapped_too)
 
         async def writes() -> None:
             while not done:
@@ -897,3 +900,4 @@ async def random_traffic(dut, pressure) -> None:
             dut._log.info("%s: %s, %d table writes", kind, seen, len(checker.model.table_writes))
             assert min(seen.values()) > 10, f"the {kind}s were too much alike: {seen}"
         assert len(checker.model.table_writes) > 5
+        assert bool(checker.model.captures) == bool(tables_present(checker.build) & REFERENCE_BIT)

@@ -33,7 +33,7 @@ from models.tactile_depth import solve, tactile_depth, top_parameters
 from models.threshold_comparator import ThresholdComparator
 
 OFFSET = {register.name: register.offset for register in MAP}
-STATUS, CONTROL, COMMIT = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT"))
+STATUS, CONTROL, COMMIT, CAPTURE = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT", "CAPTURE"))
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 GREEN, BLUE, RED = 0, 8, 16  # lowest bits of the colours in a word
 TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
@@ -842,7 +842,8 @@ async def registers_written_phase_by_phase(dut):
     columns, first = pipeline.columns, Pipeline.table[0]
 
     async def write_all():
-        names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT")
+        names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT", "OFF_THRESHOLD", "MINIMUM_AREA")
+        names += ("DEBOUNCE", "DARK_LEVEL", "CAPTURE")
         answers = [await pipeline.write(name, 0) for name in names]
         assert answers == [Response.OKAY] * len(answers)
         assert await pipeline.write_bin(0, first) == Response.OKAY
@@ -877,6 +878,9 @@ async def registers_written_in_every_phase(dut, accepts):
     frame = video(words, pipeline.columns)
     values = {
         "THRESHOLD": lambda: rng.getrandbits(32),
+        "OFF_THRESHOLD": lambda: rng.getrandbits(32),
+        "MINIMUM_AREA": lambda: rng.getrandbits(32),
+        "DEBOUNCE": lambda: rng.getrandbits(8),
         "TIMEOUT": lambda: rng.randint(2, 300),  # no frame is silent
         "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
         "STATUS": lambda: rng.getrandbits(32),
@@ -885,9 +889,11 @@ async def registers_written_in_every_phase(dut, accepts):
         "TABLE_HIGH": lambda: rng.getrandbits(32),
         "TABLE_LOW": lambda: rng.getrandbits(32),  # of the table that no frame uses
         "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1),  # the build has neither
+        "DARK_LEVEL": lambda: rng.getrandbits(8),  # the build has no flat-fielding
+        "CAPTURE": lambda: CAPTURE.pack(start=1),  # nor a reference to capture
         "GRID": lambda: rng.getrandbits(32),
     }
-    refused = {"GRID"}
+    refused = {"GRID", "CAPTURE"}
     missing = {name: set(range(pipeline.pixels)) for name in values}
 
     async def feed():

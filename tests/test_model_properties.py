@@ -301,7 +301,7 @@ def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes):
         if response is Response.SLVERR:
             assert not changed
             assert len(registers.table_writes) == written
-        for name in changed & {"THRESHOLD", "TIMEOUT"}:
+        for name in changed & {"THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE", "DARK_LEVEL", "TIMEOUT"}:
             assert (registers.values[name] ^ before[name]) & ~strobed_bits(strobe) == 0
             assert registers.read(REGISTERS[name].offset) == (registers.values[name], Response.OKAY)
         assert not changed & {register.name for register in MAP if not register.writable}
@@ -318,9 +318,9 @@ def test_counters_only_grow_and_stay_at_the_top(saturations, start):
     registers = AxilRegisters(REGISTER_BUILD)
     registers.values["SATURATIONS"] = start
     for count in saturations:
-        registers.clock(Events(frozenset({"frame_in"}), count))
+        registers.clock(Events(frozenset({"frame_in", "dark"}), count))
     assert registers.values["SATURATIONS"] == min(start + sum(saturations), WORD)
-    assert registers.values["FRAMES_IN"] == len(saturations)
+    assert registers.values["FRAMES_IN"] == registers.values["DARK_PIXELS"] == len(saturations)
     registers.write(REGISTERS["CONTROL"].offset, 2)
     assert not any(registers.values[name] for name in COUNTERS)
 

@@ -8,10 +8,11 @@ import sys
 import pytest
 
 from commands import registers
-from models.axil_registers import AxilRegisters, Build, Live
+from models.axil_registers import RECORD, AxilRegisters, Build, Live
 from models.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, ROOT, TABLES, WORD_BITS
 
 BUILD = Build(16, 32, 24, 21, 20, 2)
+RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +99,7 @@ def test_the_python_layer(tmp_path, monkeypatch, root):
     model = AxilRegisters(BUILD, entry=lambda table, index: (0x1000 + index, 0x2000 + index))
 
     def read(addr, **_):
-        data, response = model.read(addr, Live(busy=True, in_use=model.bank))
+        data, response = model.read(addr, Live(busy=True, in_use=model.bank, record=RECORD_WORDS))
         assert response == 0
         return data
 
@@ -110,6 +111,9 @@ def test_the_python_layer(tmp_path, monkeypatch, root):
     assert device.STATUS.busy.read() == 1
     device.CONTROL.hold_contact.write(1)
     assert model.values["CONTROL"] == REGISTERS["CONTROL"].pack(hold_contact=1)
+    device.CAPTURE.log2_frames.write(6)
+    assert device.CAPTURE.read() == REGISTERS["CAPTURE"].pack(log2_frames=6)
+    assert device.RECORD_PEAK_PLACE.row.read() == 7
     device.TABLE_INDEX.value.write(3)
     device.TABLE_HIGH.write(5)
     device.TABLE_LOW.write(6)
