@@ -878,9 +878,10 @@ async def registers_written_in_every_phase(dut, accepts):
     frame = video(words, pipeline.columns)
     values = {
         "THRESHOLD": lambda: rng.getrandbits(32),
-        "OFF_THRESHOLD": lambda: rng.getrandbits(32),
-        "MINIMUM_AREA": lambda: rng.getrandbits(32),
-        "DEBOUNCE": lambda: rng.getrandbits(8),
+        # As they are: the records of the frames in flight are compared too.
+        "OFF_THRESHOLD": lambda: REGISTERS["OFF_THRESHOLD"].reset,
+        "MINIMUM_AREA": lambda: REGISTERS["MINIMUM_AREA"].reset,
+        "DEBOUNCE": lambda: REGISTERS["DEBOUNCE"].reset,
         "TIMEOUT": lambda: rng.randint(2, 300),  # no frame is silent
         "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
         "STATUS": lambda: rng.getrandbits(32),
