@@ -24,7 +24,8 @@ from commands import yosys
 from models import tridiagonal_solver
 from models.calibration import synthetic
 from models.configuration import Configuration
-from models.rom_files import write_quadratic, write_words
+from models.flat_field import unit_gains
+from models.rom_files import write_gains, write_quadratic, write_words
 from models.spectral_divide import reciprocals
 from models.tactile_depth import top_parameters, write_roms
 
@@ -185,6 +186,7 @@ def prove(case: Case, folder: Path = FOLDER) -> tuple[str, float]:
     place.mkdir(parents=True)
     write_roms(place, synthetic(case.config.bits_per_channel), case.config)
     write_words(place / "rom.hex", (37 * i % (1 << ROM["Width"]) for i in range(ROM["Depth"])), ROM["Width"])
+    write_gains(place, unit_gains(case.config))
     write_quadratic(place, np.arange(36).reshape(2, 3, 6), QUADRATIC["WordWidth"])
     problem = yosys.run(prepare(case.core, simulation.sources(), case.parameters, place), timeout_s=TIMEOUT_S)
     return problem, time.monotonic() - begin

@@ -25,7 +25,8 @@ from commands import yosys as yosys_runner
 from models.calibration import load
 from models.configuration import COLUMNS, POLYNOMIAL, Configuration
 from models.errors import InputError
-from models.rom_files import write_quadratic, write_words
+from models.flat_field import unit_gains
+from models.rom_files import write_gains, write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 GRIDS = (16, 128, 512)
@@ -48,7 +49,8 @@ class Structure:
         if self.config is None:
             return self.top
         c = self.config
-        return f"{self.top}-{c.solver}-{'neumann' if c.neumann else 'dirichlet'}-{c.rows}x{c.columns}"
+        colours = f"-{c.gradient_model}" if c.flat_field else ""
+        return f"{self.top}-{c.solver}-{'neumann' if c.neumann else 'dirichlet'}-{c.rows}x{c.columns}{colours}"
 
     @property
     def parameters(self) -> dict[str, int]:
@@ -69,8 +71,12 @@ def modules(files: Iterable[Path]) -> list[str]:
 
 
 def structures() -> list[Structure]:
-    """The whole in both solvers and boundaries, at the smallest, the usual and the largest square grid."""
-    return [
+    """The whole in both solvers and boundaries, at the smallest, the usual and the largest square grid; both front ends."""
+    flat = [
+        Structure(TOP, Configuration(columns=size, solver=solver, flat_field=True, gradient_model=model))
+        for size, solver, model in ((16, "spectral", "quadratic"), (128, "tridiagonal", "lut"))
+    ]
+    return flat + [
         Structure(TOP, Configuration(columns=size, solver=solver, neumann=neumann))
         for size, solver, neumann in product(GRIDS, COLUMNS, (False, True))
     ]
@@ -143,6 +149,7 @@ def yosys_cores(files: Sequence[Path]) -> str:
         write_roms(folder, load("synthetic"), Configuration(solver=solver))
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
+    write_gains(folder, unit_gains(Configuration()))
     write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
     return yosys([Structure(name) for name in modules(files)], files, folder)
 

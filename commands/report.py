@@ -231,8 +231,8 @@ def depth_figures(runs: dict[str, Run], folder: Path) -> list[Figure]:
             above.set_title(name.replace("_", " "), fontsize=9)
             for axis in (above, below):
                 axis.set_axis_off()
-        figure.colorbar(depth, ax=axes[::2, :], label="depth, mm", shrink=0.5)
-        figure.colorbar(error, ax=axes[1::2, :], label="residual, um", shrink=0.5)
+        figure.colorbar(depth, ax=axes[:3, :], label="depth, mm", shrink=0.7)  # they hold for all rows, one above
+        figure.colorbar(error, ax=axes[3:, :], label="residual, um", shrink=0.7)  # the other
         text = f"Depth out of the RTL, and below it what differs from double precision: at most {limit:.3f} um."
         name = f"depth-{solver}"
         figures.append(Figure(name, f"The contacts, {solver}", text, run.command, picture(figure, folder, name)))

@@ -307,7 +307,7 @@ module tactile_depth
     .in_data(depth_data), .event_dropped(depth_dropped),
     .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_user(m_axis_tuser), .m_last(m_axis_tlast),
     .m_frame_end(leaving_last_of_frame), .m_data(leaving_data),
-    .look_valid, .look_user, .look_last, .look_frame_end, .look_data
+    .look_valid, .look_user, .look_last, .look_frame_end, .look_data(look_data)
   );
   assign m_axis_tdata = (8 * DepthBytes)'(leaving_data);
 
