@@ -71,7 +71,7 @@ def modules(files: Iterable[Path]) -> list[str]:
 
 
 def structures() -> list[Structure]:
-    """The whole in both solvers and boundaries, at the smallest, the usual and the largest square grid; both front ends."""
+    """The whole, both solvers and boundaries, at the smallest, the usual and the largest square grid; flat-fielded."""
     flat = [
         Structure(TOP, Configuration(columns=size, solver=solver, flat_field=True, gradient_model=model))
         for size, solver, model in ((16, "spectral", "quadratic"), (128, "tridiagonal", "lut"))

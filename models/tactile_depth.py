@@ -22,33 +22,50 @@ from models.round_saturate import Monitor
 
 
 def tactile_depth(
-    frames: np.ndarray, calibration: Calibration, config: Configuration, monitor: Monitor | None = None
+    frames: np.ndarray,
+    calibration: Calibration,
+    config: Configuration,
+    monitor: Monitor | None = None,
+    gains: np.ndarray | None = None,
+    dark_level: int = 0,
 ) -> np.ndarray:
     """Depth codes of frames, rows in the order of the stream: the tridiagonal solver puts the bottom row out first.
 
     Parameters
     ----------
     frames : uint8 array (..., rows, columns, 3), RGB
+    gains : int64 array (node rows, node columns, 3)
+        Those in use; by default of the calibration's reference.
+    dark_level : int
+        The register.
 
     Returns
     -------
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
-    slopes = slope_codes(frames, calibration, config, monitor)
+    slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level)
     return solve(divergence(slopes, config.neumann), config, monitor)
 
 
 def slope_codes(
-    frames: np.ndarray, calibration: Calibration, config: Configuration, monitor: Monitor | None = None
+    frames: np.ndarray,
+    calibration: Calibration,
+    config: Configuration,
+    monitor: Monitor | None = None,
+    gains: np.ndarray | None = None,
+    dark_level: int = 0,
 ) -> np.ndarray:
     """Slope codes, int64 (..., rows, columns, 2), of frames: by the table or by quadratics, flat-fielded or as sent."""
+    if config.flat_field and gains is None:
+        gains = reference_gains(calibration, config)
     if config.gradient_model == "quadratic":
-        deviation = deviations(frames, reference_gains(calibration, config), config, monitor=monitor)
+        assert gains is not None
+        deviation = deviations(frames, gains, config, dark_level, monitor)
         return quadratic_gradient(
             deviation, polynomial_words(calibration, config, calibration.pixel_pitch_mm), config, monitor
         )
-    if config.flat_field:
-        frames = flat_codes(frames, reference_gains(calibration, config), config, monitor=monitor)
+    if gains is not None:
+        frames = flat_codes(frames, gains, config, dark_level, monitor)
     return gradient_lookup(frames, gradient_codes(calibration, config), config.bits_per_channel)
 
 

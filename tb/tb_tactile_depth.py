@@ -24,6 +24,7 @@ from models.calibration import synthetic
 from models.contact_events import ContactEvents, Settings
 from models.contact_events import record as record_of
 from models.divergence import divergence
+from models.flat_field import captured_gains
 from models.frame_guard import FAULTS, frame_guard
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import first_depth_latency, last_pixel_to_first_depth
@@ -55,6 +56,7 @@ def colours(pixels):
 class Pipeline:
     """The device, driven and watched at its pins."""
 
+    gains = None  # of the reference in use, if it was captured: they survive as the table does
     table = None  # slope codes that frames to come use: the table survives resets, so it survives a test
 
     def __init__(self, dut, offers="none", accepts="none", timeout=0):
@@ -81,6 +83,8 @@ class Pipeline:
         self.out = AxisMonitor(dut, "m_axis", prefix="t")
         self.comparator = ThresholdComparator()
         self.contacts = []  # clocks in which contact rose
+        self.dark_level = 0
+        self.drops = False  # CONTROL.drop_frames
         self.packets = []  # of contact events, in words
         self.events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
         self.settings = []  # of contact events, as they stood with the first depth of each frame
@@ -97,7 +101,9 @@ class Pipeline:
             await self.write("TIMEOUT", self.timeout)
 
     def expect_reset_values(self):
-        self.counters = dict.fromkeys(("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS"), 0)
+        self.counters = dict.fromkeys(("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS"), 0)
+        self.counters |= dict.fromkeys(("DEPTH_DROPPED", "RECORDS_LOST"), 0)
+        self.dark_level = 0
         self.sticky, self.latency = set(), 0
 
     async def reset(self, clocks):
@@ -137,9 +143,14 @@ class Pipeline:
             if contact and not was:
                 self.contacts.append(clock)
             was = contact
-            if dut.m_axis_tvalid.value and dut.m_axis_tready.value:
-                threshold, hold = dut.threshold.value.to_signed(), bool(dut.hold_contact.value)
-                model.beat(self.signed(dut.m_axis_tdata.value), bool(dut.m_axis_tuser.value), threshold, hold)
+            if self.drops:  # then depth counts when it would leave
+                counts, user, depth = dut.look_valid.value, dut.look_user.value, dut.look_data.value
+                depth = depth.to_signed() if counts else 0
+            else:
+                counts, user = dut.m_axis_tvalid.value and dut.m_axis_tready.value, dut.m_axis_tuser.value
+                depth = self.signed(dut.m_axis_tdata.value) if counts else 0
+            if counts:
+                model.beat(depth, bool(user), dut.threshold.value.to_signed(), bool(dut.hold_contact.value))
 
     async def watch_events(self):
         """Packets that leave, and what was set when the first depth of each frame left."""
@@ -241,7 +252,8 @@ class Pipeline:
         monitor = Monitor()
         if self.config.flat_field:
             sensor = synthetic(self.config.bits_per_channel)
-            return tactile_depth(rgb, sensor, self.config, monitor), monitor.saturations.total()
+            codes = tactile_depth(rgb, sensor, self.config, monitor, Pipeline.gains, self.dark_level)
+            return codes, monitor.saturations.total()
         tables = [self.table] * len(rgb) if self.tables is None else self.tables
         pairs = zip(rgb, tables, strict=True)
         slopes = np.stack([gradient_lookup(frame, table, self.config.bits_per_channel) for frame, table in pairs])
@@ -443,6 +455,84 @@ async def a_sink_that_waits_for_long(dut):
     await pipeline.send(pipeline.frame())
     await pipeline.check()
     assert pipeline.latency == first_depth_latency(pipeline.config)
+
+
+@TEST
+async def capture(dut):
+    """Of two frames, with a broken one before them: colours of the frames after it are relative to their mean."""
+    pipeline = await started(dut)
+    start = CAPTURE.pack(start=1, log2_frames=1)
+    if not pipeline.config.flat_field:
+        assert await pipeline.write("CAPTURE", start) == Response.SLVERR
+        return
+    shades = [
+        [pixel(*(pipeline.random.randint(90, 160) for _ in range(3))) for _ in range(pipeline.pixels)] for _ in "ab"
+    ]
+    rest = [video(shade, pipeline.columns) for shade in shades]
+    assert await pipeline.write("CAPTURE", start) == Response.OKAY
+    await pipeline.send(broken(pipeline.frame(), "row_short", 1, pipeline.columns), *rest, pipeline.pressed())
+    while CAPTURE.unpack(await pipeline.read("CAPTURE"))["busy"]:
+        await RisingEdge(dut.clk)
+    await pipeline.check()
+    shape = (2, pipeline.rows, pipeline.columns, 3)
+    Pipeline.gains = captured_gains(colours(shades).reshape(shape), pipeline.config)
+    await pipeline.send(pipeline.pressed(), rest[0])
+    await pipeline.check()
+    await pipeline.reset(2)
+    await pipeline.send(pipeline.pressed())
+    await pipeline.check()
+
+
+@TEST
+async def dark_pixels_are_held(dut):
+    """Anywhere in a row, and the whole of one; each is counted."""
+    pipeline = await started(dut)
+    if not pipeline.config.flat_field:
+        return
+    level = 50
+    words = [word.data for word in pipeline.pressed()]
+    for row in range(pipeline.rows):
+        for column in range(pipeline.columns):
+            if row == 2 or pipeline.random.random() < 0.3:
+                words[row * pipeline.columns + column] = pixel(*(pipeline.random.randrange(level) for _ in range(3)))
+    await pipeline.write("DARK_LEVEL", level)
+    pipeline.dark_level = level
+    await pipeline.send(video(words, pipeline.columns), pipeline.frame())
+    await RisingEdge(dut.clk)
+    dark = (colours([word.data for word in pipeline.into.words]) < level).all(axis=-1).sum()
+    pipeline.counters["DARK_PIXELS"] += int(dark)
+    pipeline.sticky.add("dark")
+    await pipeline.check()
+
+
+@TEST
+async def depth_frames_are_dropped(dut):
+    """With drop_frames a sink that stands still costs frames and no time; the next one after it is whole."""
+    pipeline = await started(dut)
+    flat = video([pixel(135, 135, 135)] * pipeline.pixels, pipeline.columns)
+    frames = [flat, flat, pipeline.pressed(), flat]
+    codes, _ = pipeline.model([[word.data for word in words] for words in frames])
+    await pipeline.write("THRESHOLD", int(codes[2].max()) - 1)
+    await pipeline.write("CONTROL", CONTROL.pack(drop_frames=1))
+    pipeline.drops = True
+    pipeline.sink.stall(repeat(False))
+    began = pipeline.into.clock_count
+    await pipeline.send(*frames[:3])
+    assert pipeline.into.clock_count - began < 3 * pipeline.pixels + 8, "the input waited"
+    await pipeline.idle()
+    assert dut.contact.value, "late for a sink that stands still"
+    assert await pipeline.read("DEPTH_DROPPED") == 3
+    assert STATUS.unpack(await pipeline.read("STATUS"))["depth_dropped"]
+    pipeline.sink.stall(repeat(True))
+    await ClockCycles(dut.clk, 8)
+    await pipeline.send(frames[3])
+    await pipeline.idle()
+    await ClockCycles(dut.clk, 4 * pipeline.columns)
+    left = [pipeline.signed(beat.data) for beat in pipeline.out.words]
+    assert left == [*codes[0].flat[:SKID_WORDS].tolist(), *codes[3].flat], "the words that had left, then a whole frame"
+    assert await pipeline.read("FRAMES_OUT") == 1
+    assert len(pipeline.packets) == len(frames), "each frame leaves its record"
+    await pipeline.reset(2)
 
 
 @TEST
