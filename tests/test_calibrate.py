@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.ndimage import uniform_filter
 
 from commands import calibrate
 from commands.calibrate import (
@@ -31,10 +32,13 @@ from commands.calibrate import (
     summary,
 )
 from models.calibration import FOLDER, load
+from models.configuration import Configuration
+from models.divergence import divergence
 from models.errors import InputError
 from models.frames import read_picture
-from models.reference import quadratic_terms
+from models.reference import quadratic_slopes, quadratic_terms
 from models.scenes import LIGHTS
+from models.tactile_depth import solve
 
 CAMERA, PITCH = (112, 160), 0.1  # rows and columns, mm per pixel
 SENSITIVITY = 0.7  # deviation of a colour per unit of slope towards its light
@@ -462,3 +466,34 @@ def test_circles_found_in_real_pictures_agree_with_the_table(real_presses):
     found = np.abs(real_presses.agreement)
     assert len(found) == 45
     assert (np.median(found, axis=0) <= (1, 2.5, 2.5)).all()  # measured: 0.5, 2.1, 1.8 pixels
+
+
+def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real):
+    """In a window of 128 camera pixels, its centre 14 from the edge against in the middle; Neumann, bit-accurate."""
+    window, from_edge = 128, 14
+    config = Configuration(columns=window, solver="tridiagonal", neumann=True, gradient_limit=2.0)
+    limit = (1 << config.gradient.width - 1) - 1
+    calibration = load("gelsight-mini")
+    lit = uniform_filter(read_picture(real / "background.png").astype(float), (15, 15, 1), mode="nearest")
+
+    def height(slopes, circle, left, top):
+        codes = np.rint(slopes[top : top + window, left : left + window] / config.gradient_lsb)
+        z = solve(divergence(np.clip(codes, -limit, limit).astype(np.int64), True), config)[::-1]
+        rows, columns = np.indices(z.shape)
+        distance = np.hypot(columns - circle.x + left, rows - circle.y + top)
+        return z[distance <= 2].mean() - np.median(z[distance > 1.2 * circle.radius])
+
+    kept = []
+    for row in read_presses(real)[0]:
+        circle, frame = row.circle, read_picture(real / row.name)
+        x, y = round(circle.x), round(circle.y)
+        fits = (
+            0 <= y - window // 2 <= frame.shape[0] - window and window // 2 <= x <= frame.shape[1] - window + from_edge
+        )
+        if not fits or circle.radius <= from_edge:  # not cut
+            continue
+        slopes = quadratic_slopes(frame / lit - 1, calibration, calibration.pixel_pitch_mm)
+        middle, edge = (height(slopes, circle, left, y - window // 2) for left in (x - window // 2, x - from_edge))
+        kept.append(edge / middle)
+    assert len(kept) >= 10
+    assert min(kept) >= 0.9  # measured: 1.00 to 1.12
