@@ -53,13 +53,15 @@ def structure(core: str, index: int) -> Structure:
     """The index-th structure of tests/test_<core>.py."""
     sys.path[:0] = [path for path in (str(TESTS), str(simulation.ROOT / "tb")) if path not in sys.path]
     module = importlib.import_module(f"test_{core}")
-    (test,) = (
+    tests = [
         function
         for name, function in vars(module).items()
         if name.startswith("test_")
         and inspect.isfunction(function)
         and "run_tb" in inspect.signature(function).parameters
-    )
+    ]
+    test = tests[0]  # the core's own; others run it in another way
+    chosen = {"simulator": "verilator"} if "simulator" in inspect.signature(test).parameters else {}
     kept = []
 
     def keep(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
@@ -76,7 +78,7 @@ def structure(core: str, index: int) -> Structure:
         elif mark.name == "parametrize":
             names = [mark.args[0]] if isinstance(mark.args[0], str) else list(mark.args[0])
             cases = [case if len(names) > 1 else (case,) for case in mark.args[1]]
-    test(keep, **dict(zip(names, cases[index], strict=True)))
+    test(keep, **chosen, **dict(zip(names, cases[index], strict=True)))
     return kept[0]
 
 

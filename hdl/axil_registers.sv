@@ -125,8 +125,8 @@ module axil_registers
     | (Tables'(CoefficientWords != 0) << TableCommitCoefficientsBit)
     | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit);
 
-  logic aw_held;
-  logic w_held;
+  logic aw_held = 1'b0;  // a clock before the first reset writes no table, which holds its contents from power-up
+  logic w_held = 1'b0;
   logic [AddressWidth-1:0] write_address;
   logic [31:0] write_data;
   logic [3:0] write_strobe;

@@ -65,7 +65,8 @@ module reference_capture #(
   // Sums. A block's row of pixels is added up, then added to what its node holds, or in the block's first row of the
   // first frame to nothing. The last clock of one such addition is the first of the next at the earliest.
 
-  logic summing_q, fresh, row_ends, row_ends_q2, row_ends_q3, begin_sum, begin_sum_q2;
+  logic summing_q, fresh, row_ends, row_ends_q2, begin_sum, begin_sum_q2;
+  logic row_ends_q3 = 1'b0;  // a clock before the first reset writes no gain
   logic [ColumnWidth-1:0] column;
   logic [RowWidth-1:0] row;
   logic [23:0] colours_q;
@@ -101,7 +102,8 @@ module reference_capture #(
   logic [Width-1:0] divisor, remainder, gain, whole;
   logic [Width:0] twice;
   logic [Bits-1:0] quotient;
-  logic overflow, bit_set, reading, node_ends, write_back, divided;
+  logic overflow, bit_set, reading, node_ends, divided;
+  logic write_back = 1'b0;
   assign divisor = word[Width-1:0];
   assign whole = Width'(1) << (StepWidth'(log2) + StepWidth'(Whole));
   // With a divisor over `whole` the quotient stays so far below 2^Bits that rounding does not carry out.

@@ -906,7 +906,7 @@ async def registers_written_all_the_time(dut, accepts):
             word = rng.getrandbits(32)
             name = rng.choice(("THRESHOLD", "TIMEOUT", "CONTROL", *TABLE_REGISTERS, "GRID"))
             if name in ("TIMEOUT", "CONTROL"):
-                word = word | 1 << 20 if name == "TIMEOUT" else word & ~CONTROL.pack(clear_counters=1)
+                word = word | 1 << 20 if name == "TIMEOUT" else word & ~CONTROL.pack(clear_counters=1, drop_frames=1)
             refused += await pipeline.write(name, word) == Response.SLVERR
             await pipeline.read(
                 rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX", "TABLE_COMMIT"))

@@ -246,7 +246,8 @@ def defaults(path):
 
 
 SPECTRAL, TRIDIAGONAL = Configuration(), Configuration(solver="tridiagonal")
-BOTH = {**top_parameters(TRIDIAGONAL), **top_parameters(SPECTRAL)}
+FLAT = [top_parameters(Configuration(flat_field=True, gradient_model=model)) for model in ("quadratic", "lut")]
+BOTH = {**FLAT[0], **FLAT[1], **top_parameters(TRIDIAGONAL), **top_parameters(SPECTRAL)}
 
 
 @pytest.mark.parametrize(

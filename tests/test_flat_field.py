@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+from conftest import REGRESS
 
 from models.configuration import DEVIATION, GAIN_FRACTION, Configuration
 from models.flat_field import (
@@ -25,7 +26,9 @@ SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "round_saturate.sv", "delay
     both=[(16, 8, False), (16, 8, True), (128, 128, True)],
     icarus=[(16, 16, True), (32, 21, False), (128, 8, False)],
 )
-def test_rtl(run_tb, columns, rows, quadratic):
+def test_rtl(run_tb, simulator, columns, rows, quadratic):
+    if simulator == "icarus" and rows == 128 and not REGRESS:
+        pytest.skip("takes long: in make regress, and here on Verilator")
     choices = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
     config = Configuration(**choices)
     run_tb(

@@ -125,7 +125,7 @@ def test_every_tool_looks_at_every_core_and_at_the_whole():
         assert set(lint.modules(simulator.sources())) == cores
         assert "cores" in seen[tool]
     assert whole <= seen["slang"]
-    assert len(seen["yosys"] & whole) == 4  # both solvers, both boundaries
+    assert len(seen["yosys"] & whole) == 5  # both solvers, both boundaries, and the quadratic model
     assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in seen["yosys"]} == {
         (solver, neumann) for solver in ("spectral", "tridiagonal") for neumann in (False, True)
     }
