@@ -149,25 +149,25 @@ class Pipeline:
             else:
                 counts, user = dut.m_axis_tvalid.value and dut.m_axis_tready.value, dut.m_axis_tuser.value
                 depth = self.signed(dut.m_axis_tdata.value) if counts else 0
+            if counts and user:
+                names = ("threshold", "off_threshold", "minimum_area", "debounce")
+                self.settings.append(Settings(*(getattr(dut, name).value.to_signed() for name in names)))
             if counts:
                 model.beat(depth, bool(user), dut.threshold.value.to_signed(), bool(dut.hold_contact.value))
 
     async def watch_events(self):
-        """Packets that leave, and what was set when the first depth of each frame left."""
-        dut, words, edge = self.dut, [], RisingEdge(self.dut.clk)
-        names = ("threshold", "off_threshold", "minimum_area", "debounce")
+        """Packets that leave; a reset ends one."""
+        dut, edge = self.dut, RisingEdge(self.dut.clk)
         while True:
+            await RisingEdge(dut.m_event_tvalid)
+            words = []
             await edge
-            if dut.rst.value:
-                words = []
-                continue
-            if dut.look_valid.value and dut.look_user.value:
-                self.settings.append(Settings(*(getattr(dut, name).value.to_signed() for name in names)))
-            if dut.m_event_tvalid.value:
+            while dut.m_event_tvalid.value and not dut.rst.value:
                 words.append(int(dut.m_event_tdata.value))
                 if dut.m_event_tlast.value:
                     self.packets.append(words)
                     words = []
+                await edge
 
     def signed(self, data):
         width = 8 * ((self.config.data_width + 7) // 8)
