@@ -23,12 +23,10 @@ SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "round_saturate.sv", "delay
 
 @pytest.mark.structures(
     "columns rows quadratic",
-    both=[(16, 8, False), (16, 8, True), (128, 128, True)],
+    both=[(16, 8, False), (16, 8, True), *([(128, 128, True)] if REGRESS else [])],
     icarus=[(16, 16, True), (32, 21, False), (128, 8, False)],
 )
-def test_rtl(run_tb, simulator, columns, rows, quadratic):
-    if simulator == "icarus" and rows == 128 and not REGRESS:
-        pytest.skip("takes long: in make regress, and here on Verilator")
+def test_rtl(run_tb, columns, rows, quadratic):
     choices = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
     config = Configuration(**choices)
     run_tb(
