@@ -3,7 +3,7 @@
 
 Parts, chosen with PARTS=a,b: `faults` (tests/test_faults.py, the full product), `codes` (RTL against model in bulk),
 `power_ups` (the quick tests of every core and of the top from 100 random states), `seeds` (every test of RTL with
-other seeds). JOBS is the number of processes, 2 by default.
+other seeds, with all that `make test` leaves out for its length). JOBS is the number of processes, 2 by default.
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ from models.tactile_depth import tactile_depth
 ROOT = simulation.ROOT
 POWER_UPS = 100
 SEEDS = (2, 3)
+# Tests of RTL, and what else asks for REGRESS.
+WHOLE = "test_rtl or second_client or test_sample or (test_every_grid and icarus and 256)"
 CODES = 6_000_000  # of each job of `codes`, or more: what makes a whole frame
 MODEL_PIXELS = 1 << 20  # that go through the models at a time
 SCENES_RENDERED = 160  # of a job, at most
@@ -254,7 +256,8 @@ def seeds(part: Part, progress: Progress, jobs: int) -> None:
     for seed in SEEDS:
         began = time.monotonic()
         before = len(part.failures)
-        pytest_part(part, progress, jobs, ["tests", "-k", "test_rtl"], {"SEED": str(seed), "POWER_UPS": "1"})
+        environment = {"SEED": str(seed), "POWER_UPS": "1", "REGRESS": "1"}
+        pytest_part(part, progress, jobs, ["tests", "-k", WHOLE], environment)
         part.lines.append(
             {
                 "part": part.name,

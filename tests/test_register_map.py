@@ -68,7 +68,7 @@ def test_the_c_header(tmp_path):
     """A program that includes it finds every register where the map has it, and every field's bits and reset value."""
     compiler = shutil.which("gcc")
     if compiler is None:
-        pytest.skip("no gcc")
+        pytest.skip("gcc is missing: it compiles the C header")
     checks = [f"sizeof(tactile_depth_t) == {MAP[-1].offset + 4}"]
     for register in MAP:
         checks.append(f"offsetof(tactile_depth_t, {register.name}) == {register.offset}")
