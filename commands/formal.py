@@ -717,10 +717,11 @@ How the parts make the whole:
 - What a bench assumes of its inputs is proven of the core that drives them: frames are whole, so the first depth after
   a reset begins one, and ends of frames lie a frame's pixels apart (frame_guard, frame_output); no table word is
   written while a change-over is due, and banks change with a frame's start alone (axil_registers).
-- But for the banks of the tables, the specifications have no state from before the reset and, for data, none from before
-  the frame, so neither does what leaves: codes and timing of a frame are a function of that frame and of its tables.
-  What contact_events keeps from frame to frame, touching and its count, is said in its header. In the transforms a burst meets no other: each
-  sum, difference and product is proven to be of its own burst's words (sdf_butterfly, twiddle_multiply, mode_pairs).
+- But for the banks of the tables, the specifications have no state from before the reset and, for data, none from
+  before the frame, so neither does what leaves: codes and timing of a frame are a function of that frame and of its
+  tables. What contact_events keeps from frame to frame, touching and its count, is said in its header. In the
+  transforms a burst meets no other: each sum, difference and product is proven to be of its own burst's words
+  (sdf_butterfly, twiddle_multiply, mode_pairs).
   The signs at their ends (dst_forward, dst_inverse) are left to simulation against the model.
 - Of the whole `tactile_depth`, two copies that start from different states were not proven equal in one piece: the
   search did not end. What is said of the whole follows from the parts.
