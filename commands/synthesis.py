@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the flows of make synth, make fpga and make asic share: the design, read by Yosys."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from commands import simulator as simulation
+from models.calibration import load
+from models.configuration import Configuration
+from models.tactile_depth import top_parameters, write_roms
+
+# Small ROMs are LUTs. Vivado spells that "distributed", which Yosys takes for a RAM of LUTs and finds none to read alone.
+SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
+
+
+def read(
+    folder: Path,
+    config: Configuration,
+    *,
+    calibration: str = "synthetic",
+    top: str = "tactile_depth",
+    parameters: Mapping[str, int] | None = None,
+    extra: Sequence[Path] = (),
+) -> list[str]:
+    """Write the sources and the ROMs of a configuration into a folder; lines of Yosys that read them there.
+
+    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_roms(folder, load(calibration), config)
+    names = []
+    for source in [*simulation.sources(), *extra]:
+        shutil.copy(source, folder)
+        names.append(source.name)
+    given = top_parameters(config) if parameters is None else parameters
+    options = " ".join(f"-G {name}={value}" for name, value in given.items())
+    return [
+        f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {' '.join(names)}",
+        f"hierarchy -top {top}",
+        "proc",
+        SMALL_ROMS,
+    ]
