@@ -12,7 +12,7 @@ from models.calibration import load
 from models.configuration import Configuration
 from models.tactile_depth import top_parameters, write_roms
 
-# Small ROMs are LUTs. Vivado spells that "distributed", which Yosys takes for a RAM of LUTs and finds none to read alone.
+# Small ROMs are LUTs. Vivado says "distributed", which Yosys takes for a RAM of LUTs and finds none to read alone.
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 
 
