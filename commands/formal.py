@@ -248,6 +248,7 @@ PROOFS: tuple[Proof, ...] = (
         f"words of a frame are only counted; {WORD_FREE}",
         depth=30,
     ),
+    Proof("multiply", "the exact product of every enabled clock's operands", "no control but en; no width enters"),
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
     Proof(
         "gradient_lookup",
@@ -353,7 +354,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "sdf_butterfly",
-            "sum and difference of an arbitrary pair at their places, turned and halved; latency Delay + 1",
+            "sum and difference of an arbitrary pair at their places, turned and halved; latency Delay + 2",
             f"stages as they occur in a transform of 8, one with its line in memory; {ROUNDING}",
             {"Size": size, "Delay": delay, "RotateBlock": block, "Inverse": inverse, "Halve": halve},
             depth=45,
@@ -400,7 +401,7 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof(
         "thomas_table",
-        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 3",
+        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 4",
         "every row and position of a table with all its cases; contents do not matter",
         {"Rows": 6, "Size": 4, "Words": 14},
         roms=thomas_roms(6, 4, 14, 5, 3, 2),
@@ -452,7 +453,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "forward_elimination",
-            "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 7",
+            "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 8",
             f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
             {"Rows": 3, "Size": 8, "Words": 16, "Neumann": neumann},
             depth=60,
@@ -462,7 +463,7 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof(
         "back_substitution",
-        "the recursion up an arbitrary column; latency 6",
+        "the recursion up an arbitrary column; latency 7",
         f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
         {"Rows": 3, "Size": 8, "Words": 16},
         depth=60,

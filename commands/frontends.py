@@ -80,6 +80,7 @@ def cases() -> list[Case]:
         *(Case("delay_line", {"Width": 3, "Delay": delay}) for delay in (1, 3, 6)),
         Case("depth_gate", {"Width": 4}),
         *(Case("divergence", {"Width": 4, "Columns": 8, "Neumann": neumann}) for neumann in (0, 1)),
+        Case("multiply", {"AWidth": 5, "BWidth": 4}),
         Case("dot_product", {"AWidth": 5, "BWidth": 4}),
         *(
             Case(core, transform | {"InputDrop": drop, "Alternate": alternate})

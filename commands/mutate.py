@@ -61,6 +61,7 @@ TOP_TESTS = (
 )
 CORES = {
     "round_saturate": Core(protocols.round_saturate, (0, 1, 11)),
+    "multiply": Core(protocols.multiply, (2,)),
     "dot_product": Core(protocols.dot_product, (3,)),
     "ram": Core(protocols.ram, (1,)),
     "rom": Core(protocols.rom, (1,)),

@@ -41,6 +41,10 @@ def round_saturate(_: Mapping[str, int]) -> Protocol:
     return Protocol()
 
 
+def multiply(_: Mapping[str, int]) -> Protocol:
+    return Protocol(settled(1), (), {"product": "settled"})
+
+
 def dot_product(_: Mapping[str, int]) -> Protocol:
     return Protocol(settled(4), (), {"sum": "settled"})
 
@@ -51,7 +55,7 @@ def rom(parameters: Mapping[str, int]) -> Protocol:
 
 def thomas_table(parameters: Mapping[str, int]) -> Protocol:
     within = f"row < {parameters['Rows']}"
-    return Protocol(settled(3), (within,), {"coefficient": "settled", "shift": "settled"})
+    return Protocol(settled(4), (within,), {"coefficient": "settled", "shift": "settled"})
 
 
 def burst_counter(_: Mapping[str, int]) -> Protocol:

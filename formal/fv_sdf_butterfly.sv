@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_sdf_butterfly: of an arbitrary pair a, b of a block the sum leaves at the place of a and the difference at that of
-// b, Delay + 1 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the
+// b, Delay + 2 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the
 // count of clipped values with it. Rounding itself is proven of round_saturate.
 
 module fv_sdf_butterfly #(
@@ -22,7 +22,7 @@ module fv_sdf_butterfly #(
   input logic                    pick
 );
 
-  localparam int AgeWidth = $clog2(2 * Delay + 2);
+  localparam int AgeWidth = $clog2(2 * Delay + 3);
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
@@ -36,7 +36,7 @@ module fv_sdf_butterfly #(
 
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_re, out_im;
-  logic [2:0] saturations;
+  logic [1:0] saturations;
   sdf_butterfly #(
     .Width(Width), .Size(Size), .Delay(Delay), .RotateBlock(RotateBlock), .Inverse(Inverse), .Halve(Halve)
   ) dut (
@@ -76,22 +76,22 @@ module fv_sdf_butterfly #(
     .in((Width + 2)'(a_im) - (Width + 2)'(im)), .out(difference_im), .clipped(clipped[3])
   );
 
-  logic is_a, is_b, b_taken, held;
+  logic is_a, was_enabled, held;
   assign is_a = active & (32'(position) % (2 * Delay) < Delay);
-  assign is_b = active & ~is_a;
   logic [3:0] clipped_q;
-  logic [Delay:0] start_q, frame_start_q;
+  logic [Delay:0] active_q;
+  logic [Delay+1:0] start_q, frame_start_q;
   logic [2*Width+1:0] out_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
     out_q <= {out_start, out_frame_start, out_re, out_im};
-    b_taken <= en & following & (age == AgeWidth'(Delay)) & ~rst;
-    clipped_q <= clipped;
+    was_enabled <= en & ~rst;
     if (en) begin
-      start_q <= (Delay + 1)'({start_q, in_start});
-      frame_start_q <= (Delay + 1)'({frame_start_q, in_frame_start});
-      if (!following || age == AgeWidth'(2 * Delay + 1)) begin
+      start_q <= (Delay + 2)'({start_q, in_start});
+      frame_start_q <= (Delay + 2)'({frame_start_q, in_frame_start});
+      active_q <= (Delay + 1)'({active_q, active});
+      if (!following || age == AgeWidth'(2 * Delay + 2)) begin
         following <= pick & is_a;
         age <= AgeWidth'(1);
         a_re <= re;
@@ -104,33 +104,35 @@ module fv_sdf_butterfly #(
         sum_im_q <= sum_im;
         difference_re_q <= difference_re;
         difference_im_q <= difference_im;
+        clipped_q <= clipped;
       end
     end
     if (rst) begin
       start_q <= '0;
       frame_start_q <= '0;
+      active_q <= '0;
       following <= 1'b0;
     end
   end
-  logic none_clipped;  // by no pair: nothing was added in the clock before
-  always_ff @(posedge clk) none_clipped <= rst | ~en | ~is_b;
+  logic none_leaves;  // nothing was rounded in the clock before
+  always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
 
   always_comb begin
     if (started) begin
-      start_when_due: assert (out_start == start_q[Delay]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Delay]);
-      if (following && age == AgeWidth'(Delay + 1)) sum: assert (out_re == sum_re_q && out_im == sum_im_q);
-      if (following && age == AgeWidth'(2 * Delay + 1)) begin
+      start_when_due: assert (out_start == start_q[Delay+1]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[Delay+1]);
+      if (following && age == AgeWidth'(Delay + 2)) begin
+        sum: assert (out_re == sum_re_q && out_im == sum_im_q);
+        if (was_enabled) sum_counted: assert (32'(saturations) == 32'(clipped_q[0]) + 32'(clipped_q[1]));
+      end
+      if (following && age == AgeWidth'(2 * Delay + 2)) begin
         difference: assert (out_re == difference_re_q && out_im == difference_im_q);
+        if (was_enabled) difference_counted: assert (32'(saturations) == 32'(clipped_q[2]) + 32'(clipped_q[3]));
       end
-      if (b_taken) begin
-        counted: assert (32'(saturations)
-            == 32'(clipped_q[0]) + 32'(clipped_q[1]) + 32'(clipped_q[2]) + 32'(clipped_q[3]));
-      end
-      if (none_clipped) not_counted: assert (saturations == '0);
+      if (none_leaves) not_counted: assert (saturations == '0);
       if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
-      clips: cover (b_taken && saturations > 3'd1);
-      last_difference: cover (following && age == AgeWidth'(2 * Delay + 1) && out_re == '1 && held);
+      clips: cover (following && age == AgeWidth'(Delay + 2) && saturations == 2'd2);
+      last_difference: cover (following && age == AgeWidth'(2 * Delay + 2) && out_re == '1 && held);
     end
   end
 

@@ -20,7 +20,7 @@ module fv_thomas_table #(
   input logic                     pick
 );
 
-  localparam int Latency = 3;
+  localparam int Latency = 4;
 
   always_comb assume (32'(row) < Rows);
 
@@ -38,27 +38,27 @@ module fv_thomas_table #(
 
   logic following = 1'b0;
   logic held = 1'b0;
-  logic [1:0] age;
+  logic [2:0] age;
   logic [LastShiftWidth+CoeffWidth-1:0] expected, out_q;
   always_ff @(posedge clk) begin
     held <= ~en;
     out_q <= {shift, coefficient};
     if (en) begin
-      if (!following || age == 2'(Latency)) begin
+      if (!following || age == 3'(Latency)) begin
         following <= pick;
-        age <= 2'd1;
+        age <= 3'd1;
         expected <= square[32'(row) * Size + 32'(position)];
       end else begin
-        age <= age + 2'd1;
+        age <= age + 3'd1;
       end
     end
   end
 
   always_comb begin
-    if (following && age == 2'(Latency)) own_coefficient: assert ({shift, coefficient} == expected);
+    if (following && age == 3'(Latency)) own_coefficient: assert ({shift, coefficient} == expected);
     if (held) holds: assert ({shift, coefficient} == out_q);
-    inner: cover (following && age == 2'(Latency) && shift == '0 && held);
-    last: cover (following && age == 2'(Latency) && shift != '0 && held);
+    inner: cover (following && age == 3'(Latency) && shift == '0 && held);
+    last: cover (following && age == 3'(Latency) && shift != '0 && held);
   end
 
 endmodule

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // dot_product: a0 b0 + a1 b1, exact. Latency: 4 cycles.
 //
-// Registered and staggered as two cascaded DSP48E2 take it: operands, product, sum. No reset on the way.
+// Registered and staggered as two cascaded DSP48E2 take it: operands, product (multiply), sum. No reset on the way.
 // Bit-accurate model: models/dot_product.py.
 
 module dot_product #(
@@ -21,17 +21,18 @@ module dot_product #(
   logic signed [BWidth-1:0] b0_q, b1_q, b1_q2;
   logic signed [AWidth+BWidth-1:0] product0, product0_q, product1;
 
+  multiply #(.AWidth(AWidth), .BWidth(BWidth)) u_product0 (.clk, .en, .a(a0_q), .b(b0_q), .product(product0));
+  multiply #(.AWidth(AWidth), .BWidth(BWidth)) u_product1 (.clk, .en, .a(a1_q2), .b(b1_q2), .product(product1));
+
   always_ff @(posedge clk) begin
     if (en) begin
       a0_q <= a0;
       b0_q <= b0;
       a1_q <= a1;
       b1_q <= b1;
-      product0 <= a0_q * b0_q;
       a1_q2 <= a1_q;
       b1_q2 <= b1_q;
       product0_q <= product0;
-      product1 <= a1_q2 * b1_q2;
       sum <= (AWidth + BWidth + 1)'(product0_q) + (AWidth + BWidth + 1)'(product1);
     end
   end

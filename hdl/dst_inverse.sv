@@ -4,7 +4,7 @@
 //   out = g x when in = dst_forward(x),  g = (1 - 2^(1 - CoeffWidth))^(2 (twiddle stages + 1)), and the drops below
 //
 // Stream in: bursts of Size modes, bit-reversed order, as dst_forward puts them out.
-// Stream out: bursts of samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Latency: Size / 2 + 8 + sdf_fft.
+// Stream out: bursts of samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Latency: Size / 2 + 9 + sdf_fft.
 //
 //   mode_pairs  ->  turn C[N-k] + j C[k] by exp(j pi k / 2N) / j  ->  inverse sdf_fft  ->  sign (-1)^n
 //
@@ -69,22 +69,27 @@ module dst_inverse #(
     .clk, .rst, .en, .start(fft_start), .position, .active
   );
   logic signed [Width:0] signed_x;
-  assign signed_x = Alternate != 0 && position[$clog2(Size)-1] ? -$signed({x[Width-1], x}) : (Width + 1)'(x);
-
   logic signed [OutWidth-1:0] rounded;
-  logic clipped, clipped_q;
+  logic active_q, start_q, frame_start_q, clipped, clipped_q;
   round_saturate #(.InWidth(Width + 1), .Drop(OutputDrop), .OutWidth(OutWidth)) u_output (
     .in(signed_x), .out(rounded), .clipped
   );
   always_ff @(posedge clk) begin
     if (en) begin
-      out_start <= fft_start;
-      out_frame_start <= fft_frame_start;
+      signed_x <= Alternate != 0 && position[$clog2(Size)-1] ? -$signed({x[Width-1], x}) : (Width + 1)'(x);
+      active_q <= active;
+      start_q <= fft_start;
+      frame_start_q <= fft_frame_start;
+      out_start <= start_q;
+      out_frame_start <= frame_start_q;
       out_data <= rounded;
     end
-    clipped_q <= en & active & clipped;
+    clipped_q <= en & active_q & clipped;
     saturations <= 8'(clipped_q) + 8'(clipped_fft) + 8'(clipped_phase);
     if (rst) begin
+      active_q <= 1'b0;
+      start_q <= 1'b0;
+      frame_start_q <= 1'b0;
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
       clipped_q <= 1'b0;

@@ -55,7 +55,7 @@ module flat_field #(
 
   localparam int MapLatency = 9;
   localparam int ToOut = 2;  // stages between the gain and the output
-  localparam int ProductWidth = 8 + GainWidth;
+  localparam int ProductWidth = 8 + GainWidth + 2;  // of two signs more
   localparam int RoundedWidth = OutWidth + (Offset == 0 ? 1 : 0);  // round_saturate is signed
 
   logic gain_valid;
@@ -88,10 +88,12 @@ module flat_field #(
   logic [3*OutWidth-1:0] out;
   assign {out_blue, out_green, out_red} = out;
   for (genvar c = 0; c < 3; c++) begin : g_channel
-    logic [ProductWidth-1:0] product;
-    logic signed [ProductWidth:0] sum;
+    logic signed [ProductWidth-1:0] product, sum;
+    multiply #(.AWidth(GainWidth + 1), .BWidth(9)) u_product (
+      .clk, .en, .a({1'b0, gains[c*GainWidth+:GainWidth]}), .b({1'b0, colours[8*c+:8]}), .product
+    );
     logic signed [RoundedWidth-1:0] rounded;
-    round_saturate #(.InWidth(ProductWidth + 1), .Drop(Drop), .OutWidth(RoundedWidth)) u_round (
+    round_saturate #(.InWidth(ProductWidth), .Drop(Drop), .OutWidth(RoundedWidth)) u_round (
       .in(sum), .out(rounded), .clipped(clipped[c])
     );
     if (Offset == 0) begin : g_unsigned
@@ -100,8 +102,7 @@ module flat_field #(
     end
     always_ff @(posedge clk) begin
       if (en) begin
-        product <= ProductWidth'(colours[8*c+:8]) * ProductWidth'(gains[c*GainWidth+:GainWidth]);
-        sum <= $signed({1'b0, product}) - ((ProductWidth + 1)'(Offset) <<< Drop);
+        sum <= product - (ProductWidth'(Offset) <<< Drop);
         if (valid_q[1] & ~dark_q[1]) out[c*OutWidth+:OutWidth] <= rounded[OutWidth-1:0];
         else if (valid_q[1] & place_q[5]) out[c*OutWidth+:OutWidth] <= OutWidth'(Flat);
       end

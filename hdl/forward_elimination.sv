@@ -6,7 +6,7 @@
 //   which gives it zero mean after the substitution.
 //
 // Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of
-// d, rounded to the stored word. Latency: 7 cycles. The running row keeps Width bits. One multiplier; between dependent
+// d, rounded to the stored word. Latency: 8 cycles. The running row keeps Width bits. One multiplier; between dependent
 // values lie at least Size clocks, so it pipelines freely. Bit-accurate model: models/forward_elimination.py.
 
 module forward_elimination #(
@@ -40,7 +40,7 @@ module forward_elimination #(
   localparam int RowWidth = $clog2(Rows);
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int ShiftedWidth = ProductWidth + (1 << LastShiftWidth) - 1;
-  localparam int ToState = 6;
+  localparam int ToState = 7;
 
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row, row_q;
@@ -62,8 +62,8 @@ module forward_elimination #(
   // What follows a word down the pipeline.
   logic [ToState-1:0] start_q, frame_start_q, active_q, singular_q;  // singular: position 0 of the last row
   logic [ToState*PositionWidth-1:0] position_q;
-  logic first_row_q;
-  logic signed [Width-1:0] data_q, state, state_or_zero;
+  logic first_row_q, first_row_q2;
+  logic signed [Width-1:0] data_q, data_q2, state, state_or_zero;
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[ToState-2:0], in_start};
@@ -72,7 +72,9 @@ module forward_elimination #(
       singular_q <= {singular_q[ToState-2:0], in_start & (row == RowWidth'(Rows - 1))};
       position_q <= {position_q[(ToState-1)*PositionWidth-1:0], position};
       first_row_q <= row == '0;
+      first_row_q2 <= first_row_q;
       data_q <= in_data;
+      data_q2 <= data_q;
       row_q <= row + RowWidth'(active & (position == PositionWidth'(Size - 1)));
     end
     if (rst) begin
@@ -83,13 +85,16 @@ module forward_elimination #(
   end
 
   // Difference, product, shift, rounding.
-  assign state_or_zero = first_row_q ? '0 : state;
+  assign state_or_zero = first_row_q2 ? '0 : state;
   logic signed [Width-1:0] difference, difference_q, difference_q2, rounded, d, chosen;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
   logic [2:0] clipped, clipped_q;
+  multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
+    .clk, .en, .a(difference_q2), .b(coefficient), .product
+  );
   round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
-    .in((Width + 1)'(data_q) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
+    .in((Width + 1)'(data_q2) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
   );
   round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
     .in(shifted), .out(rounded), .clipped(clipped[1])
@@ -102,7 +107,6 @@ module forward_elimination #(
     if (en) begin
       difference_q <= difference;
       difference_q2 <= difference_q;
-      product <= difference_q2 * coefficient;
       shift_q <= shift;
       shifted <= ShiftedWidth'(product) <<< shift_q;
       d <= chosen;
@@ -111,7 +115,7 @@ module forward_elimination #(
       out_frame_start <= frame_start_q[ToState-1];
     end
     clipped_q <= {
-      en & active_q[ToState-1] & clipped[2], en & active_q[ToState-2] & clipped[1], en & active_q[0] & clipped[0]
+      en & active_q[ToState-1] & clipped[2], en & active_q[ToState-2] & clipped[1], en & active_q[1] & clipped[0]
     };
     if (rst) begin
       out_start <= 1'b0;
@@ -129,8 +133,8 @@ module forward_elimination #(
     .write_en     (en & active_q[ToState-1]),
     .write_address(position_q[(ToState-1)*PositionWidth+:PositionWidth]),
     .write_data   (d),
-    .read_en      (en & active),
-    .read_address (position),
+    .read_en      (en & active_q[0]),
+    .read_address (position_q[PositionWidth-1:0]),
     .read_data    (state)
   );
 
@@ -147,6 +151,12 @@ module forward_elimination #(
     logic signed [ProductWidth-1:0] scaled;
     logic [3:0] after;  // clocks since d at position 0 was there
     logic [1:0] clipped_now;
+    multiply #(.AWidth(Width), .BWidth(RowWidth + 2)) u_addend (
+      .clk, .en(en & start_q[ToState-1]), .a(d), .b({1'b0, weight}), .product(addend)
+    );
+    multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_scaled (
+      .clk, .en(en & after[2]), .a(sum_q), .b(CoeffWidth'(-MeanReciprocal)), .product(scaled)
+    );
     round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
       .in(moment), .out(sum), .clipped(clipped_now[0])
     );
@@ -160,12 +170,10 @@ module forward_elimination #(
       if (en) begin
         after <= {after[2:0], start_q[ToState-1]};
         if (start_q[ToState-1]) begin
-          addend <= d * $signed({1'b0, weight});
           weight_q <= weight + (RowWidth + 1)'(1);
         end
         if (after[0]) moment <= (weight_q == (RowWidth + 1)'(2) ? '0 : moment) + MomentWidth'(addend);
         if (after[1]) sum_q <= sum;
-        if (after[2]) scaled <= sum_q * CoeffWidth'(-MeanReciprocal);
         if (after[3]) mean_q <= mean;
       end
       clipped_mean[0] <= en & after[1] & clipped_now[0] & ends;

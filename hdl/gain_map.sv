@@ -225,8 +225,14 @@ module gain_map #(
   assign node_begins = begins_q[ToSum-1];
   assign between = inner_q[ToSum-1];
   for (genvar c = 0; c < 3; c++) begin : g_along
-    logic [SumWidth-1:0] product, sum, far, near;
+    logic [SumWidth-1:0] sum, far, near;
     assign sum = sums[c*SumWidth+:SumWidth];
+    logic signed [Width+ShareBits+2:0] product;
+    multiply #(.AWidth(Width + 1), .BWidth(ShareBits + 2)) u_product (
+      .clk, .en, .a({1'b0, used_gains[c*Width+:Width]}), .b({1'b0, weight_q}), .product
+    );
+    logic unused_signs;
+    assign unused_signs = ^product[Width+ShareBits+2:SumWidth];
     logic signed [SumWidth:0] step;
     logic [GainWidth-1:0] gain, from;
     logic signed [GainWidth-1:0] add;
@@ -240,8 +246,7 @@ module gain_map #(
     assign unused_sign = rounded[Width];
     always_ff @(posedge clk) begin
       if (en) begin
-        product <= SumWidth'(used_gains[c*Width+:Width]) * SumWidth'(weight_q);
-        sums[c*SumWidth+:SumWidth] <= (upper_q2 ? sum : '0) + product;
+        sums[c*SumWidth+:SumWidth] <= (upper_q2 ? sum : '0) + product[SumWidth-1:0];
         if (node_done) far <= sum;
         if (segment_done) begin
           near <= far;

@@ -154,12 +154,14 @@ module quadratic_gradient #(
       logic signed [DeviationWidth-1:0] deviation_q;
       logic signed [CoeffWidth-1:0] coefficient_q;
       logic signed [ProductWidth-1:0] product;
+      multiply #(.AWidth(DeviationWidth), .BWidth(CoeffWidth)) u_product (
+        .clk, .en, .a(deviation_q), .b(coefficient_q), .product
+      );
       always_ff @(posedge clk) begin
         if (en) begin
           waiting <= {waiting[(Delay-1)*DeviationWidth-1:0], deviation[colour]};
           deviation_q <= $signed(waiting[Delay*DeviationWidth-1-:DeviationWidth]);
           coefficient_q <= $signed(value[WordWidth-1-:CoeffWidth]);
-          product <= deviation_q * coefficient_q;
         end
       end
       logic signed [SumWidth-1:0] sum_before;

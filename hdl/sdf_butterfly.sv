@@ -5,7 +5,7 @@
 //   RotateBlock > 0: the last quarter of each block of that size is turned by -j (Inverse: +j) first
 //
 // Stream in: bursts of Size complex words. Stream out: the same, sums of a block before its differences.
-// Latency: Delay + 1 cycles. The delay line moves with en alone, so a burst leaves without one behind it.
+// Latency: Delay + 2 cycles. The delay line moves with en alone, so a burst leaves without one behind it.
 // Bit-accurate model: models/sdf_butterfly.py.
 
 module sdf_butterfly #(
@@ -27,7 +27,7 @@ module sdf_butterfly #(
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
   output logic signed [Width-1:0] out_im,
-  output logic [2:0]              saturations  // values clipped in this cycle
+  output logic [1:0]              saturations  // values clipped in this cycle
 );
 
   localparam int PositionWidth = $clog2(Size);
@@ -59,42 +59,58 @@ module sdf_butterfly #(
     assign b_im = (Width + 1)'(in_im);
   end
 
-  logic signed [Width-1:0] a_re, a_im, held_re, held_im;
+  // Sum and difference are exact in the line; they are rounded on their way out, one a clock.
+  logic signed [Width:0] a_re, a_im, sum_re, sum_im, difference_re, difference_im;
+  assign sum_re = a_re + b_re;
+  assign sum_im = a_im + b_im;
+  assign difference_re = a_re - b_re;
+  assign difference_im = a_im - b_im;
   delay_line #(
-    .Width(2 * Width),
+    .Width(2 * (Width + 1)),
     .Delay(Delay)
   ) u_delay (
-    .clk, .rst, .en, .in({held_re, held_im}), .out({a_re, a_im})
+    .clk, .rst, .en,
+    .in(second ? {difference_re, difference_im} : {(Width + 1)'(in_re), (Width + 1)'(in_im)}), .out({a_re, a_im})
   );
 
-  logic signed [Width-1:0] sum_re, sum_im, difference_re, difference_im;
-  logic [3:0] clipped;
-  round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_sum_re (
-    .in((Width + 2)'(a_re) + (Width + 2)'(b_re)), .out(sum_re), .clipped(clipped[0])
-  );
-  round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_sum_im (
-    .in((Width + 2)'(a_im) + (Width + 2)'(b_im)), .out(sum_im), .clipped(clipped[1])
-  );
-  round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_difference_re (
-    .in((Width + 2)'(a_re) - (Width + 2)'(b_re)), .out(difference_re), .clipped(clipped[2])
-  );
-  round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_difference_im (
-    .in((Width + 2)'(a_im) - (Width + 2)'(b_im)), .out(difference_im), .clipped(clipped[3])
-  );
-  assign held_re = second ? difference_re : in_re;
-  assign held_im = second ? difference_im : in_im;
-
-  logic out_begins, frame_start_q;  // of the burst that enters
-  assign out_begins = active & (position == PositionWidth'(Delay));
+  logic leaves_first, leaves_first_q, frame_start_q, frame_start_q2;  // the first sum of a burst
+  assign leaves_first = active & (position == PositionWidth'(Delay));
+  logic signed [Width:0] leaving_re, leaving_im;
   always_ff @(posedge clk) begin
     if (en) begin
       if (in_start) frame_start_q <= in_frame_start;
-      out_start <= out_begins;
-      out_frame_start <= out_begins & frame_start_q;
-      out_re <= second ? sum_re : a_re;
-      out_im <= second ? sum_im : a_im;
+      leaves_first_q <= leaves_first;
+      frame_start_q2 <= leaves_first & frame_start_q;
+      leaving_re <= second ? sum_re : a_re;
+      leaving_im <= second ? sum_im : a_im;
     end
-    saturations <= (en && second) ? 3'(clipped[0]) + 3'(clipped[1]) + 3'(clipped[2]) + 3'(clipped[3]) : '0;
+    if (rst) begin
+      leaves_first_q <= 1'b0;
+      frame_start_q2 <= 1'b0;
+    end
+  end
+
+  logic leaving;
+  logic [PositionWidth-1:0] unused_position;
+  burst_counter #(.Size(Size)) u_leaving (
+    .clk, .rst, .en, .start(leaves_first_q), .position(unused_position), .active(leaving)
+  );
+  logic signed [Width-1:0] rounded_re, rounded_im;
+  logic [1:0] clipped;
+  round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round_re (
+    .in(leaving_re), .out(rounded_re), .clipped(clipped[0])
+  );
+  round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round_im (
+    .in(leaving_im), .out(rounded_im), .clipped(clipped[1])
+  );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      out_start <= leaves_first_q;
+      out_frame_start <= frame_start_q2;
+      out_re <= rounded_re;
+      out_im <= rounded_im;
+    end
+    saturations <= (en && leaving) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
     if (rst) begin
       out_start <= 1'b0;
       out_frame_start <= 1'b0;

@@ -6,7 +6,7 @@
 //
 // Stream in: bursts of Size complex words, natural order (Inverse: bit-reversed).
 // Stream out: bursts, bit-reversed order (Inverse: natural).
-// Latency: Size - 1 + log2(Size) + 6 (twiddle stages) cycles.
+// Latency: Size - 1 + 2 log2(Size) + 6 (twiddle stages) cycles.
 //
 // The chain, forward: [a, Delay = B/2] [b, Delay = B/4, turns, halves] [twiddle, if B > 4] for B = Size, Size/4, ..;
 // with log2(Size) odd a last [Delay = 1]. The inverse is the same chain from its end, where [a] turns and halves in
@@ -49,7 +49,7 @@ module sdf_fft #(
 
   for (genvar i = 0; i < Links; i++) begin : g_link
     if (Lone == 1 && i == (Inverse != 0 ? 0 : Links - 1)) begin : g_lone
-      wire [2:0] clipped_lone;
+      wire [1:0] clipped_lone;
       sdf_butterfly #(
         .Width(Width), .Size(Size), .Delay(1), .Inverse(Inverse), .Halve(Inverse)
       ) u_lone (
@@ -66,8 +66,7 @@ module sdf_fft #(
       localparam int Block = Size >> (2 * Pair);
       wire first_start, first_frame_start, second_start, second_frame_start;
       wire [Width-1:0] first_re, first_im, second_re, second_im;
-      wire [2:0] clipped_a, clipped_b;
-      wire [1:0] clipped_twiddle;
+      wire [1:0] clipped_a, clipped_b, clipped_twiddle;
       assign clipped[i*7+:7] = 7'(clipped_a) + 7'(clipped_b) + 7'(clipped_twiddle);
 
       if (Inverse != 0) begin : g_inverse

@@ -71,6 +71,9 @@ module spectral_divide #(
   logic [ToShifted-1:0] start_q, frame_start_q, active_q;
   logic signed [Width-1:0] rounded;
   logic clipped;
+  multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
+    .clk, .en, .a(data_q3), .b(mantissa_q), .product
+  );
   round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
     .in(shifted), .out(rounded), .clipped
   );
@@ -82,7 +85,6 @@ module spectral_divide #(
       data_q3 <= data_q2;
       mantissa_q <= mantissa;
       shift_q <= shift;
-      product <= data_q3 * mantissa_q;
       shift_q2 <= shift_q;
       shifted <= ShiftedWidth'(product) <<< shift_q2;
       out_data <= rounded;

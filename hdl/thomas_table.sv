@@ -3,7 +3,7 @@
 //
 //   c[0] = 1 / b[0], c[i] = 1 / (b[i] - c[i-1]) = coefficient 2^(shift + 1 - CoeffWidth)
 //
-// A position and a row in, its coefficient out 3 enabled clocks later. Down the rows a coefficient soon settles; what
+// A position and a row in, its coefficient out 4 enabled clocks later. Down the rows a coefficient soon settles; what
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
 // shift, since its coefficients exceed 1 under Neumann. Bit-accurate model: models/thomas_table.py, which also writes
 // the ROMs.
@@ -57,8 +57,12 @@ module thomas_table #(
   rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File("thomas_last.hex")) u_last (
     .clk, .en, .address(position_q2), .data({last_shift, last})
   );
-  assign coefficient = last_q3 ? last : inner;
-  assign shift = last_q3 ? last_shift : '0;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      coefficient <= last_q3 ? last : inner;
+      shift <= last_q3 ? last_shift : '0;
+    end
+  end
 
 `ifndef SYNTHESIS
   initial begin

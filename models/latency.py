@@ -7,9 +7,11 @@ from models.configuration import Configuration
 from models.sdf_fft import twiddle_stages
 
 MEMORY_READ = 1
+MULTIPLY = 1
 DOT_PRODUCT = 4
-BUTTERFLY = 1  # beside its delay
+BUTTERFLY = 2  # beside its delay
 TWIDDLE_MULTIPLY = 6
+SIGN = 2  # and rounding
 SPECTRAL_DIVIDE = 6
 ROW_REORDER = 2  # from the last word of a row
 TRANSPOSE = 2  # from the first word of the last row
@@ -20,10 +22,10 @@ FLAT_FIELD = GAIN_MAP + 3
 QUADRATIC_GRADIENT = 11
 FRAME_GUARD = 1
 AXIS_SKID = 1
-THOMAS_TABLE = 3
-FORWARD_ELIMINATION = 7
+THOMAS_TABLE = 4
+FORWARD_ELIMINATION = 8
 FRAME_STACK = 2  # from the first word of the last row
-BACK_SUBSTITUTION = 6
+BACK_SUBSTITUTION = 7
 
 
 def sdf_fft_latency(size: int) -> int:
@@ -33,7 +35,7 @@ def sdf_fft_latency(size: int) -> int:
 
 def dst_forward_latency(size: int) -> int:
     """Sign, FFT, phase."""
-    return 1 + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
+    return SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
 
 
 def mode_pairs_latency(size: int) -> int:
@@ -43,7 +45,7 @@ def mode_pairs_latency(size: int) -> int:
 
 def dst_inverse_latency(size: int) -> int:
     """Pairs, phase, FFT, sign."""
-    return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + 1
+    return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + SIGN
 
 
 def spectral_solver_latency(size: int) -> int:

@@ -10,7 +10,7 @@ from models.configuration import Configuration
 from models.rom_files import write_thomas
 from models.tridiagonal_solver import solver_parameters
 
-SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "round_saturate.sv", "back_substitution.sv"]
+SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "back_substitution.sv"]
 NAMES = ("Width", "CoeffWidth", "Rows", "Size", "TableWords", "SettledWidth", "LastShiftWidth")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 

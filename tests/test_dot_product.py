@@ -13,7 +13,7 @@ A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the
 
 @pytest.mark.structures("a_width b_width", both=[(27, 18)], icarus=[(15, 10), (35, 24), (4, 3)])
 def test_rtl(run_tb, a_width, b_width):
-    run_tb("dot_product", ["dot_product.sv"], {"AWidth": a_width, "BWidth": b_width})
+    run_tb("dot_product", ["dot_product.sv", "multiply.sv"], {"AWidth": a_width, "BWidth": b_width})
 
 
 @given(A, B, A, B)

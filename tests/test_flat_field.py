@@ -18,7 +18,7 @@ from models.flat_field import (
 )
 from models.rom_files import write_gains
 
-SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "round_saturate.sv", "delay_line.sv"]
+SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
 
 
 @pytest.mark.structures(

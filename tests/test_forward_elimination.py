@@ -10,7 +10,7 @@ from models.configuration import Configuration
 from models.rom_files import write_thomas
 from models.tridiagonal_solver import solver_parameters
 
-SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "round_saturate.sv", "forward_elimination.sv"]
+SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "forward_elimination.sv"]
 NAMES = ("Width", "CoeffWidth", "Rows", "Size", "StoreDrop", "Neumann", "TableWords", "SettledWidth")
 NAMES += ("LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}

@@ -11,7 +11,7 @@ from models.flat_field import unit_gains
 from models.gain_map import ENTRIES_PER_NODE, gain_map_parameters, table_entries
 from models.rom_files import write_gains
 
-SOURCES = ["gain_map.sv", "ram.sv", "round_saturate.sv"]
+SOURCES = ["gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
 
 
 @pytest.mark.structures(

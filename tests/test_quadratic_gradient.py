@@ -11,7 +11,7 @@ from models.quadratic_gradient import coefficients, gradient_parameters, slope_c
 from models.rom_files import write_quadratic
 from models.round_saturate import Monitor
 
-SOURCES = ["quadratic_gradient.sv", "ram.sv", "round_saturate.sv"]
+SOURCES = ["quadratic_gradient.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
 WORDS = (2, 3, 6)
 
 

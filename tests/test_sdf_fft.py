@@ -15,6 +15,7 @@ FFT_SOURCES = [
     "burst_counter.sv",
     "delay_line.sv",
     "dot_product.sv",
+    "multiply.sv",
     "ram.sv",
     "rom.sv",
     "round_saturate.sv",

@@ -15,7 +15,7 @@ from models.rom_files import write_solver
 from models.round_saturate import Monitor
 from models.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
 
-SOURCES = ["burst_counter.sv", "rom.sv", "round_saturate.sv", "spectral_divide.sv"]
+SOURCES = ["burst_counter.sv", "rom.sv", "multiply.sv", "round_saturate.sv", "spectral_divide.sv"]
 
 
 @pytest.mark.structures(

@@ -17,7 +17,7 @@ from models.twiddle_multiply import (
     twiddle_multiply,
 )
 
-SOURCES = ["burst_counter.sv", "dot_product.sv", "rom.sv", "round_saturate.sv", "twiddle_multiply.sv"]
+SOURCES = ["burst_counter.sv", "dot_product.sv", "multiply.sv", "rom.sv", "round_saturate.sv", "twiddle_multiply.sv"]
 MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
 
 

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+"""multiply: RTL against the model, the model against Python's integers."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.multiply import multiply
+
+
+@pytest.mark.structures("a_width b_width", both=[(27, 18)], icarus=[(35, 24), (15, 10), (2, 3)])
+def test_rtl(run_tb, a_width, b_width):
+    run_tb("multiply", ["multiply.sv"], {"AWidth": a_width, "BWidth": b_width})
+
+
+@given(st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1))  # the widest that occur
+def test_model_is_exact(a, b):
+    assert multiply(np.array(a), np.array(b)) == a * b
