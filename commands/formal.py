@@ -252,7 +252,7 @@ PROOFS: tuple[Proof, ...] = (
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
     Proof(
         "gradient_lookup",
-        "slopes of the pixel's own index in the bank its frame began with, latency 2; reads of the other bank",
+        "slopes of the pixel's own index in the bank its frame began with, latency 3; reads of the other bank",
         f"{WORD_FREE}; one bit a channel has the same index",
         roms=gradient_rom,
     ),
@@ -370,7 +370,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "mode_pairs",
-            "an arbitrary mode, and beside it mode N - k; latency N / 2 + 1",
+            "an arbitrary mode, and beside it mode N - k; latency N / 2 + 2",
             f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",
             {"Size": size},
             depth=45,
@@ -401,7 +401,7 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof(
         "thomas_table",
-        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 4",
+        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 5",
         "every row and position of a table with all its cases; contents do not matter",
         {"Rows": 6, "Size": 4, "Words": 14},
         roms=thomas_roms(6, 4, 14, 5, 3, 2),
@@ -453,7 +453,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "forward_elimination",
-            "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 8",
+            "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 9",
             f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
             {"Rows": 3, "Size": 8, "Words": 16, "Neumann": neumann},
             depth=60,
@@ -463,7 +463,7 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof(
         "back_substitution",
-        "the recursion up an arbitrary column; latency 7",
+        "the recursion up an arbitrary column; latency 8",
         f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
         {"Rows": 3, "Size": 8, "Words": 16},
         depth=60,

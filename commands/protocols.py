@@ -55,7 +55,7 @@ def rom(parameters: Mapping[str, int]) -> Protocol:
 
 def thomas_table(parameters: Mapping[str, int]) -> Protocol:
     within = f"row < {parameters['Rows']}"
-    return Protocol(settled(4), (within,), {"coefficient": "settled", "shift": "settled"})
+    return Protocol(settled(5), (within,), {"coefficient": "settled", "shift": "settled"})
 
 
 def burst_counter(_: Mapping[str, int]) -> Protocol:

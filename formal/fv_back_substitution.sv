@@ -20,7 +20,7 @@ module fv_back_substitution #(
   input logic [PositionWidth-1:0] chosen
 );
 
-  localparam int Latency = 7;
+  localparam int Latency = 8;
   localparam int InWidth = 2;
   localparam int Width = 3;
   localparam int CoeffWidth = 3;
@@ -85,10 +85,10 @@ module fv_back_substitution #(
         of_last_row <= burst == '0;
         of_first_row <= last_burst;
       end
-      if (old[1]) below_q <= of_last_row ? '0 : below;
-      if (old[3]) product <= below_q * c;
-      if (old[4]) exact <= (ExactWidth'(d) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
-      if (old[5]) below <= z;
+      if (old[2]) below_q <= of_last_row ? '0 : below;
+      if (old[4]) product <= below_q * c;
+      if (old[5]) exact <= (ExactWidth'(d) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
+      if (old[6]) below <= z;
     end
     if (rst) begin
       start_q <= '0;

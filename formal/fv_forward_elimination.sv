@@ -21,7 +21,7 @@ module fv_forward_elimination #(
   input logic [PositionWidth-1:0] chosen
 );
 
-  localparam int Latency = 8;
+  localparam int Latency = 9;
   localparam int Width = 3;
   localparam int CoeffWidth = 3;
   localparam int OutWidth = 2;
@@ -31,7 +31,7 @@ module fv_forward_elimination #(
   localparam int MomentDrop = 1;
   localparam int MeanReciprocal = 2;
   localparam int MeanDrop = 1;
-  localparam int MeanLatency = 11;  // from f to the mean that it is in
+  localparam int MeanLatency = 12;  // from f to the mean that it is in
   localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
 
   logic started = 1'b0;
@@ -111,19 +111,19 @@ module fv_forward_elimination #(
         row_q <= row;
         singular <= Neumann != 0 && column == '0 && last_row;
       end
-      if (old[1]) difference_q <= difference;
-      if (old[3]) product <= difference_q * c;
-      if (old[4]) shifted <= (Width + CoeffWidth + 1)'(product) <<< by;
-      if (old[5]) above <= d;
-      if (old[6]) begin
+      if (old[2]) difference_q <= difference;
+      if (old[4]) product <= difference_q * c;
+      if (old[5]) shifted <= (Width + CoeffWidth + 1)'(product) <<< by;
+      if (old[6]) above <= d;
+      if (old[7]) begin
         expected <= stored;
         addend <= MomentWidth'(32'(above) * (32'(row_q) + 1));
         row_of_addend <= row_q;
       end
-      if (old[7]) moment <= (row_of_addend == '0 ? '0 : moment) + addend;
-      if (old[8]) sum_q <= sum;
-      if (old[9]) scaled <= (Width + CoeffWidth)'(-MeanReciprocal * 32'(sum_q));
-      if (old[10]) mean_q <= mean;
+      if (old[8]) moment <= (row_of_addend == '0 ? '0 : moment) + addend;
+      if (old[9]) sum_q <= sum;
+      if (old[10]) scaled <= (Width + CoeffWidth)'(-MeanReciprocal * 32'(sum_q));
+      if (old[11]) mean_q <= mean;
     end
     if (rst) begin
       start_q <= '0;

@@ -52,9 +52,9 @@ module fv_gradient_lookup #(
   assign begins = en && in_valid && (in_place & 4'b0011) == 4'b0011;
   assign used = begins ? table_bank : in_use;
 
-  logic [1:0] valid;           // of the pixels 1 and 2 enabled clocks ago
-  logic [7:0] place;
-  logic [4*Width-1:0] slopes;
+  logic [2:0] valid;           // of the pixels 1, 2 and 3 enabled clocks ago
+  logic [11:0] place;
+  logic [6*Width-1:0] slopes;
   logic held, begun;
   logic [4+2*Width:0] out_q;
   logic [2:0] asked;           // a read 1, 2, 3 clocks ago
@@ -70,9 +70,9 @@ module fv_gradient_lookup #(
     if (table_write && in_use) bank_0[table_index] <= {table_gy, table_gx};
     if (table_write && !in_use) bank_1[table_index] <= {table_gy, table_gx};
     if (en) begin
-      valid <= {valid[0], in_valid};
-      place <= {place[3:0], in_place};
-      slopes <= {slopes[2*Width-1:0], used ? bank_1[index] : bank_0[index]};
+      valid <= {valid[1:0], in_valid};
+      place <= {place[7:0], in_place};
+      slopes <= {slopes[4*Width-1:0], used ? bank_1[index] : bank_0[index]};
     end
     asked <= {asked[1:0], table_read};
     if (table_read) begin
@@ -99,13 +99,13 @@ module fv_gradient_lookup #(
   always_comb begin
     if (started) begin
       bank_shown: assert (table_in_use == in_use);
-      valid_travels: assert (out_valid == valid[1]);
-      if (out_valid) place_travels: assert (out_place == place[7:4]);
-      if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[2*Width+:2*Width]);
+      valid_travels: assert (out_valid == valid[2]);
+      if (out_valid) place_travels: assert (out_place == place[11:8]);
+      if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[4*Width+:2*Width]);
       if (held) holds: assert ({out_valid, out_place, out_gx, out_gy} == out_q);
       if (read_known && !asked[0] && !asked[1]) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
       from_power_up: cover (out_valid && written == '0);
-      from_write: cover (out_valid && changed_over && in_valid && valid == 2'b11 && held);
+      from_write: cover (out_valid && changed_over && in_valid && valid == 3'b111 && held);
       read_in_change: cover (asked[2] && read_known && written == 2'b11 && changed_over);
     end
   end

@@ -17,7 +17,7 @@ module fv_mode_pairs #(
   input logic             pick
 );
 
-  localparam int Latency = Size / 2 + 1;
+  localparam int Latency = Size / 2 + 2;
   localparam int AgeWidth = PositionWidth + 2;
 
   logic started = 1'b0;

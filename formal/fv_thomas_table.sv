@@ -20,7 +20,7 @@ module fv_thomas_table #(
   input logic                     pick
 );
 
-  localparam int Latency = 4;
+  localparam int Latency = 5;
 
   always_comb assume (32'(row) < Rows);
 

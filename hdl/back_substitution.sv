@@ -4,7 +4,7 @@
 //   z[i] = d[i] - c[i] z[i+1],  z[Rows] = 0
 //
 // Stream in: bursts of Size words d, Rows of them a frame, last row first. Stream out: the same bursts of z, Width
-// bits. Latency: 7 cycles. One multiplier. Bit-accurate model: models/back_substitution.py.
+// bits. Latency: 8 cycles. One multiplier. Bit-accurate model: models/back_substitution.py.
 
 module back_substitution #(
   parameter int Width          = 27,
@@ -34,7 +34,7 @@ module back_substitution #(
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int Align = Lift + CoeffWidth - 1;
   localparam int SumWidth = (InWidth + Align > ProductWidth ? InWidth + Align : ProductWidth) + 1;
-  localparam int ToSum = 6;
+  localparam int ToSum = 7;
 
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row, row_q;
@@ -56,11 +56,11 @@ module back_substitution #(
   logic [ToSum:0] active_q;
   logic [ToSum-1:0] start_q, frame_start_q;
   logic [(ToSum+1)*PositionWidth-1:0] position_q;
-  logic signed [InWidth-1:0] data_q, data_q2, data_q3, data_q4, data_q5;
+  logic signed [InWidth-1:0] data_q, data_q2, data_q3, data_q4, data_q5, data_q6;
   logic signed [Width-1:0] below, below_q2, below_q3, rounded;
   logic signed [ProductWidth-1:0] product;
   logic signed [SumWidth-1:0] sum;
-  logic first_q, first_q2, clipped;
+  logic first_q, first_q2, first_q3, clipped;
   multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
     .clk, .en, .a(below_q3), .b(coefficient), .product
   );
@@ -76,15 +76,17 @@ module back_substitution #(
       position_q <= {position_q[ToSum*PositionWidth-1:0], position};
       first_q <= row == RowWidth'(Rows - 1);
       first_q2 <= first_q;
+      first_q3 <= first_q2;
       row_q <= row - RowWidth'(active & (position == PositionWidth'(Size - 1)));
       data_q <= in_data;
       data_q2 <= data_q;
       data_q3 <= data_q2;
       data_q4 <= data_q3;
       data_q5 <= data_q4;
-      below_q2 <= first_q2 ? '0 : below;
+      data_q6 <= data_q5;
+      below_q2 <= first_q3 ? '0 : below;
       below_q3 <= below_q2;
-      sum <= (SumWidth'(data_q5) <<< Align) - SumWidth'(product);
+      sum <= (SumWidth'(data_q6) <<< Align) - SumWidth'(product);
       out_data <= rounded;
       out_start <= start_q[ToSum-1];
       out_frame_start <= frame_start_q[ToSum-1];
@@ -109,8 +111,8 @@ module back_substitution #(
     .write_en     (en & active_q[ToSum]),
     .write_address(position_q[ToSum*PositionWidth+:PositionWidth]),
     .write_data   (out_data),
-    .read_en      (en & active_q[0]),
-    .read_address (position_q[PositionWidth-1:0]),
+    .read_en      (en & active_q[1]),
+    .read_address (position_q[PositionWidth+:PositionWidth]),
     .read_data    (below)
   );
 

@@ -5,7 +5,7 @@
 //   g = 2^-(halvings of sdf_fft) (1 - 2^(1 - CoeffWidth))^(twiddle stages + 1), and the drops below
 //
 // Stream in: bursts of Size samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Stream out: bursts, bit-reversed order.
-// Latency: 8 + sdf_fft.
+// Latency: 9 + sdf_fft.
 //
 //   sign (-1)^n  ->  sdf_fft  ->  turn by exp(-j pi k / 2N), real part
 //
@@ -41,23 +41,26 @@ module dst_forward #(
   );
   logic signed [InWidth:0] signed_in;
   logic signed [Width-1:0] x, x_q;
-  logic active_q, clipped, clipped_q;
-  logic [1:0] start_q, frame_start_q;
+  logic signed [InWidth-1:0] data_q;
+  logic negative, clipped, clipped_q;
+  logic [1:0] active_q;
+  logic [2:0] start_q, frame_start_q;
   round_saturate #(.InWidth(InWidth + 1), .Drop(InputDrop), .OutWidth(Width)) u_input (
     .in(signed_in), .out(x), .clipped
   );
   always_ff @(posedge clk) begin
     if (en) begin
-      signed_in <= Alternate != 0 && position[$clog2(Size)-1] ? -$signed({in_data[InWidth-1], in_data})
-          : (InWidth + 1)'(in_data);
-      active_q <= active;
+      data_q <= in_data;
+      negative <= Alternate != 0 && position[$clog2(Size)-1];
+      signed_in <= negative ? -$signed({data_q[InWidth-1], data_q}) : (InWidth + 1)'(data_q);
       x_q <= x;
-      start_q <= {start_q[0], in_start};
-      frame_start_q <= {frame_start_q[0], in_frame_start};
+      active_q <= {active_q[0], active};
+      start_q <= {start_q[1:0], in_start};
+      frame_start_q <= {frame_start_q[1:0], in_frame_start};
     end
-    clipped_q <= en & active_q & clipped;
+    clipped_q <= en & active_q[1] & clipped;
     if (rst) begin
-      active_q <= 1'b0;
+      active_q <= '0;
       start_q <= '0;
       frame_start_q <= '0;
       clipped_q <= 1'b0;
@@ -69,7 +72,7 @@ module dst_forward #(
   logic [6:0] clipped_fft;
   sdf_fft #(.Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(0)) u_fft (
     .clk, .rst, .en,
-    .in_start(start_q[1]), .in_frame_start(frame_start_q[1]), .in_re(x_q), .in_im(Width'(0)),
+    .in_start(start_q[2]), .in_frame_start(frame_start_q[2]), .in_re(x_q), .in_im(Width'(0)),
     .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(fft_re), .out_im(fft_im),
     .saturations(clipped_fft)
   );

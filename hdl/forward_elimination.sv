@@ -6,7 +6,7 @@
 //   which gives it zero mean after the substitution.
 //
 // Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of
-// d, rounded to the stored word. Latency: 8 cycles. The running row keeps Width bits. One multiplier; between dependent
+// d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier; between dependent
 // values lie at least Size clocks, so it pipelines freely. Bit-accurate model: models/forward_elimination.py.
 
 module forward_elimination #(
@@ -40,7 +40,7 @@ module forward_elimination #(
   localparam int RowWidth = $clog2(Rows);
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int ShiftedWidth = ProductWidth + (1 << LastShiftWidth) - 1;
-  localparam int ToState = 7;
+  localparam int ToState = 8;
 
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row, row_q;
@@ -62,8 +62,8 @@ module forward_elimination #(
   // What follows a word down the pipeline.
   logic [ToState-1:0] start_q, frame_start_q, active_q, singular_q;  // singular: position 0 of the last row
   logic [ToState*PositionWidth-1:0] position_q;
-  logic first_row_q, first_row_q2;
-  logic signed [Width-1:0] data_q, data_q2, state, state_or_zero;
+  logic first_row_q, first_row_q2, first_row_q3;
+  logic signed [Width-1:0] data_q, data_q2, data_q3, state, state_or_zero;
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[ToState-2:0], in_start};
@@ -73,8 +73,10 @@ module forward_elimination #(
       position_q <= {position_q[(ToState-1)*PositionWidth-1:0], position};
       first_row_q <= row == '0;
       first_row_q2 <= first_row_q;
+      first_row_q3 <= first_row_q2;
       data_q <= in_data;
       data_q2 <= data_q;
+      data_q3 <= data_q2;
       row_q <= row + RowWidth'(active & (position == PositionWidth'(Size - 1)));
     end
     if (rst) begin
@@ -85,7 +87,7 @@ module forward_elimination #(
   end
 
   // Difference, product, shift, rounding.
-  assign state_or_zero = first_row_q2 ? '0 : state;
+  assign state_or_zero = first_row_q3 ? '0 : state;
   logic signed [Width-1:0] difference, difference_q, difference_q2, rounded, d, chosen;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
@@ -94,7 +96,7 @@ module forward_elimination #(
     .clk, .en, .a(difference_q2), .b(coefficient), .product
   );
   round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
-    .in((Width + 1)'(data_q2) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
+    .in((Width + 1)'(data_q3) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
   );
   round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
     .in(shifted), .out(rounded), .clipped(clipped[1])
@@ -115,7 +117,7 @@ module forward_elimination #(
       out_frame_start <= frame_start_q[ToState-1];
     end
     clipped_q <= {
-      en & active_q[ToState-1] & clipped[2], en & active_q[ToState-2] & clipped[1], en & active_q[1] & clipped[0]
+      en & active_q[ToState-1] & clipped[2], en & active_q[ToState-2] & clipped[1], en & active_q[2] & clipped[0]
     };
     if (rst) begin
       out_start <= 1'b0;
@@ -133,8 +135,8 @@ module forward_elimination #(
     .write_en     (en & active_q[ToState-1]),
     .write_address(position_q[(ToState-1)*PositionWidth+:PositionWidth]),
     .write_data   (d),
-    .read_en      (en & active_q[0]),
-    .read_address (position_q[PositionWidth-1:0]),
+    .read_en      (en & active_q[1]),
+    .read_address (position_q[PositionWidth+:PositionWidth]),
     .read_data    (state)
   );
 

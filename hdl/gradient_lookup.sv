@@ -4,7 +4,7 @@
 //   {gx, gy} = table[ top bits of R | top bits of G | top bits of B ],  BitsPerChannel of each
 //
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy,
-// z positive into the gel. Latency: 2 cycles. The table is held in two banks, both with the calibration at power-up.
+// z positive into the gel. Latency: 3 cycles. The table is held in two banks, both with the calibration at power-up.
 // A frame uses the bank that table_bank names when its first pixel is taken, or in reset; table_in_use says which. The
 // other is written by table_write, whenever no change-over is due (table_bank is table_in_use), and read by table_read:
 // the entry stands on table_read_* from 3 clocks later until the next, en or not. No table_write from a table_read
@@ -61,7 +61,7 @@ module gradient_lookup #(
   assign fetch_index = late ? late_index : table_index;
   assign table_in_use = bank;
 
-  logic [1:0][2*Width-1:0] words;
+  logic [1:0][2*Width-1:0] words, words_q;
   for (genvar b = 0; b < 2; b++) begin : g_bank
     logic pixel;
     assign pixel = take & (used == 1'(b));
@@ -81,15 +81,19 @@ module gradient_lookup #(
     );
   end
 
-  logic valid_q;
-  logic [3:0] place_q;
+  logic valid_q, valid_q2, bank_q;
+  logic [3:0] place_q, place_q2;
   always_ff @(posedge clk) begin
     if (en) begin
       valid_q <= in_valid;
       place_q <= in_place;
-      out_valid <= valid_q;
-      out_place <= place_q;
-      {out_gy, out_gx} <= words[bank];
+      words_q <= words;
+      bank_q <= bank;
+      valid_q2 <= valid_q;
+      place_q2 <= place_q;
+      out_valid <= valid_q2;
+      out_place <= place_q2;
+      {out_gy, out_gx} <= words_q[bank_q];
     end
     if (rst || starts) bank <= table_bank;
     late <= table_read & changes;
@@ -99,6 +103,7 @@ module gradient_lookup #(
     if (fetched) {table_read_gy, table_read_gx} <= words[fetched_bank];
     if (rst) begin
       valid_q <= 1'b0;
+      valid_q2 <= 1'b0;
       out_valid <= 1'b0;
       late <= 1'b0;
       fetched <= 1'b0;

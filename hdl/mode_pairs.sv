@@ -2,7 +2,7 @@
 // mode_pairs: mode k and mode N - k side by side.
 //
 // Stream in: bursts of Size modes in bit-reversed order. Stream out: the same bursts, with the mirrored mode beside
-// each (mode N is 0). Latency: Size / 2 + 1 cycles.
+// each (mode N is 0). Latency: Size / 2 + 2 cycles.
 //
 // In bit-reversed order the modes of positions 2^m .. 2^(m+1) - 1 are the odd multiples of N / 2^(m+1): N - k stands in
 // the same group, counted from its other end, so its position is that of k with every bit below the leading one
@@ -42,11 +42,15 @@ module mode_pairs #(
     assign mirrored_position[b] = read_position[b] ^ (|read_position[PositionWidth-1:b+1]);
   end
 
+  // Writes and reads both follow their counters by a clock: no word is read while it is written.
+  logic signed [Width-1:0] mode_q;
+  logic write_active_q, read_active_q, read_start_q, read_frame_start;
+  logic [PositionWidth-1:0] write_position_q, mirrored_position_q;
   delay_line #(
     .Width(Width),
     .Delay(Size / 2 + 1)
   ) u_delay (
-    .clk, .rst, .en, .in(in_mode), .out(out_mode)
+    .clk, .rst, .en, .in(mode_q), .out(out_mode)
   );
 
   logic [Width-1:0] mirrored;
@@ -56,11 +60,11 @@ module mode_pairs #(
     .Style(0)
   ) u_ram (
     .clk,
-    .write_en     (en & write_active),
-    .write_address(write_position),
-    .write_data   (in_mode),
-    .read_en      (en & read_active),
-    .read_address (mirrored_position),
+    .write_en     (en & write_active_q),
+    .write_address(write_position_q),
+    .write_data   (mode_q),
+    .read_en      (en & read_active_q),
+    .read_address (mirrored_position_q),
     .read_data    (mirrored)
   );
 
@@ -68,10 +72,21 @@ module mode_pairs #(
   always_ff @(posedge clk) begin
     if (en) begin
       if (in_start) frame_start_q <= in_frame_start;
-      out_start <= read_start;
-      out_frame_start <= read_start & frame_start_q;
+      mode_q <= in_mode;
+      write_active_q <= write_active;
+      write_position_q <= write_position;
+      mirrored_position_q <= mirrored_position;
+      read_active_q <= read_active;
+      read_start_q <= read_start;
+      read_frame_start <= read_start & frame_start_q;
+      out_start <= read_start_q;
+      out_frame_start <= read_frame_start;
     end
     if (rst) begin
+      write_active_q <= 1'b0;
+      read_active_q <= 1'b0;
+      read_start_q <= 1'b0;
+      read_frame_start <= 1'b0;
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
     end

@@ -20,13 +20,14 @@ module round_saturate #(
   logic signed [SumWidth-1:0] sum;
 
   if (Drop > 0) begin : g_round
-    logic up;
+    // Just less than half is added, or half where what stays is odd: then a tie goes up. One carry chain.
+    logic [Drop-1:0] half, unused_fraction;
     if (Drop == 1) begin : g_one
-      assign up = in[0] & in[1];  // only ties exist: to even
+      assign half = in[1];
     end else begin : g_many
-      assign up = in[Drop-1] & ((|in[Drop-2:0]) | in[Drop]);
+      assign half = {in[Drop], {(Drop - 1) {~in[Drop]}}};
     end
-    assign sum = SumWidth'($signed(in[InWidth-1:Drop])) + $signed({{(SumWidth - 1){1'b0}}, up});
+    assign {sum, unused_fraction} = {in[InWidth-1], in} + {{SumWidth{1'b0}}, half};
   end else begin : g_shift
     assign sum = SumWidth'(in) <<< (-Drop);
   end

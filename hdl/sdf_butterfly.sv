@@ -42,29 +42,31 @@ module sdf_butterfly #(
   logic second;  // b is present, a leaves the delay line
   assign second = active & position[DelayBit];
 
-  logic signed [Width:0] b_re, b_im;
+  // b, or its complement where the turn makes it negative: that lacks 1.
+  logic [Width-1:0] b_re, b_im;
+  logic minus_re, minus_im;
   if (RotateBlock > 0) begin : g_rotate
     localparam int QuarterBit = $clog2(RotateBlock) - 2;
     logic turn;
     assign turn = &position[QuarterBit+:2];
-    if (Inverse != 0) begin : g_plus_j
-      assign b_re = turn ? -$signed({in_im[Width-1], in_im}) : (Width + 1)'(in_re);
-      assign b_im = turn ? (Width + 1)'(in_re) : (Width + 1)'(in_im);
-    end else begin : g_minus_j
-      assign b_re = turn ? (Width + 1)'(in_im) : (Width + 1)'(in_re);
-      assign b_im = turn ? -$signed({in_re[Width-1], in_re}) : (Width + 1)'(in_im);
-    end
+    assign minus_re = turn & (Inverse != 0);
+    assign minus_im = turn & (Inverse == 0);
+    assign b_re = (turn ? in_im : in_re) ^ {Width{minus_re}};
+    assign b_im = (turn ? in_re : in_im) ^ {Width{minus_im}};
   end else begin : g_straight
-    assign b_re = (Width + 1)'(in_re);
-    assign b_im = (Width + 1)'(in_im);
+    assign minus_re = 1'b0;
+    assign minus_im = 1'b0;
+    assign b_re = in_re;
+    assign b_im = in_im;
   end
 
   // Sum and difference are exact in the line; they are rounded on their way out, one a clock.
   logic signed [Width:0] a_re, a_im, sum_re, sum_im, difference_re, difference_im;
-  assign sum_re = a_re + b_re;
-  assign sum_im = a_im + b_im;
-  assign difference_re = a_re - b_re;
-  assign difference_im = a_im - b_im;
+  logic [3:0] unused_carry;
+  assign {sum_re, unused_carry[0]} = {a_re, 1'b1} + {b_re[Width-1], b_re, minus_re};
+  assign {sum_im, unused_carry[1]} = {a_im, 1'b1} + {b_im[Width-1], b_im, minus_im};
+  assign {difference_re, unused_carry[2]} = {a_re, 1'b1} + {~b_re[Width-1], ~b_re, ~minus_re};
+  assign {difference_im, unused_carry[3]} = {a_im, 1'b1} + {~b_im[Width-1], ~b_im, ~minus_im};
   delay_line #(
     .Width(2 * (Width + 1)),
     .Delay(Delay)
@@ -96,7 +98,7 @@ module sdf_butterfly #(
     .clk, .rst, .en, .start(leaves_first_q), .position(unused_position), .active(leaving)
   );
   logic signed [Width-1:0] rounded_re, rounded_im;
-  logic [1:0] clipped;
+  logic [1:0] clipped, clipped_q;
   round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round_re (
     .in(leaving_re), .out(rounded_re), .clipped(clipped[0])
   );
@@ -110,13 +112,14 @@ module sdf_butterfly #(
       out_re <= rounded_re;
       out_im <= rounded_im;
     end
-    saturations <= (en && leaving) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
+    clipped_q <= clipped & {2{en & leaving}};
     if (rst) begin
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
-      saturations <= '0;
+      clipped_q <= '0;
     end
   end
+  assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 
 `ifndef SYNTHESIS
   initial begin

@@ -3,7 +3,7 @@
 //
 //   c[0] = 1 / b[0], c[i] = 1 / (b[i] - c[i-1]) = coefficient 2^(shift + 1 - CoeffWidth)
 //
-// A position and a row in, its coefficient out 4 enabled clocks later. Down the rows a coefficient soon settles; what
+// A position and a row in, its coefficient out 5 enabled clocks later. Down the rows a coefficient soon settles; what
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
 // shift, since its coefficients exceed 1 under Neumann. Bit-accurate model: models/thomas_table.py, which also writes
 // the ROMs.
@@ -29,23 +29,27 @@ module thomas_table #(
 
   localparam int CompareWidth = RowWidth > SettledWidth ? RowWidth : SettledWidth;
 
+  logic [PositionWidth-1:0] position_q;
+  logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
   rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File("thomas_index.hex")) u_index (
-    .clk, .en, .address(position), .data({base, settled})
+    .clk, .en, .address(position_q), .data({base, settled})
   );
 
-  logic [RowWidth-1:0] row_q;
-  logic [PositionWidth-1:0] position_q, position_q2;
-  logic last_q2, last_q3;
+  logic [RowWidth-1:0] row_q2;
+  logic [PositionWidth-1:0] position_q2, position_q3;
+  logic last_q3, last_q4;
   always_ff @(posedge clk) begin
     if (en) begin
       row_q <= row;
       position_q <= position;
+      row_q2 <= row_q;
       position_q2 <= position_q;
-      last_q2 <= row_q == RowWidth'(Rows - 1);
-      last_q3 <= last_q2;
-      address <= base + (CompareWidth'(row_q) < CompareWidth'(settled) ? AddressWidth'(row_q) : AddressWidth'(settled));
+      position_q3 <= position_q2;
+      last_q3 <= row_q2 == RowWidth'(Rows - 1);
+      last_q4 <= last_q3;
+      address <= base + (CompareWidth'(row_q2) < CompareWidth'(settled) ? AddressWidth'(row_q2) : AddressWidth'(settled));
     end
   end
 
@@ -55,12 +59,12 @@ module thomas_table #(
     .clk, .en, .address, .data(inner)
   );
   rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File("thomas_last.hex")) u_last (
-    .clk, .en, .address(position_q2), .data({last_shift, last})
+    .clk, .en, .address(position_q3), .data({last_shift, last})
   );
   always_ff @(posedge clk) begin
     if (en) begin
-      coefficient <= last_q3 ? last : inner;
-      shift <= last_q3 ? last_shift : '0;
+      coefficient <= last_q4 ? last : inner;
+      shift <= last_q4 ? last_shift : '0;
     end
   end
 

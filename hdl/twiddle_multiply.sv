@@ -71,7 +71,7 @@ module twiddle_multiply #(
   end
 
   logic signed [OutWidth-1:0] rounded_re, rounded_im;
-  logic [1:0] clipped;
+  logic [1:0] clipped, clipped_q;
 
   logic signed [SumWidth-1:0] sum_re;
   dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
@@ -103,13 +103,14 @@ module twiddle_multiply #(
       out_re <= rounded_re;
       out_im <= rounded_im;
     end
-    saturations <= (en && active_q[ToSum-1]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
+    clipped_q <= clipped & {2{en & active_q[ToSum-1]}};
     if (rst) begin
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
-      saturations <= '0;
+      clipped_q <= '0;
     end
   end
+  assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 
 `ifndef SYNTHESIS
   initial begin

@@ -184,7 +184,7 @@ def _fft(p: dict[str, int], inverse: bool) -> Parts:
     multipliers, memories = [], []
     for stage in stages(p["Size"], inverse):
         if stage.delay > LONGEST_SHIFT:
-            memories.append(Memory("delay lines", 2 * p["Width"], stage.delay))
+            memories.append(Memory("delay lines", 2 * (p["Width"] + 1), stage.delay))
         elif not stage.delay:
             multipliers += [Multiplier(p["Width"], p["CoeffWidth"])] * 4
             memories.append(Memory("tables", 3 * p["CoeffWidth"], stage.block))

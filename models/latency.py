@@ -16,16 +16,16 @@ SPECTRAL_DIVIDE = 6
 ROW_REORDER = 2  # from the last word of a row
 TRANSPOSE = 2  # from the first word of the last row
 DIVERGENCE = 2
-GRADIENT_LOOKUP = 2
+GRADIENT_LOOKUP = 3
 GAIN_MAP = 9
 FLAT_FIELD = GAIN_MAP + 3
 QUADRATIC_GRADIENT = 11
 FRAME_GUARD = 1
 AXIS_SKID = 1
-THOMAS_TABLE = 4
-FORWARD_ELIMINATION = 8
+THOMAS_TABLE = 5
+FORWARD_ELIMINATION = 9
 FRAME_STACK = 2  # from the first word of the last row
-BACK_SUBSTITUTION = 7
+BACK_SUBSTITUTION = 8
 
 
 def sdf_fft_latency(size: int) -> int:
@@ -34,13 +34,13 @@ def sdf_fft_latency(size: int) -> int:
 
 
 def dst_forward_latency(size: int) -> int:
-    """Sign, FFT, phase."""
-    return SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
+    """A register behind the memory that comes before, sign, FFT, phase."""
+    return MEMORY_READ + SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
 
 
 def mode_pairs_latency(size: int) -> int:
-    """Half a burst, and the read."""
-    return size // 2 + 1
+    """Half a burst, the place of a mirrored mode, and the read."""
+    return size // 2 + 2
 
 
 def dst_inverse_latency(size: int) -> int:
