@@ -45,7 +45,7 @@ module frame_bench
   parameter int MomentDrop       = 7,
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
-  parameter int FrameLatency     = 17199,
+  parameter int FrameLatency     = 17204,
   parameter int FlatField        = 0,
   parameter int Quadratic        = 0,
   parameter int BlockLog2        = 3,
