@@ -16,7 +16,6 @@ import itertools
 import json
 import math
 import os
-import platform
 import shutil
 import sys
 import tempfile
@@ -33,6 +32,7 @@ from tqdm import tqdm
 
 from commands import bench, markdown, reflex_pictures
 from commands import simulator as simulation
+from commands.machine import machine
 from commands.sim import CONTACT_THRESHOLD
 from commands.tune import CLOCK_MHZ
 from models import reference
@@ -703,18 +703,6 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float]:
     }
 
 
-def machine() -> str:
-    """Processor and cores, as the tables name it."""
-    model = platform.processor() or platform.machine()
-    cpuinfo = Path("/proc/cpuinfo")
-    if cpuinfo.exists():
-        names = [
-            line.partition(":")[2].strip() for line in cpuinfo.read_text().splitlines() if line.startswith("model name")
-        ]
-        model = names[0] if names else model
-    return f"{model}, {len(os.sched_getaffinity(0))} cores"
-
-
 # Tables.
 
 
@@ -818,7 +806,7 @@ def sentences(document: dict[str, Any]) -> list[str]:
         f"the tridiagonal solver's early start: {earlier['mean']:,.0f} clocks, {earlier['mean_us']:.1f} us, "
         f"{share:.1f} % of contact to command",
         f"growing to the threshold takes {why['growth_ms']:.1f} ms here; the published mean of {mean} ms would leave "
-        f"it {why['growth_for_published_mean_ms']:.1f} ms, an approach of {why['speed_for_published_mean_mm_s']:.1f} mm/s",
+        f"it {why['growth_for_published_mean_ms']:.1f}, an approach of {why['speed_for_published_mean_mm_s']:.1f} mm/s",
         f"the frame clock alone gives a spread of {why['spread_of_frame_clock_ms']:.2f} ms; of the published {spread} "
         f"ms {why['spread_left_ms']:.1f} ms are left to what differs from press to press and is not simulated",
         f"double precision decides in the same frame in {document['same_frame_by_double_precision']} of "
