@@ -32,7 +32,7 @@ def plot(path: Path, document: dict[str, Any]) -> None:
         rows.append((f"near the sensor,\n{solver}", "near", found))
     rows += [("near the sensor,\npublished", "near", None), ("host", "host", document["host"])]
     rows.append(("host,\npublished", "host", None))
-    figure, axes = plt.subplots(1, 2, figsize=(12, 4.2), layout="constrained", sharey=True)
+    figure, axes = plt.subplots(1, 2, figsize=(12, 4.2), layout="constrained", sharex=True, sharey=True)
     jitter = np.random.default_rng(0)
     for axis, key in zip(axes, ("command", "motion"), strict=True):
         for place, (_, kind, found) in enumerate(rows):
@@ -50,12 +50,15 @@ def plot(path: Path, document: dict[str, Any]) -> None:
                 mean, spread = found[key]["mean"], found[key]["sd"]
                 count = f"n = {len(values)}"
             axis.errorbar(mean, place, xerr=spread, color="black", marker="D", markersize=4, capsize=5)
-            axis.annotate(f"{mean:.1f} ± {spread:.1f}   {count}", (mean, place - 0.36), fontsize=8, va="bottom")
-        axis.set(xlabel="ms", title=f"contact to {key}", xlim=(0, None))
-        axis.margins(x=0.12)
+            side = "center" if kind == "host" else "left"  # there is no room left of the sensor's
+            axis.annotate(
+                f"{mean:.1f} ± {spread:.1f}   {count}", (mean, place - 0.36), fontsize=8, va="bottom", ha=side
+            )
+        axis.set(xlabel="ms", title=f"contact to {key}")
         axis.grid(axis="x", alpha=0.3)
     axes[0].set_yticks(range(len(rows)), [name for name, _, _ in rows])
     axes[0].set_ylim(len(rows) - 0.4, -0.7)
+    axes[0].set_xlim(left=0)
     figure.savefig(path, dpi=110)
     plt.close(figure)
 
@@ -109,13 +112,13 @@ def _rows_shown(film: Film, now: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _comparator(film: Film) -> tuple[np.ndarray, np.ndarray]:
-    """The deepest value that has left of the frame that is leaving, at each row: times and mm."""
+    """The deepest value that has left of the frame that is leaving, row by row, for a line of steps: times and mm."""
     at: list[float] = []
     deepest: list[float] = []
     rows = film.depth_mm.shape[1]
     for index, begin in enumerate(film.begin_ms):
-        at += list(begin + film.first_depth_ms + film.depth_out_ms * np.arange(1, rows + 1) / rows)
-        deepest += list(np.maximum.accumulate(film.depth_mm[index].max(axis=1)))
+        at += list(begin + film.first_depth_ms + film.depth_out_ms * np.arange(rows + 1) / rows)
+        deepest += [0.0, *np.maximum.accumulate(film.depth_mm[index].max(axis=1))]
     return np.array(at), np.array(deepest)
 
 
@@ -139,12 +142,14 @@ def video(path: Path, film: Film) -> None:
     for index, begin in enumerate(film.begin_ms):
         label = "read-out" if index == 0 else None
         below.axvspan(begin, begin + film.read_out_ms, ymin=0.94, color="0.75" if index % 2 else "0.55", label=label)
-    (line,) = below.plot([], [], color="#08306b", label="deepest so far in the frame that leaves")
+    (line,) = below.plot(
+        [], [], color="#08306b", drawstyle="steps-post", label="deepest so far in the frame that leaves"
+    )
     below.axhline(film.threshold_mm, color="#e6550d", linestyle="--", label="threshold")
     below.axvline(0, color="black", linestyle=":", linewidth=1)
     below.annotate(" pin touches", (0, 0.82 * top), fontsize=8)
     now_line = below.axvline(-LEAD_MS, color="black", linewidth=1)
-    mark = below.annotate("", (film.command_ms, 0.6 * top), fontsize=9, ha="right", weight="bold")
+    mark = below.annotate("", (film.command_ms, 0.87 * top), fontsize=9, ha="right", weight="bold")
     below.set(xlim=(-LEAD_MS, end), ylim=(-0.03 * top, top), xlabel="ms after the contact", ylabel="mm")
     below.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0.1, 0.2))
     pictures = []
@@ -154,7 +159,8 @@ def video(path: Path, film: Film) -> None:
         frame, depth = _rows_shown(film, now)
         shown_frame.set_data(frame)
         shown_depth.set_data(depth)
-        line.set_data(at[at <= now], deepest[at <= now])
+        out = at <= now
+        line.set_data([*at[out], now], [*deepest[out], *deepest[out][-1:]] if out.any() else [0.0])
         now_line.set_xdata([now, now])
         if now >= film.command_ms:
             mark.set_text(f"contact, {film.command_ms:.2f} ms ")
