@@ -687,17 +687,27 @@ def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
     return {"solvers": rows, "tridiagonal_earlier_clocks": earlier}
 
 
-def difference(near: dict[str, Any], setup: Setup) -> dict[str, float]:
+def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
     """What would have to differ for the published mean and spread of contact to command."""
     mean, spread = PUBLISHED["near"]["command"]
     middle = near["parts"]["indentation grows to the threshold, and the next exposure comes"]["mean"]
     growth = middle - setup.frame / 2
     wanted = growth + mean - near["command"]["mean"]
+    motion, motion_spread = PUBLISHED["near"]["motion"]
+    others = near["motion"]["mean"] - growth
+    slowest, quickest = (motion + sign * motion_spread - others for sign in (1, -1))  # growth, ms
     clock = setup.frame / math.sqrt(12)
+
+    def approach(other: float) -> float | None:
+        """mm/s for which growing to the threshold takes so many ms; None: none is quick enough."""
+        return setup.speed * growth / other if other > 0 else None
+
     return {
         "growth_ms": growth,
         "growth_for_published_mean_ms": wanted,
-        "speed_for_published_mean_mm_s": setup.speed * growth / wanted if wanted > 0 else math.inf,
+        "speed_for_published_mean_mm_s": approach(wanted),
+        "slowest_within_mm_s": approach(slowest),
+        "quickest_within_mm_s": approach(quickest),
         "spread_of_frame_clock_ms": clock,
         "spread_left_ms": math.sqrt(max(spread**2 - clock**2, 0)),
     }
@@ -801,12 +811,18 @@ def sentences(document: dict[str, Any]) -> list[str]:
     share = 100 * earlier["mean_us"] / 1000 / found["command"]["mean"]
     verdict = "within" if all(one["within_published"] for one in document["near"].values()) else "NOT within"
     mean, spread = document["published"]["near"]["command"]
+
+    def speed(key: str) -> str:
+        return "infinitely many" if why[key] is None else f"{why[key]:.0f}"
+
     return [
         f"contact to motion near the sensor is {verdict} the published mean and trial-to-trial spread, both solvers",
         f"the tridiagonal solver's early start: {earlier['mean']:,.0f} clocks, {earlier['mean_us']:.1f} us, "
         f"{share:.1f} % of contact to command",
         f"growing to the threshold takes {why['growth_ms']:.1f} ms here; the published mean of {mean} ms would leave "
-        f"it {why['growth_for_published_mean_ms']:.1f}, an approach of {why['speed_for_published_mean_mm_s']:.1f} mm/s",
+        f"it {why['growth_for_published_mean_ms']:.1f}, an approach of {speed('speed_for_published_mean_mm_s')} mm/s",
+        f"the mean contact to motion stays within the published mean +- spread for an approach of about "
+        f"{speed('slowest_within_mm_s')} to {speed('quickest_within_mm_s')} mm/s",
         f"the frame clock alone gives a spread of {why['spread_of_frame_clock_ms']:.2f} ms; of the published {spread} "
         f"ms {why['spread_left_ms']:.1f} ms are left to what differs from press to press and is not simulated",
         f"double precision decides in the same frame in {document['same_frame_by_double_precision']} of "
