@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from commands import baselines
+from commands import baselines, report
 from commands.baselines import METHODS, WARM_UPS, Method, Prepared
 from models.configuration import Configuration
 from models.errors import InputError
@@ -93,3 +93,14 @@ def test_a_small_run(tmp_path, monkeypatch):
     assert timed["error_percent"] <= baselines.TOLERANCE_PERCENT
     assert missing["problem"] == "no-such-package not installed"
     assert "absent" in baselines.show(document)
+
+    monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)  # make report takes what is there
+    section = report.baselines_figure(report.document_of(baselines, "baselines")).section()
+    assert "data:image/png" in section
+    assert "no-such-package not installed" in section
+
+
+def test_the_report_runs_what_has_not_been_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)
+    monkeypatch.setattr(baselines, "run", lambda request: (request.out / "baselines.json").write_text('{"runs": 3}'))
+    assert report.document_of(baselines, "baselines") == {"runs": 3}

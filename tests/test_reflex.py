@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from commands import bench, reflex, reflex_pictures
+from commands import bench, reflex, reflex_pictures, report
 from models.configuration import COLUMNS, Configuration
 from models.errors import InputError
 from models.latency import last_pixel_to_first_depth
@@ -159,3 +159,8 @@ def test_the_loop_on_the_rtl(tmp_path, monkeypatch):
             assert trial["command_ms"] == pytest.approx(begin + trial["first_pixel_to_contact"] / 500)
     assert document["same_frame_by_double_precision"] == 2
     assert len(document["host"]["trials"]) == 3
+
+    monkeypatch.setattr(reflex, "DEFAULT_OUT", out)  # make report takes what is there
+    section = report.reflex_figure(report.document_of(reflex, "reflex")).section()
+    assert "data:image/png" in section
+    assert "deciding depth to contact" in section
