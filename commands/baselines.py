@@ -5,7 +5,7 @@ The same 2-D solve (divergence in, depth out, single precision) on the same fram
 in scipy, ducc0, pyFFTW and PyTorch, on one core and on all, and on CUDA where there is a device, the frames already on
 it. And the tridiagonal solver's method on the CPU: ducc0 along the rows, Thomas's algorithm by numba down the columns.
 Every result is compared with models/reference.py before it is timed: WARM_UPS solves, then RUNS that count, or as many
-as SECONDS allow. Each method is timed in a process of its own, so that none runs beside the threads of another.
+as there is time for. Each method is timed in a process of its own, so that none runs beside the threads of another.
 
 Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a result is wrong,
 2 bad input. What is not installed says so in its row: `make baselines` installs requirements-baselines.txt.
@@ -55,9 +55,7 @@ DEFAULT_OUT = simulation.ROOT / "build" / "baselines"
 GRIDS = (64, 128, 256, 512)
 SCENE = "bench"
 WARM_UPS, RUNS, FEWEST_RUNS = 100, 1000, 10
-SECONDS = (
-    12  # for one method at one grid: where libraries disturb each other's threads, or others do, a solve may take 0.1
-)
+SECONDS = 480  # for all solves together: where threads disturb each other, or other programs do, a solve may take 0.1
 # Of a result, RMS to double precision in % of peak: measured at most 0.00005 (PyTorch's products of matrices at 512).
 TOLERANCE_PERCENT = 0.0001
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -281,23 +279,44 @@ def percent_of_peak(depth: np.ndarray, wanted: np.ndarray) -> float:
     return 100 * math.sqrt(np.mean((depth - wanted) ** 2)) / float(wanted.max())
 
 
-def measure(number: int, sizes: Sequence[int], threads: int, runs: int) -> list[dict[str, Any]]:
-    """Check and time one of `METHODS`, by its number; for a process of its own.
+@dataclass(frozen=True)
+class Job:
+    """One of `METHODS`, by its number, for a process of its own.
+
+    Attributes
+    ----------
+    scenes : dict of int to pair of arrays, `frames` by grid
+    until : float
+        When all should be done, by time.monotonic.
+    cells : int
+        Grids of this job and of all that follow it: until then each may take twice its share.
+    """
+
+    number: int
+    threads: int
+    scenes: dict[int, tuple[np.ndarray, np.ndarray]]
+    runs: int
+    until: float
+    cells: int
+
+
+def measure(job: Job) -> list[dict[str, Any]]:
+    """Check and time a method.
 
     Returns
     -------
-    list of dict, one a size: `error_percent`, the worst frame's, and `times_us`; or `problem`
+    list of dict, one a grid: `error_percent`, the worst frame's, and `times_us`; or `problem`
     """
-    method = METHODS[number]
+    method = METHODS[job.number]
     if method.device:
         import torch
 
         if not torch.cuda.is_available():
-            return [{"problem": "no device"} for _ in sizes]
+            return [{"problem": "no device"} for _ in job.scenes]
     found: list[dict[str, Any]] = []
-    for size in sizes:
-        prepared = method.prepare(size, threads)
-        f, wanted = frames(size)
+    for index, (size, (f, wanted)) in enumerate(job.scenes.items()):
+        end = time.monotonic() + 2 * (job.until - time.monotonic()) / (job.cells - index)
+        prepared = method.prepare(size, job.threads)
         given = [prepared.give(one) for one in f]
         depths = [np.array(prepared.take(prepared.solve(one)), np.float64) for one in given]
         error = max(percent_of_peak(*pair) for pair in zip(depths, wanted, strict=True))
@@ -305,32 +324,40 @@ def measure(number: int, sizes: Sequence[int], threads: int, runs: int) -> list[
             found.append({"error_percent": error, "problem": "wrong result"})
             continue
         wait = prepared.synchronise or (lambda: None)
-        times: list[int] = []
         gc.disable()
-        end = time.monotonic() + SECONDS
-        while len(times) < WARM_UPS + runs and (time.monotonic() < end or len(times) < WARM_UPS + FEWEST_RUNS):
-            one = given[len(times) % len(given)]
-            wait()
-            begin = time.perf_counter_ns()
-            prepared.solve(one)
-            wait()
-            times.append(time.perf_counter_ns() - begin)
+        half = (time.monotonic() + end) / 2
+        times = _timed(prepared.solve, given, wait, WARM_UPS, half) and _timed(
+            prepared.solve, given, wait, job.runs, end
+        )
         gc.enable()
-        found.append({"error_percent": error, "times_us": [one / 1000 for one in times[WARM_UPS:]]})
+        found.append({"error_percent": error, "times_us": times})
     return found
 
 
-def in_own_process(number: int, sizes: Sequence[int], threads: int, runs: int) -> list[dict[str, Any]]:
+def _timed(solve: Solve, given: Sequence[Any], wait: Callable[[], None], runs: int, end: float) -> list[float]:
+    """Times in us of so many solves, or of those until the end, and FEWEST_RUNS of them at least."""
+    times: list[float] = []
+    while len(times) < runs and (time.monotonic() < end or len(times) < FEWEST_RUNS):
+        one = given[len(times) % len(given)]
+        wait()
+        begin = time.perf_counter_ns()
+        solve(one)
+        wait()
+        times.append((time.perf_counter_ns() - begin) / 1000)
+    return times
+
+
+def in_own_process(job: Job) -> list[dict[str, Any]]:
     """`measure` there, with as many threads as it is told."""
     before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
-    os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(threads)))
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(job.threads)))
     try:
         with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-            return pool.submit(measure, number, sizes, threads, runs).result()
+            return pool.submit(measure, job).result()
     except BrokenProcessPool:
-        return [{"problem": "it crashed"} for _ in sizes]
+        return [{"problem": "it crashed"} for _ in job.scenes]
     except ImportError as error:
-        return [{"problem": " ".join(f"cannot be loaded: {error}".split())} for _ in sizes]
+        return [{"problem": " ".join(f"cannot be loaded: {error}".split())} for _ in job.scenes]
     finally:
         for name, value in before.items():
             if value is None:
@@ -435,17 +462,16 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
         for threads in ([1] if method.device else sorted({1, cores}))
     ]
     rows: list[dict[str, Any]] = []
+    scenes = {size: frames(size) for size in request.grids}
+    until = time.monotonic() + SECONDS
     with tqdm(jobs, leave=False, disable=None) as bar:
-        for number, threads in bar:
+        for done, (number, threads) in enumerate(bar):
             method = METHODS[number]
             bar.set_description(f"{method.name}, {threads} threads")
+            job = Job(number, threads, scenes, request.runs, until, (len(jobs) - done) * len(scenes))
             problem = missing(method)
-            found = (
-                [{"problem": problem} for _ in request.grids]
-                if problem
-                else in_own_process(number, request.grids, threads, request.runs)
-            )
-            for size, one in zip(request.grids, found, strict=True):
+            found = [{"problem": problem} for _ in scenes] if problem else in_own_process(job)
+            for size, one in zip(scenes, found, strict=True):
                 rows.append({"grid": size, "method": method.name, "threads": None if method.device else threads, **one})
     wrong = [row for row in rows if row.get("problem") == "wrong result"]
     if wrong:

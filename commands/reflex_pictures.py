@@ -23,6 +23,7 @@ MARKERS = {"near": "o", "host": "s"}
 LEAD_MS, TAIL_MS = 1.0, 1.0  # of the video, before the contact and after the command
 STEP_MS = 0.1
 PICTURE_MS = 100  # each stands so long
+CONTRAST = 3  # a press as deep as the threshold is pale
 
 
 def plot(path: Path, document: dict[str, Any]) -> None:
@@ -100,7 +101,7 @@ def _came(begin: float, duration: float, now: float, count: int) -> int:
 
 
 def _rows_shown(film: Film, now: float) -> tuple[np.ndarray, np.ndarray]:
-    """The frame as far as it has been read, over the one before, and the depth as far as it has left."""
+    """The frame as far as it has been read, over the one before, and the depth as far as it has left, upright."""
     rows = film.frames.shape[1]
     frame, depth = film.frames[0].copy(), np.zeros(film.depth_mm.shape[1:])
     for index, begin in enumerate(film.begin_ms):
@@ -108,6 +109,8 @@ def _rows_shown(film: Film, now: float) -> tuple[np.ndarray, np.ndarray]:
         frame[:read] = film.frames[index, :read]
         left = _came(begin + film.first_depth_ms, film.depth_out_ms, now, rows)
         depth[:left] = film.depth_mm[index, :left]
+    rest = np.median(film.frames[0], axis=(0, 1))
+    frame = np.clip(rest + CONTRAST * (frame - rest), 0, 255).astype(np.uint8)
     return frame, depth[::-1] if film.bottom_first else depth
 
 
@@ -134,7 +137,7 @@ def video(path: Path, film: Film) -> None:
     shown_frame = left.imshow(frame, interpolation="nearest")
     shown_depth = right.imshow(depth, cmap="cividis", vmin=0, vmax=top, interpolation="nearest")
     figure.colorbar(shown_depth, ax=right, label="mm", shrink=0.9)
-    left.set_title("frame, as it is read out", fontsize=10)
+    left.set_title(f"frame, as it is read out (contrast x {CONTRAST})", fontsize=10)
     right.set_title("depth, as it leaves", fontsize=10)
     for axis in (left, right):
         axis.set_axis_off()
@@ -149,6 +152,7 @@ def video(path: Path, film: Film) -> None:
     below.axvline(0, color="black", linestyle=":", linewidth=1)
     below.annotate(" pin touches", (0, 0.82 * top), fontsize=8)
     now_line = below.axvline(-LEAD_MS, color="black", linewidth=1)
+    rises = below.axvline(film.command_ms, color="#08306b", linewidth=2, visible=False)
     mark = below.annotate("", (film.command_ms, 0.87 * top), fontsize=9, ha="right", weight="bold")
     below.set(xlim=(-LEAD_MS, end), ylim=(-0.03 * top, top), xlabel="ms after the contact", ylabel="mm")
     below.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0.1, 0.2))
@@ -163,7 +167,8 @@ def video(path: Path, film: Film) -> None:
         line.set_data([*at[out], now], [*deepest[out], *deepest[out][-1:]] if out.any() else [0.0])
         now_line.set_xdata([now, now])
         if now >= film.command_ms:
-            mark.set_text(f"contact, {film.command_ms:.2f} ms ")
+            rises.set_visible(True)
+            mark.set_text(f"contact rises, {film.command_ms:.2f} ms ")
         buffer = io.BytesIO()
         figure.savefig(buffer, format="png", dpi=80)
         pictures.append(Image.open(buffer).convert("P", palette=Image.Palette.ADAPTIVE, colors=96))

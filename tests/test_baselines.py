@@ -2,6 +2,7 @@
 """make baselines: every method that is installed is right, a wrong one is refused, bad input is told."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -47,10 +48,14 @@ def test_methods_equal_the_reference(method, threads):
         assert baselines.percent_of_peak(depth, want) <= baselines.TOLERANCE_PERCENT
 
 
+def job(runs, seconds=100):
+    return baselines.Job(0, 1, {16: baselines.frames(16)}, runs, time.monotonic() + seconds, 1)
+
+
 def test_a_wrong_result_is_not_timed(monkeypatch):
     wrong = Method("wrong", lambda size, threads: Prepared(lambda f: 0.999 * f), ())
     monkeypatch.setattr(baselines, "METHODS", (wrong,))
-    (row,) = baselines.measure(0, (16,), 1, 10)
+    (row,) = baselines.measure(job(10))
     assert row["problem"] == "wrong result"
     assert "times_us" not in row
     monkeypatch.setattr(baselines, "in_own_process", baselines.measure)
@@ -58,11 +63,11 @@ def test_a_wrong_result_is_not_timed(monkeypatch):
         baselines.measure_all(baselines.parse(["GRIDS=16"]))
 
 
-def test_a_slow_method_is_cut_short(monkeypatch):
-    monkeypatch.setattr(baselines, "SECONDS", 0)
-    monkeypatch.setattr(baselines, "METHODS", METHODS[:1])
-    (row,) = baselines.measure(0, (16,), 1, 1000)
+def test_a_slow_method_is_cut_short():
+    (row,) = baselines.measure(job(1000, seconds=0))
     assert len(row["times_us"]) == baselines.FEWEST_RUNS
+    (row,) = baselines.measure(job(1000))
+    assert len(row["times_us"]) == 1000
 
 
 def test_the_pipeline_beside_them():
