@@ -456,10 +456,11 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
     """
     cores = len(os.sched_getaffinity(0))
     load = os.getloadavg()[0]
-    jobs = [
+    jobs = [  # all cores last: where they are not free, that takes longest
         (number, threads)
+        for threads in sorted({1, cores})
         for number, method in enumerate(METHODS)
-        for threads in ([1] if method.device else sorted({1, cores}))
+        if threads == 1 or not method.device
     ]
     rows: list[dict[str, Any]] = []
     scenes = {size: frames(size) for size in request.grids}
@@ -473,6 +474,8 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
             found = [{"problem": problem} for _ in scenes] if problem else in_own_process(job)
             for size, one in zip(scenes, found, strict=True):
                 rows.append({"grid": size, "method": method.name, "threads": None if method.device else threads, **one})
+    names = [method.name for method in METHODS]
+    rows.sort(key=lambda row: names.index(row["method"]))
     wrong = [row for row in rows if row.get("problem") == "wrong result"]
     if wrong:
         row = wrong[0]
