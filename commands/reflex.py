@@ -564,7 +564,7 @@ def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
             "host",
             "frames waiting",
             f"0 to {DRIVER_BUFFERS - 1} frames, each as likely",
-            "OpenCV keeps 4 V4L2 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
+            "OpenCV asks V4L2 for 4 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
         ),
         Delay("host", "reconstruction", "as measured in each trial", "models/reference.py on this machine"),
         Delay(
@@ -605,6 +605,7 @@ def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]
     host = Setup(request.speed, threshold, FRAME_MS["host"], EXPOSURE, transfer=CAMERA_BYTES / USB_BYTES_PER_MS)
     near_draws, host_draws = draw(request.trials, request.seed, "near"), draw(request.host_trials, request.seed, "host")
 
+    load = os.getloadavg()[0]
     loops = loop(request, near, near_draws)
     faults = [fault for one in loops for fault in one.faults]
     if faults:
@@ -645,6 +646,7 @@ def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]
         "seed": request.seed,
         "simulator": request.simulator,
         "machine": machine(),
+        "load_before": load,
         "published": PUBLISHED,
         "delays": [asdict(delay) for delay in delays(request, near, host)],
         "near": solvers,
@@ -833,7 +835,8 @@ def sentences(document: dict[str, Any]) -> list[str]:
 def show(document: dict[str, Any]) -> str:
     parts = [f"{title}\n\n{markdown.table(head, rows)}" for title, head, rows in tables(document).values()]
     rows, columns = document["grid"]
-    setting = f"{rows} x {columns}, seed {document['seed']}, {document['machine']}"
+    machine = f"{document['machine']} (load {document['load_before']:.1f} before)"
+    setting = f"{rows} x {columns}, seed {document['seed']}, {machine}"
     return "\n\n".join([setting, *parts, *["\n".join(sentences(document))]])
 
 
