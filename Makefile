@@ -6,13 +6,15 @@ VENV := .venv
 PY := $(VENV)/bin/python
 STAMP := $(VENV)/complete
 TOOLS := $(VENV)/verification
+BASELINES := $(VENV)/baselines
 
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT \
   REPEAT SEED GAPS STALLS WAVES CONFIG OUT
+REFLEX_VARIABLES := N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM VIDEO OUT
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
 
-.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate setup clean
+.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -75,7 +77,17 @@ mutate: $(TOOLS)
 	@sh commands/icarus.sh
 	@$(PY) -m commands.mutate $(foreach v,CORE MUTANTS SEED JOBS SECONDS,$(if $($(v)),'$(v)=$($(v))'))
 
+# Contact to command and to motion, with the RTL in the loop, against a host: N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM
+# OUT, and VIDEO=trial.gif.
+reflex: $(STAMP)
+	@$(PY) -m commands.reflex $(foreach v,$(REFLEX_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
+# The solve in software, one frame at a time, against the pipeline's clocks: GRIDS=64,128 RUNS CLOCK_MHZ OUT. Under 10 minutes.
+baselines: $(BASELINES)
+	@$(PY) -m commands.baselines $(foreach v,GRIDS RUNS CLOCK_MHZ OUT,$(if $($(v)),'$(v)=$($(v))'))
+
 # One HTML page with figures: runs a thousand frames through the RTL, the sweep and the extremes; OUT.
+# What make reflex and make baselines left in build/ it takes; else it runs them, the latter with what is installed.
 report: $(STAMP)
 	@$(PY) -m commands.report $(if $(OUT),'OUT=$(OUT)')
 
@@ -107,6 +119,14 @@ $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
 	@touch $@
+
+# The libraries that the pipeline is compared with. PyTorch is large, and a comparison less when it cannot be had.
+$(BASELINES): $(STAMP) requirements-baselines.txt
+	@echo "setting up the libraries for make baselines (once) .."
+	@failed=; for requirement in $$(sed 's/ *#.*//' requirements-baselines.txt); do \
+	  $(PY) -m pip install --quiet --disable-pip-version-check --constraint requirements.txt "$$requirement" \
+	    || { failed=1; echo "$$requirement cannot be installed: its rows will say so" >&2; }; \
+	done; test -n "$$failed" || touch $@
 
 clean:
 	rm -rf build

@@ -21,6 +21,7 @@ from models.tactile_depth import top_parameters, write_roms
 BENCH = "frame_bench"
 KINDS = {"pixel": 0, "idle": 1, "sink": 2, "source": 3, "reset": 4, "arm": 5}
 NOTE, USER, LAST = 1 << 27, 1 << 25, 1 << 24
+LARGEST_CODE = 2**31 - 1  # no depth is above it
 
 
 def entry(kind: str, value: int = 0) -> int:
@@ -124,9 +125,11 @@ def play(
     write_roms(folder, calibration, config)
     np.asarray(entries, dtype=">u4").tofile(folder / "entries.bin")
     built = build(simulator, config, waves)
+    registers = dict(registers or {})
+    level = registers.get("THRESHOLD", LARGEST_CODE)
     wanted = {
-        "inputs": {"passes": passes, "total_frames": total_frames, "seed": seed * 2 + 1},
-        "registers": dict(registers or {}),
+        "inputs": {"passes": passes, "total_frames": total_frames, "seed": seed * 2 + 1, "level": level & 0xFFFFFFFF},
+        "registers": registers,
         "clocks": clocks,
     }
     try:

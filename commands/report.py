@@ -2,7 +2,8 @@
 """`make report`: one HTML page, and its figures as PNG: latency, throughput, depth, error, cost, extremes.
 
 Takes OUT=folder. What it shows it measures: the bench's contacts through the RTL of both solvers, a thousand frames and
-more on end; the sweep, which goes on where it stopped; the extremes. Each figure names the command that remakes it.
+more on end; the sweep, which goes on where it stopped; the extremes. What `make reflex` and `make baselines` left in
+build/ it takes, and runs them when they have not been. Each figure names the command that remakes it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands import extremes, sim, sweep
+from commands import baselines, extremes, reflex, sim, sweep
 from commands.tune import CLOCK_MHZ
 from models import reference
 from models.calibration import synthetic
@@ -127,6 +128,14 @@ def run_extremes(folder: Path) -> None:
     """Raises RuntimeError when a row is not as it must be."""
     if extremes.run(EXTREMES_SIZE, "verilator", folder, short=True):
         raise RuntimeError(f"a row of the extremes is not as it must be: see {folder}")
+
+
+def document_of(command: Any, name: str) -> dict[str, Any]:
+    """What make reflex or make baselines left; it is run, as by itself, when it has not left anything."""
+    file = command.DEFAULT_OUT / f"{name}.json"
+    if not file.exists():
+        command.run(command.parse([]))
+    return json.loads(file.read_text())
 
 
 # Figures.
@@ -390,6 +399,34 @@ def extremes_figures(folder: Path) -> list[Figure]:
     ]
 
 
+def kept(command: Any, name: str) -> str:
+    """HTML that shows the picture beside the document."""
+    data = base64.b64encode((command.DEFAULT_OUT / f"{name}.png").read_bytes()).decode()
+    return f"<img alt='{name}' src='data:image/png;base64,{data}'>"
+
+
+def titled(tables: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]]) -> str:
+    return "".join(f"<h3>{html.escape(title)}</h3>{table(head, rows)}" for title, head, rows in tables)
+
+
+def reflex_figure(document: dict[str, Any]) -> Figure:
+    rows, columns = document["grid"]
+    text = (
+        f"{rows} x {columns}, {document['clock_mhz']:g} MHz, a pin at {document['speed_mm_s']:g} mm/s. Every command "
+        "near the sensor is the clock in which the RTL's pin `contact` rises. Diamonds: mean and standard deviation. "
+    )
+    text += ". ".join(reflex.sentences(document)) + "."
+    content = kept(reflex, "reflex") + titled(list(reflex.tables(document).values()))
+    command = f"make reflex N={rows} CLOCK_MHZ={document['clock_mhz']:g} SEED={document['seed']}"
+    return Figure("reflex", "The reflex", text, command, content)
+
+
+def baselines_figure(document: dict[str, Any]) -> Figure:
+    text = f"{baselines.setting(document)}. {'. '.join(baselines.sentences(document))}."
+    content = kept(baselines, "baselines") + titled(baselines.tables(document))
+    return Figure("baselines", "The solve in software", text, "make baselines", content)
+
+
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; color: #111; }
 img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.85rem; margin: 1rem 0; }
@@ -428,6 +465,8 @@ def build(folder: Path) -> Path:
         ),
         ("sweep", lambda: sweep.sweep(sweep.plan(), sweep.DEFAULT_OUT)),
         ("extremes", lambda: run_extremes(folder / "extremes")),
+        ("reflex", lambda: document_of(reflex, "reflex")),
+        ("baselines", lambda: document_of(baselines, "baselines")),
     ]
     done = []
     for number, (name, step) in enumerate(steps, start=1):
@@ -444,6 +483,8 @@ def build(folder: Path) -> Path:
         word_figure(rows, folder),
         front_figure(rows, folder),
         *extremes_figures(folder / "extremes"),
+        reflex_figure(done[-2]),
+        baselines_figure(done[-1]),
     ]
     target, draft = folder / "report.html", folder / ".report.html"
     draft.write_text(page(figures))

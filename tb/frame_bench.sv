@@ -12,6 +12,7 @@
 // It is played `passes` times. depth.bin receives the codes that leave, four bytes each; events.txt one line per event:
 //   t clock        a pixel with a note was taken
 //   d, e clock     first and last depth of a frame on m_axis
+//   b clock        the frame's first depth above `level` leaves
 //   c clock        `contact` is up, the first time since the frame's first depth left
 //   f fault clock  the guard flags a fault, by the number of its name in models/frame_guard.py
 //   r clock codes  a reset begins; codes written so far
@@ -67,6 +68,7 @@ module frame_bench
   input  logic [31:0]             passes,        // how often the file is played
   input  logic [31:0]             total_frames,  // done when so many have left, and not before the file has ended
   input  logic [31:0]             seed,          // not 0
+  input  logic signed [31:0]      level,
   output logic                    done,
   output logic [31:0]             frames_received,
 
@@ -139,6 +141,7 @@ module frame_bench
   logic note, ended, offers, withdraw, was_resetting;
   logic [31:0] depths, codes;
   logic fresh, open;  // a depth that was not there before; the frame's first depth has left
+  logic below;        // no depth above the level has left since the frame began
   logic refused;
   logic started;  // a reset was seen: what registers come up with, in the first clock, is nobody's fault
   logic [4:0] flagged;
@@ -262,6 +265,8 @@ module frame_bench
         if (fresh && m_axis_tuser) $fwrite(events_file, "d %0d\n", clock);
         if (fresh && depths == 32'(Pixels - 1)) $fwrite(events_file, "e %0d\n", clock);
         if (m_axis_tready) begin
+          if ((below || m_axis_tuser) && 32'(m_axis_tdata) > level) $fwrite(events_file, "b %0d\n", clock);
+          below <= (below || m_axis_tuser) && 32'(m_axis_tdata) <= level;
           $fwrite(depth_file, "%u", 32'(m_axis_tdata));
           codes <= codes + 32'd1;
           depths <= depths == 32'(Pixels - 1) ? 32'd0 : depths + 32'd1;

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What this machine is called beside a figure that was measured on it."""
+
+from __future__ import annotations
+
+import os
+import platform
+from pathlib import Path
+
+
+def machine() -> str:
+    """Model of the processor, and how many cores this process may use."""
+    model = platform.processor() or platform.machine()
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        lines = cpuinfo.read_text().splitlines()
+        named = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
+        model = named.get("model name", model)
+        if named.get("model", "").isdecimal():
+            model += f" (family {named['cpu family']}, model {named['model']})"
+    return f"{model}, {len(os.sched_getaffinity(0))} cores"
