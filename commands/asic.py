@@ -52,6 +52,7 @@ OWN = ("LIB", "NODE_NM", "CLOCK_MHZ", "TIMED")
 SDC = simulation.ROOT / "constraints" / "asic.sdc"
 BENCH = simulation.ROOT / "tb" / "asic_part_bench.sv"
 TIMED_CLOCKS = 256
+SETTLE_NS = 0.2  # a core's inputs follow the edge by this where there are delays: about a flip-flop of 0.18 um
 YOSYS_SECONDS = 3600.0
 TOOLS = {"sta": "opensta", "iverilog": "iverilog", "vvp": "iverilog"}
 
@@ -381,8 +382,9 @@ def run_part(folder: Path, core: str, path: str, netlist: Netlist, seen: list[st
     for timed in (False, True):
         (folder / "cells.v").write_text(cell_models(netlist, timed))
         command = ["iverilog", "-g2012", *(["-gspecify", "-Ttyp", "-DDELAYS"] if timed else []), "-o", "part.vvp"]
-        command += [f"-Pasic_part_bench.{key}={value}" for key, value in (
-            ("Inputs", inputs), ("Outputs", outputs), ("Clocks", len(seen)), ("Period", repr(period_ns)))]  # fmt: skip
+        given = {"Inputs": inputs, "Outputs": outputs, "Clocks": len(seen), "Period": period_ns}
+        given["Settle"] = SETTLE_NS if timed else 0.0
+        command += [f"-Pasic_part_bench.{key}={value!r}" for key, value in given.items()]
         command += ["-s", "asic_part_bench", str(BENCH), "part.v", "cells.v"]
         for step in (command, ["vvp", "-n", "part.vvp"]):
             result = subprocess.run(step, cwd=folder, capture_output=True, text=True, check=False)

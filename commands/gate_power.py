@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Power of a mapped netlist from how often its nets toggle, by the tables of its library.
 
-For each transition of a gate's output: half of C V^2 of the pins it drives (no wires), and the cell's own energy at that
-load and the slew of its inputs, the mean of a rise and a fall and of the pins that may have caused it. For each transition
-of an input: what the cell takes whether or not its output moves. For each clock of a flip-flop: both edges of its clock
-pin. Leakage as the library states it, at its temperature.
+For each transition of a gate's output: half of C V^2 of the pins it drives (no wires), and the cell's own energy at
+that load and the slew of its inputs, the mean of a rise and a fall and of the pins that may have caused it. For each
+transition of an input: what the cell takes whether or not its output moves. For each clock of a flip-flop: both edges
+of its clock pin. Leakage as the library states it, at its temperature.
 """
 
 from __future__ import annotations

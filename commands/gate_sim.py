@@ -71,7 +71,7 @@ def truth(function: str, inputs: Sequence[str]) -> int:
     return table
 
 
-class _Tables:
+class Tables:
     """Truth tables of a cell's outputs, worked out once."""
 
     def __init__(self) -> None:
@@ -171,7 +171,7 @@ def simulate(
     def net(bit: Bit) -> int:
         return number.setdefault(bit, len(number) - 1)  # "x" shares 0
 
-    tables = _Tables()
+    tables = Tables()
     words: list[int] = []
 
     def gates(all_gates: Sequence[tuple[Instance, Cell]]) -> list[int]:

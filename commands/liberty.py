@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads what the ASIC flow needs of a Liberty file: cells, functions, areas, capacitances, tables of energy and slew.
 
-Syntax: Liberty User Guide (Synopsys, open source since 2000). Of what it allows, this takes table look-up models: scalars,
-tables over one axis and two. Delays are OpenSTA's business and are not read.
+Syntax: Liberty User Guide (Synopsys, open source since 2000). Of what it allows, this takes table look-up models:
+scalars, tables over one axis and two. Delays are OpenSTA's business and are not read.
 """
 
 from __future__ import annotations

@@ -2,17 +2,19 @@
 """Area and energy of memory macros, low and high: there is no memory compiler to ask, so published macros bound them.
 
 Low: a foundry's cell under other people's circuits.
-  Area: six-transistor cell of 2.28 um2 in 0.13 um (UMC, 2000: design-reuse.com/news/?id=1611), 135 squares of the feature
-  size; less than 0.25 um2 in 45 nm (UMC, 2006) is 123, 0.122 um2 in 28 nm (UMC, 2008) 156. Cells are taken to be 70 % of
-  a macro.
-  Energy: 10 pJ for 64 bits out of 8 KiB, 20 out of 32 KiB, 100 out of 1 MiB, in 45 nm at 0.9 V (M. Horowitz, Computing's
-  energy problem, ISSCC 2014): all three are 10 pJ sqrt(size / 8 KiB), here per bit. One port, for reads and writes by turns.
-High: macros that anyone can have, gf180mcu_fd_ip_sram of the open 180 nm process of GlobalFoundries: six transistors for
-  5 V in 13.5 um2, one port. Area and energy at 1.8 V, typical, 25 C, as their Liberty files give them for 64 x 8 and
-  512 x 8, linear between the two. Wider words take several side by side, deeper ones several of which one is enabled.
+  Area: six-transistor cell of 2.28 um2 in 0.13 um (UMC, 2000: design-reuse.com/news/?id=1611), 135 squares of the
+  feature size; less than 0.25 um2 in 45 nm (UMC, 2006) is 123, 0.122 um2 in 28 nm (UMC, 2008) 156. Cells are taken to
+  be 70 % of a macro.
+  Energy: 10 pJ for 64 bits out of 8 KiB, 20 out of 32 KiB, 100 out of 1 MiB, in 45 nm at 0.9 V (M. Horowitz,
+  Computing's energy problem, ISSCC 2014): all three are 10 pJ sqrt(size / 8 KiB), here per bit. One port, for reads
+  and writes by turns.
+High: macros that anyone can have, gf180mcu_fd_ip_sram of the open 180 nm process of GlobalFoundries: six transistors
+  for 5 V in 13.5 um2, one port. Area and energy at 1.8 V, typical, 25 C, as their Liberty files give them for 64 x 8
+  and 512 x 8, linear between the two. Wider words take several side by side, deeper ones several of which one is
+  enabled.
 
-Both go with feature size (area F^2, energy F) and voltage (energy V^2). Leakage and speed are not modelled. A ROM is taken
-to be a RAM that is not written: too much, for a bit of ROM is one transistor.
+Both go with feature size (area F^2, energy F) and voltage (energy V^2). Leakage and speed are not modelled. A ROM is
+taken to be a RAM that is not written: too much, for a bit of ROM is one transistor.
 """
 
 from __future__ import annotations
