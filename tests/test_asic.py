@@ -152,7 +152,8 @@ def test_whole_design_in_gates(library, tmp_path):
 def test_delays_are_made_plain():
     said = """(DELAYFILE (CELL (CELLTYPE "top") (INSTANCE) (DELAY (ABSOLUTE (INTERCONNECT a b (0.1)))))
      (CELL (CELLTYPE "DFF") (INSTANCE c1) (DELAY (ABSOLUTE
-       (COND S (IOPATH (posedge CK) Q (0.1::0.3) (0.2::0.25))) (IOPATH CK Q (0.4::0.2)))) (TIMINGCHECK (SETUP D CK (1))))
+       (COND S (IOPATH (posedge CK) Q (0.1::0.3) (0.2::0.25))) (IOPATH CK Q (0.4::0.2))))
+       (TIMINGCHECK (SETUP D CK (1))))
      )"""
     assert "(INSTANCE c1) (DELAY (ABSOLUTE (IOPATH CK Q (0.4000) (0.4000))))" in asic.delays(said)
 
