@@ -5,7 +5,7 @@ Takes the variables of `make sim` that choose a configuration and a frame (SOLVE
   LIB         Liberty file; by default the OSU 0.18 um library of Debian's qflow-tech-osu018
   NODE_NM     feature size that memories are scaled to; 180 for the default library, to be given with another
   CLOCK_MHZ   of constraints/asic.sdc and of the power
-  TIMED       cores of which one instance is simulated with delays as well (names of modules, with commas)
+  TIMED       cores of which the largest instance is simulated with delays as well (names of modules, with commas)
 Writes asic.json into OUT. Exit status: 0, 1 when the gates differ from the model, 2 on bad input.
 """
 
@@ -25,6 +25,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tqdm import tqdm
 from vcd.reader import TokenKind, tokenize
@@ -43,11 +44,15 @@ from models.frames import Frames, load_frames
 from models.latency import first_depth_latency
 from models.tactile_depth import tactile_depth, write_roms
 
+if TYPE_CHECKING:
+    from commands.report import Figure
+
 TOP = "tactile_depth"
 DEFAULT_LIB = Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")
 DEFAULT_NODE_NM = 180.0
 DEFAULT_CLOCK_MHZ = 80.0
-DEFAULT_TIMED = "dot_product"
+# Where the multipliers are; of these, those that a configuration has.
+DEFAULT_TIMED = ("dot_product", "sdf_butterfly", "forward_elimination", "back_substitution", "spectral_divide")
 OWN = ("LIB", "NODE_NM", "CLOCK_MHZ", "TIMED")
 SDC = simulation.ROOT / "constraints" / "asic.sdc"
 BENCH = simulation.ROOT / "tb" / "asic_part_bench.sv"
@@ -68,7 +73,7 @@ class Options:
     library: Path
     node_nm: float
     clock_mhz: float
-    timed: tuple[str, ...]
+    timed: tuple[str, ...]  # empty: those of DEFAULT_TIMED that there are
 
 
 def parse(arguments: list[str]) -> tuple[sim.Request, Options]:
@@ -102,7 +107,7 @@ def parse(arguments: list[str]) -> tuple[sim.Request, Options]:
         raise InputError(f"LIB: {library} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
     if own.get("LIB") and library.resolve() != DEFAULT_LIB and not own.get("NODE_NM"):
         raise InputError(f"NODE_NM is missing: LIB={library} does not say its feature size, which memories go by")
-    timed = tuple(name for name in (own.get("TIMED") or DEFAULT_TIMED).split(",") if name)
+    timed = tuple(name for name in own.get("TIMED", "").split(",") if name)
     for name in timed:
         if not (simulation.HDL / f"{name}.sv").exists():
             raise InputError(f"TIMED={name}: no such core in hdl/")
@@ -482,6 +487,8 @@ def table(report: dict) -> str:
             f"{timed['factor']:.2f} times what it does without"
         )
     lines += [
+        f"logic with delays: {power['with_delays_mw']['low']:.1f} mW if the other cores toggle as without, "
+        f"{power['with_delays_mw']['high']:.1f} if as the worst of these",
         f"{len(report['memories'])} memories above {MACRO_BITS:,} bits, {area['memory_bits']:,} bits, as macros: "
         f"{memory_area['low']:.2f} to {memory_area['high']:.2f} mm2, {memory_power['low']:.1f} to "
         f"{memory_power['high']:.1f} mW",
@@ -497,6 +504,27 @@ def table(report: dict) -> str:
         f"left out: {', '.join(report['left_out'])}",
     ]
     return "\n".join(lines)
+
+
+def figure(report: dict) -> Figure:
+    """What `make report` shows of an asic.json."""
+    from commands.report import Figure
+    from commands.report import table as as_table
+
+    area, power, time = report["area"], report["power"], report["timing"]
+    head = ("", "area, mm2", "power, mW", f"worst slack at {time['clock_mhz']:g} MHz, ns")
+    rows = (
+        ("logic", f"{area['logic_mm2']:.2f}", "{low:.0f} to {high:.0f}".format(**power["with_delays_mw"]),
+         f"{time['worst_slack_ns']:.2f}"),
+        ("memories as macros", "{low:.1f} to {high:.1f}".format(**report["memory_area_mm2"]),
+         "{low:.0f} to {high:.0f}".format(**report["memory_power_mw"]), "-"),
+        (f"published, {PUBLISHED['node_nm']} nm", f"{PUBLISHED['area_mm2']:.2f}", f"{PUBLISHED['power_mw']:.0f}", "-"),
+    )  # fmt: skip
+    text = (
+        f"{report['library']['name']}, {report['node_nm']:g} nm, {area['cells']:,} cells, {area['memory_bits']:,} bits in "
+        f"macros. Left out: {', '.join(report['left_out'])}. The published figures are of another node and other tools."
+    )
+    return Figure("asic", "In standard cells", text, report["command"], as_table(head, rows))
 
 
 def frame_of(request: sim.Request) -> tuple[Frames, Calibration, Configuration]:
@@ -530,7 +558,7 @@ def run(request: sim.Request, options: Options, command: str) -> int:
     period_ns = 1000 / options.clock_mhz
     kept = False
     try:
-        with tqdm(total=4 + len(options.timed), unit="step", leave=False, disable=None) as bar:
+        with tqdm(total=4, unit="step", leave=False, disable=None) as bar:
             bar.set_description("synthesis")
             reading = synthesis.read(work, config, calibration=request.calibration, options="--keep-hierarchy")
             write_roms(work, calibration, config)
@@ -541,11 +569,13 @@ def run(request: sim.Request, options: Options, command: str) -> int:
             bar.update()
             bar.set_description("activity")
             parts = {}
-            for core in options.timed:
-                sizes = {path: part(netlist, path) for path in _largest(netlist, where, core)}
-                if not sizes:
+            for core in options.timed or DEFAULT_TIMED:
+                path = largest(netlist, where, core)
+                if path:
+                    parts[core] = path, part(netlist, path)
+                elif options.timed:
                     raise InputError(f"TIMED={core}: the design of this configuration has none")
-                parts[core] = next(iter(sizes.items()))
+            bar.total += len(parts)
             codes = tactile_depth(frames.pixels[:1], calibration, config)
             pixels = bench.frame_entries(frames.pixels[:1]) & 0xFFFFFF
             sent = first_depth_latency(config) // codes.size + 2
@@ -571,7 +601,7 @@ def run(request: sim.Request, options: Options, command: str) -> int:
         whole = sum(powers, Power())
         memory_area = total_range(row["area_um2"] for row in memory)
         memory_power = total_range(row["power_mw"] for row in memory)
-        factor = max([1.0, *(one.factor for one in timed)])
+        delayed = asdict(with_delays(netlist, where, powers, timed) * 1e3)
         logic_um2 = sum(cell.area for _, _, cell in netlist.gates)
         report = {
             "command": command,
@@ -603,10 +633,9 @@ def run(request: sim.Request, options: Options, command: str) -> int:
             "power": {
                 "zero_delay": {f"{key}_mw": 1e3 * value for key, value in asdict(whole).items()}
                 | {"total_mw": 1e3 * whole.total},
-                "timed_factor": factor,
-                "logic_high_mw": 1e3 * (whole.clock + whole.leakage + factor * whole.data),
-                "low_mw": 1e3 * whole.total + memory_power["low"],
-                "high_mw": 1e3 * (whole.clock + whole.leakage + factor * whole.data) + memory_power["high"],
+                "with_delays_mw": delayed,
+                "low_mw": delayed["low"] + memory_power["low"],
+                "high_mw": delayed["high"] + memory_power["high"],
             },
             "timed": [asdict(one) | {"factor": one.factor} for one in timed],
             "cores": rows,
@@ -630,12 +659,25 @@ def run(request: sim.Request, options: Options, command: str) -> int:
     return 1 if activity.wrong or any(one.wrong for one in timed) else 0
 
 
-def _largest(netlist: Netlist, where: dict[str, str], core: str) -> list[str]:
-    """The path of the instance of a core with most gates, in a list, or none."""
+def largest(netlist: Netlist, where: dict[str, str], core: str) -> str:
+    """The path of the instance of a core with most gates, or nothing."""
     counts = Counter(
         path for _, instance, _ in netlist.gates for path in _above(instance.path) if where.get(path) == core
     )
-    return [path for path, _ in counts.most_common(1)]
+    return counts.most_common(1)[0][0] if counts else ""
+
+
+def with_delays(netlist: Netlist, where: dict[str, str], powers: list[Power], timed: list[Timed]) -> Range:
+    """Watts of the logic: what toggles in a core of `timed` costs its factor more; the rest nothing more, or the most."""
+    factors = {one.core: one.factor for one in timed}
+    most = max([1.0, *factors.values()])
+    total = Range(0.0, 0.0)
+    for (_, instance, _), power in zip(netlist.gates, powers, strict=True):
+        found = [factors[where[path]] for path in _above(instance.path) if where.get(path) in factors]
+        still = power.total - power.data
+        low, high = (found[-1], found[-1]) if found else (1.0, most)
+        total += Range(still + low * power.data, still + high * power.data)
+    return total
 
 
 def _above(path: str) -> Iterable[str]:

@@ -177,7 +177,7 @@ def test_small_core_end_to_end(tmp_path):
     reading = synthesis.read(tmp_path, config, top="dot_product", parameters=widths, options="--keep-hierarchy")
     netlist, macros, where = asic.synthesise(tmp_path, reading, "dot_product", asic.DEFAULT_LIB, cells, 5.0)
     assert not macros
-    assert where == {"": "dot_product"}
+    assert where == {"": "dot_product", "u_product0": "multiply", "u_product1": "multiply"}
     stages = 2 * (6 + 5) + 11 + 11 + 11 + 11 + 12  # operands, twice for the second pair; products; the sum
     assert len(netlist.flip_flops()) == stages
 
