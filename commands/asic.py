@@ -270,8 +270,9 @@ def timing(folder: Path, netlist: Netlist, period_ns: float) -> dict:
         name = match[1] if match else ""
         cell = re.fullmatch(r"c(\d+)(/.*)?", name)
         found[end.lower()] = (netlist.instances[int(cell[1])].path or netlist.name) if cell else name
-    if found["worst_slack_ns"] is not None:
-        found["fastest_mhz"] = 1000 / (period_ns - found["worst_slack_ns"])
+    if found["worst_slack_ns"] is None:
+        raise RuntimeError(f"OpenSTA found no path: see {folder / 'timing.log'}")
+    found["fastest_mhz"] = 1000 / (period_ns - found["worst_slack_ns"])
     if macros:
         for key, where in (("left_for_access_ns", "-from"), ("left_for_setup_ns", "-to")):
             said = run_sta(folder, key, [*lines, f"report_checks -path_delay max {where} [get_pins {{{macros}}}]"])
@@ -475,6 +476,7 @@ def table(report: dict) -> str:
         )
     area, power, time = report["area"], report["power"], report["timing"]
     still = power["zero_delay"]
+    left = [time.get(f"left_for_{what}_ns") or math.nan for what in ("access", "setup")]
     memory_area, memory_power = (report[f"memory_{what}"] for what in ("area_mm2", "power_mw"))
     lines += [
         f"{'logic':<38}{area['cells']:>9,}{area['logic_mm2']:>10.3f}{'':>9}{still['total_mw']:>9.2f}",
@@ -494,8 +496,7 @@ def table(report: dict) -> str:
         f"{memory_power['high']:.1f} mW",
         f"worst slack at {time['clock_mhz']:g} MHz: {time['worst_slack_ns']:.2f} ns ({time['fastest_mhz']:.0f} MHz), "
         f"{time['startpoint']} to {time['endpoint']}",
-        f"left of a clock for a memory's access {time.get('left_for_access_ns', math.nan):.2f} ns, for its set-up "
-        f"{time.get('left_for_setup_ns', math.nan):.2f} ns",
+        f"left of a clock for a memory's access {left[0]:.2f} ns, for its set-up {left[1]:.2f} ns",
         f"{'':<24}{'area mm2':>18}{'power mW':>20}",
         f"{report['node_nm']:g} nm, {report['library']['name']:<16}{area['low_mm2']:>8.2f} to {area['high_mm2']:>6.2f}"
         f"{power['low_mw']:>10.1f} to {power['high_mw']:>6.1f}   at {time['clock_mhz']:g} MHz",
@@ -521,8 +522,9 @@ def figure(report: dict) -> Figure:
         (f"published, {PUBLISHED['node_nm']} nm", f"{PUBLISHED['area_mm2']:.2f}", f"{PUBLISHED['power_mw']:.0f}", "-"),
     )  # fmt: skip
     text = (
-        f"{report['library']['name']}, {report['node_nm']:g} nm, {area['cells']:,} cells, {area['memory_bits']:,} bits in "
-        f"macros. Left out: {', '.join(report['left_out'])}. The published figures are of another node and other tools."
+        f"{report['library']['name']}, {report['node_nm']:g} nm, {area['cells']:,} cells, "
+        f"{area['memory_bits']:,} bits in macros. Left out: {', '.join(report['left_out'])}. "
+        "The published figures are of another node and other tools."
     )
     return Figure("asic", "In standard cells", text, report["command"], as_table(head, rows))
 
@@ -668,7 +670,7 @@ def largest(netlist: Netlist, where: dict[str, str], core: str) -> str:
 
 
 def with_delays(netlist: Netlist, where: dict[str, str], powers: list[Power], timed: list[Timed]) -> Range:
-    """Watts of the logic: what toggles in a core of `timed` costs its factor more; the rest nothing more, or the most."""
+    """Watts of the logic: toggling costs its factor more in a core of `timed`, elsewhere nothing more or the most."""
     factors = {one.core: one.factor for one in timed}
     most = max([1.0, *factors.values()])
     total = Range(0.0, 0.0)

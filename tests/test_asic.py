@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from commands import asic, gate_sim, memory_model, synthesis
-from commands.gate_power import power_of, typical
+from commands.gate_power import Power, power_of, typical
 from commands.gates import Instance, Netlist, part
 from commands.liberty import boolean, groups_of, read
+from commands.memory_model import Range
 from models.configuration import Configuration
 from models.errors import InputError
 
@@ -147,6 +148,47 @@ def test_whole_design_in_gates(library, tmp_path):
     assert seen.watched == ["1" + f"{codes[i - 2]:08b}"[::-1] for i in range(4, 9)]
     codes[5] ^= 1
     assert gate_sim.simulate(netlist, [macro], pixels, codes, 8, 3, [], range(0), tmp_path).wrong == 3
+
+
+def test_factors_go_to_the_cores_they_were_measured_on(library):
+    """Three inverters: in a timed core, in a core inside it, elsewhere."""
+    gates = [Instance("INV", path, {"A": [i], "Y": [i + 1]}) for i, path in ((5, "a"), (7, "a.b"), (9, "c"))]
+    netlist = Netlist("three", {"clk": ("input", [2])}, gates, library, 2)
+    powers = [Power(clock=1.0, switching=2.0), Power(internal=3.0), Power(leakage=4.0, switching=5.0)]
+    timed = [asic.Timed("one", "a", 2, 9, 0, 1.0, 1.5), asic.Timed("two", "a.b", 1, 9, 0, 2.0, 5.0)]
+    watts = asic.with_delays(netlist, {"": "three", "a": "one", "a.b": "two", "c": "three"}, powers, timed)
+    assert watts == Range((1 + 1.5 * 2) + 2.5 * 3 + (4 + 5), (1 + 1.5 * 2) + 2.5 * 3 + (4 + 2.5 * 5))
+
+
+def test_report_says_its_figures():
+    ends = {"low": 1.25, "high": 98.75}
+    report = {
+        "command": "make asic",
+        "cores": [],
+        "library": {"name": "two"},
+        "node_nm": 180.0,
+        "left_out": asic.LEFT_OUT,
+        "timing": {
+            "clock_mhz": 80.0,
+            "worst_slack_ns": 0.5,
+            "fastest_mhz": 83.3,
+            "startpoint": "u_a",
+            "endpoint": "u_b",
+        },
+        "area": {"cells": 7, "logic_mm2": 6.05, "memory_bits": 4096, "low_mm2": 11.5, "high_mm2": 61.7},
+        "memory_area_mm2": ends,
+        "memory_power_mw": ends,
+        "memories": [],
+        "timed": [],
+        "power": {"low_mw": 681.1, "high_mw": 3763.9, "with_delays_mw": {"low": 900.5, "high": 1200.25}}
+        | {"zero_delay": {f"{part}_mw": 1.0 for part in ("clock", "internal", "switching", "leakage", "total")}},
+    }
+    said = asic.table(report)
+    for figure in ("681.1 to 3763.9", "11.50 to  61.70", "0.50 ns (83 MHz), u_a to u_b", "5.10", "wires, clock tree"):
+        assert figure in said
+    page = asic.figure(report)
+    assert "900 to 1200" in page.content
+    assert "1.2 to 98.8" in page.content
 
 
 def test_delays_are_made_plain():
