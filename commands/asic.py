@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 TOP = "tactile_depth"
 DEFAULT_LIB = Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")
 DEFAULT_NODE_NM = 180.0
-DEFAULT_CLOCK_MHZ = 80.0
+DEFAULT_CLOCK_MHZ = 75.0
 # Where the multipliers are; of these, those that a configuration has.
 DEFAULT_TIMED = ("dot_product", "sdf_butterfly", "forward_elimination", "back_substitution", "spectral_divide")
 OWN = ("LIB", "NODE_NM", "CLOCK_MHZ", "TIMED")
@@ -58,6 +58,7 @@ SDC = simulation.ROOT / "constraints" / "asic.sdc"
 BENCH = simulation.ROOT / "tb" / "asic_part_bench.sv"
 TIMED_CLOCKS = 256
 SETTLE_NS = 0.2  # a core's inputs follow the edge by this where there are delays: about a flip-flop of 0.18 um
+CORE_SHARE = 0.8  # of the period: cores are mapped one by one, and paths go through several
 YOSYS_SECONDS = 3600.0
 TOOLS = {"sta": "opensta", "iverilog": "iverilog", "vvp": "iverilog"}
 
@@ -174,7 +175,7 @@ def mapping(library: Library, top: str, macros: Iterable[str], period_ns: float)
         "opt_clean",
         f"synth -top {top} -booth -noabc",
         "dfflibmap -liberty cells.lib",
-        f"abc -liberty cells.lib -constr abc.constr -D {round(period_ns * 1000)}",
+        f"abc -liberty cells.lib -constr abc.constr -D {round(CORE_SHARE * period_ns * 1000)}",
         "setundef -zero",
         "opt_clean -purge",
         "flatten",
@@ -345,7 +346,7 @@ class Timed:
 
     @property
     def factor(self) -> float:
-        return self.data_timed_mw / self.data_zero_delay_mw
+        return self.data_timed_mw / self.data_zero_delay_mw if self.data_zero_delay_mw else 1.0
 
 
 def watched_of(netlist: Netlist) -> list[Bit]:
@@ -650,6 +651,9 @@ def run(request: sim.Request, options: Options, command: str) -> int:
         out.mkdir(exist_ok=True)
         os.replace(result, out / "asic.json")
         kept = bool(activity.wrong)
+    except RuntimeError:
+        kept = True  # it says where to look
+        raise
     finally:
         if not kept:
             shutil.rmtree(work, ignore_errors=True)
