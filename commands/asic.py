@@ -58,7 +58,6 @@ SDC = simulation.ROOT / "constraints" / "asic.sdc"
 BENCH = simulation.ROOT / "tb" / "asic_part_bench.sv"
 TIMED_CLOCKS = 256
 SETTLE_NS = 0.2  # a core's inputs follow the edge by this where there are delays: about a flip-flop of 0.18 um
-CORE_SHARE = 0.8  # of the period: cores are mapped one by one, and paths go through several
 YOSYS_SECONDS = 3600.0
 TOOLS = {"sta": "opensta", "iverilog": "iverilog", "vvp": "iverilog"}
 
@@ -175,7 +174,7 @@ def mapping(library: Library, top: str, macros: Iterable[str], period_ns: float)
         "opt_clean",
         f"synth -top {top} -booth -noabc",
         "dfflibmap -liberty cells.lib",
-        f"abc -liberty cells.lib -constr abc.constr -D {round(CORE_SHARE * period_ns * 1000)}",
+        f"abc -liberty cells.lib -constr abc.constr -D {round(period_ns * 1000)}",
         "setundef -zero",
         "opt_clean -purge",
         "flatten",

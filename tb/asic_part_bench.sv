@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // asic_part_bench: gates of a core, with delays or without, given what they got in the whole design.
 //
-// given.txt and wanted.txt hold a line for each clock: the inputs and outputs of `part` before the clock's edge. Registers
-// begin with what they held then. With DELAYS it is annotated from part.sdf. Toggles go to part.vcd from the first edge on.
-// Simulation only.
+// given.txt and wanted.txt hold a line for each clock: the inputs and outputs of `part` before the clock's edge.
+// Registers begin with what they held then. With DELAYS it is annotated from part.sdf. Toggles go to part.vcd from the
+// first edge on. Simulation only.
 
 `timescale 1ns/1ps
 
