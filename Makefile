@@ -7,6 +7,7 @@ PY := $(VENV)/bin/python
 STAMP := $(VENV)/complete
 TOOLS := $(VENV)/verification
 BASELINES := $(VENV)/baselines
+HARDWARE := $(VENV)/hardware
 
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT \
   REPEAT SEED GAPS STALLS WAVES CONFIG OUT
@@ -14,7 +15,10 @@ REFLEX_VARIABLES := N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM VIDEO OUT
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
 
-.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines setup clean
+ASIC_VARIABLES := LIB NODE_NM CLOCK_MHZ TIMED N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE \
+  REFERENCE CALIBRATION GRADIENT SEED CONFIG OUT
+
+.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines asic setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -95,6 +99,10 @@ report: $(STAMP)
 calibrate: $(STAMP)
 	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS OUT,$(if $($(v)),'$(v)=$($(v))'))
 
+# Area, slack and power in standard cells, from any Liberty file (LIB, NODE_NM): docs/hardware.md. CLOCK_MHZ, TIMED.
+asic: $(HARDWARE)
+	@$(PY) -m commands.asic $(foreach v,$(ASIC_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)
 	@$(PY) -m commands.registers
@@ -127,6 +135,12 @@ $(BASELINES): $(STAMP) requirements-baselines.txt
 	  $(PY) -m pip install --quiet --disable-pip-version-check --constraint requirements.txt "$$requirement" \
 	    || { failed=1; echo "$$requirement cannot be installed: its rows will say so" >&2; }; \
 	done; test -n "$$failed" || touch $@
+
+# What make asic adds.
+$(HARDWARE): $(TOOLS) requirements-hardware.txt
+	@echo "setting up the hardware tools (once) .."
+	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt
+	@touch $@
 
 clean:
 	rm -rf build

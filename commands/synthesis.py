@@ -24,10 +24,12 @@ def read(
     top: str = "tactile_depth",
     parameters: Mapping[str, int] | None = None,
     extra: Sequence[Path] = (),
+    options: str = "",
 ) -> list[str]:
     """Write the sources and the ROMs of a configuration into a folder; lines of Yosys that read them there.
 
-    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/.
+    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/;
+    `options` go to the front end.
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_roms(folder, load(calibration), config)
@@ -36,9 +38,9 @@ def read(
         shutil.copy(source, folder)
         names.append(source.name)
     given = top_parameters(config) if parameters is None else parameters
-    options = " ".join(f"-G {name}={value}" for name, value in given.items())
+    values = " ".join(f"-G {name}={value}" for name, value in given.items())
     return [
-        f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {' '.join(names)}",
+        f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {values} {' '.join(names)}",
         f"hierarchy -top {top}",
         "proc",
         SMALL_ROMS,
