@@ -101,7 +101,7 @@ def serial_link(line: Iterable[int | None], columns: int) -> Taken:
             continue
         content.append(byte)
         place, colour = divmod(len(content) - 2, COLOURS)
-        if content[0] == FRAME and colour == COLOURS - 1:
+        if content[0] == FRAME and place >= 0 and colour == COLOURS - 1:
             red, green, blue = content[-COLOURS:]
             word = red << 16 | blue << 8 | green
             taken.pixels.append(Word(word, int(place % columns == columns - 1), int(place == 0)))
