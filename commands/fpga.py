@@ -56,6 +56,7 @@ BOARDS = {
     "ulx3s": Board("ulx3s", "LFE5U-85F-6BG381C", ("--85k", "--package", "CABGA381", "--speed", "6")),
 }
 SOURCES = {name: sorted((ROOT / "boards" / name).glob("*.sv")) for name in BOARDS}
+TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,12 @@ def synthesize(
     """
     parameters = {**top_parameters(config), "Threshold": threshold(config)}
     lines = synthesis.read(
-        folder, config, calibration=calibration, top=board.top, parameters=parameters, extra=[*sources, primitives()]
+        folder,
+        config,
+        calibration=calibration,
+        top=board.top,
+        parameters=parameters,
+        extra=[*TECHNOLOGY, *sources, primitives()],
     )
     lines.append(f"synth_ecp5 -top {board.top} -json {board.top}.json")
     script = folder / "synthesis.ys"

@@ -27,14 +27,12 @@ def read(
 ) -> list[str]:
     """Write the sources and the ROMs of a configuration into a folder; lines of Yosys that read them there.
 
-    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/.
+    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside
+    hdl/, and in place of those of the same name there.
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_roms(folder, load(calibration), config)
-    names = []
-    for source in [*simulation.sources(), *extra]:
-        shutil.copy(source, folder)
-        names.append(source.name)
+    names = list({source.name: shutil.copy(source, folder) for source in [*simulation.sources(), *extra]})
     given = top_parameters(config) if parameters is None else parameters
     options = " ".join(f"-G {name}={value}" for name, value in given.items())
     return [

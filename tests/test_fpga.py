@@ -27,7 +27,13 @@ endmodule
 
 def netlist_of(core, parameters, folder):
     """Yosys' JSON of a core on the device, before anything is packed."""
-    lines = synthesis.read(folder, Configuration(columns=16, solver="tridiagonal"), top=core, parameters=parameters)
+    lines = synthesis.read(
+        folder,
+        Configuration(columns=16, solver="tridiagonal"),
+        top=core,
+        parameters=parameters,
+        extra=fpga.TECHNOLOGY,
+    )
     script = folder / "synthesis.ys"
     script.write_text("\n".join([*lines, f"synth_ecp5 -top {core} -json netlist.json"]))
     assert not yosys.run(script, timeout_s=300)
@@ -38,15 +44,16 @@ def test_packed_multipliers_compute_the_same(tmp_path):
     """The netlist of a dot product through the testbench of the core, with every register packed that can be."""
     design = netlist_of("dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
     packed = ecp5.pack(design["modules"]["dot_product"])
-    assert packed == {"multipliers": 4, "packed": 4, "registers": 2 * (A_WIDTH + B_WIDTH)}
+    assert packed["multipliers"] == packed["operands"] == packed["products"] == 4
     design["modules"] = {"netlist": design["modules"]["dot_product"]}
     folder = tmp_path / "netlist"
     folder.mkdir()
     (folder / "packed.json").write_text(json.dumps(design))
     script = folder / "write.ys"
-    shutil.copy(simulation.ROOT / "tb" / "MULT18X18D.sv", folder)
+    shutil.copy(simulation.ROOT / "tb" / "MULT18X18D.v", folder)
     script.write_text(
-        "read_json packed.json\ndelete =A:blackbox\nread_verilog -nooverwrite +/ecp5/cells_sim.v\nread_verilog -sv MULT18X18D.sv\n"
+        "read_json packed.json\ndelete =A:blackbox\n"
+        "read_verilog -nooverwrite +/ecp5/cells_sim.v\nread_verilog -sv MULT18X18D.v\n"
         "hierarchy -top netlist\nproc\nflatten\nopt_clean\nwrite_verilog -noattr netlist.v\n"
     )
     assert not yosys.run(script, timeout_s=300)
@@ -84,8 +91,13 @@ def test_only_registers_without_reset_are_packed():
         }
         return {"cells": {**cells, **changed}, "ports": {"out": {"direction": "output", "bits": [bits["B3"]]}}}
 
-    assert ecp5.pack(module({})) == {"multipliers": 1, "packed": 1, "registers": len(pins) - 1}  # one is read elsewhere
-    left = {"multipliers": 1, "packed": 0, "registers": 0}
+    assert ecp5.pack(module({})) == {
+        "multipliers": 1,
+        "operands": 1,
+        "products": 0,
+        "registers": len(pins) - 1,
+    }  # one is read elsewhere
+    left = {"multipliers": 1, "operands": 0, "products": 0, "registers": 0}
     assert ecp5.pack(module({"r100": register(100, reset=7)})) == left
     other = register(120)
     other["connections"]["CLK"] = [9]

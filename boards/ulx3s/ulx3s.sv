@@ -3,7 +3,8 @@
 //
 //   ftdi_txd -> uart_receive -> serial_link -> tactile_depth -> serial_link -> uart_transmit -> ftdi_rxd
 //
-// Packets: serial_link.sv. led[0]: contact; led[1] changes with every record; led[7]: the clock is locked. btn[1]: reset.
+// Packets: serial_link.sv. led[0]: contact; led[1] changes with every record; led[7]: the clock is locked.
+// btn[1]: reset.
 // Depth leaves the pipeline at full rate and is not sent; its record is. Parameters of the pipeline come from
 // models/configuration.py; Threshold is a depth code. Model: models/serial_link.py around models/tactile_depth.py.
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// MULT18X18D: the multiplier of an ECP5, as far as commands/ecp5.py uses it: registers at the inputs under CLK0, each
-// under one enable. Registers elsewhere and resets are not modelled. To simulate netlists; not for synthesis.
+// MULT18X18D: the multiplier of an ECP5, as far as commands/ecp5.py uses it: registers at inputs and output under CLK0,
+// each under one enable. The one between, and resets, are not modelled. To simulate netlists; not for synthesis.
 
 module MULT18X18D #(
   parameter REG_INPUTA_CLK = "NONE",
   parameter REG_INPUTA_CE  = "CE0",
   parameter REG_INPUTB_CLK = "NONE",
   parameter REG_INPUTB_CE  = "CE0",
+  parameter REG_OUTPUT_CLK = "NONE",
+  parameter REG_OUTPUT_CE  = "CE0",
   parameter GSR            = "ENABLED",
   parameter RESETMODE      = "SYNC"
 ) (
@@ -20,6 +22,8 @@ module MULT18X18D #(
 );
 
   logic [17:0] a, b, a_q, b_q;
+  logic signed [18:0] left, right;
+  logic signed [37:0] product, product_q;
   logic [3:0] ce;
   assign a = {A17, A16, A15, A14, A13, A12, A11, A10, A9, A8, A7, A6, A5, A4, A3, A2, A1, A0};
   assign b = {B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0};
@@ -29,14 +33,14 @@ module MULT18X18D #(
   always_ff @(posedge CLK0) begin
     if (ce[REG_INPUTA_CE[1:0]]) a_q <= a;
     if (ce[REG_INPUTB_CE[1:0]]) b_q <= b;
+    if (ce[REG_OUTPUT_CE[1:0]]) product_q <= product;
   end
 
-  logic signed [18:0] left, right;
-  logic signed [37:0] product;
   assign left = REG_INPUTA_CLK == "CLK0" ? {SIGNEDA & a_q[17], a_q} : {SIGNEDA & a[17], a};
   assign right = REG_INPUTB_CLK == "CLK0" ? {SIGNEDB & b_q[17], b_q} : {SIGNEDB & b[17], b};
   assign product = left * right;
   assign {P35, P34, P33, P32, P31, P30, P29, P28, P27, P26, P25, P24, P23, P22, P21, P20, P19, P18, P17, P16, P15,
-    P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0} = product[35:0];
+    P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0} =
+      REG_OUTPUT_CLK == "CLK0" ? product_q[35:0] : product[35:0];
 
 endmodule
