@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make fpga TARGET=ulx3s`: the design on a board: synthesis, place, route, bitstream, routed clock, what it takes.
 
-Takes KEY=VALUE arguments: TARGET, SEEDS and the variables of `make sim` that choose a configuration. Exit status: 0
-when the bitstream meets the board's clock, 1 when not, 2 on bad input and when the design does not fit.
+Takes KEY=VALUE arguments: TARGET, SEEDS and the variables of `make sim` that choose a configuration; of FRAMES and
+REFERENCE the size and the colours without contact. Exit status: 0 when the bitstream meets the board's clock, 1 when
+not, 2 on bad input and when the design does not fit.
 """
 
 from __future__ import annotations
@@ -27,9 +28,10 @@ from tqdm import tqdm
 
 from commands import ecp5, sim, synthesis, yosys
 from commands.simulator import ROOT
-from models.calibration import load
+from models.calibration import Calibration, load
 from models.configuration import Configuration
 from models.errors import InputError
+from models.frames import load_frames
 from models.tactile_depth import top_parameters
 
 BIN = Path(sys.executable).parent
@@ -38,7 +40,7 @@ AT_A_TIME = 2  # seeds
 TIMEOUT_S = 3600
 CHOICES = (
     *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
-    *("CALIBRATION", "GRADIENT", "OUT"),
+    *("FRAMES", "REFERENCE", "CALIBRATION", "GRADIENT", "OUT"),
 )
 LARGEST_SEED = 2**31 - 1
 
@@ -135,7 +137,7 @@ def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
 
 
 def synthesize(
-    board: Board, sources: list[Path], config: Configuration, calibration: str, folder: Path
+    board: Board, sources: list[Path], config: Configuration, calibration: Calibration, folder: Path
 ) -> dict[str, int]:
     """Leave the netlist in `folder`; what was packed into the multipliers.
 
@@ -222,10 +224,13 @@ def run(request: Request, command: str) -> int:
     """Everything after parsing; returns the exit status."""
     check()
     board, design = BOARDS[request.target], request.design
-    calibration = load(design.calibration)
+    Configuration(columns=design.columns, rows=design.rows, solver=design.solver)  # refuses a grid first
+    frames = load_frames(design.frames, (design.rows, design.columns), design.reference, design.seed, design.press)
+    calibration = load(design.calibration).on_grid(frames.pixel_scale, frames.reference)
     config = sim.configure(design, calibration)
     constraints = ROOT / "constraints" / f"{request.target}.lpf"
-    name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}"
+    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
     out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -235,7 +240,7 @@ def run(request: Request, command: str) -> int:
     begun = time.monotonic()
     bar = tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None)
     try:
-        packed = synthesize(board, SOURCES[request.target], config, design.calibration, work)
+        packed = synthesize(board, SOURCES[request.target], config, calibration, work)
         bar.update()
         bar.set_description("place and route")
         shutil.copy(constraints, work)
@@ -267,6 +272,8 @@ def run(request: Request, command: str) -> int:
             "data_width": config.data_width,
             "coeff_width": config.coefficient_width,
             "calibration": calibration.name,
+            "gradient_model": config.gradient_model,
+            "flat_field": config.flat_field,
             "clock_mhz": asked,
             "fmax_mhz": round(statistics.median(reached.values()), 2),
             "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from commands import simulator as simulation
-from models.calibration import load
+from models.calibration import Calibration, load
 from models.configuration import Configuration
 from models.tactile_depth import top_parameters, write_roms
 
@@ -20,7 +20,7 @@ def read(
     folder: Path,
     config: Configuration,
     *,
-    calibration: str = "synthetic",
+    calibration: str | Calibration = "synthetic",
     top: str = "tactile_depth",
     parameters: Mapping[str, int] | None = None,
     extra: Sequence[Path] = (),
@@ -31,7 +31,7 @@ def read(
     hdl/, and in place of those of the same name there.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_roms(folder, load(calibration), config)
+    write_roms(folder, load(calibration) if isinstance(calibration, str) else calibration, config)
     names = list({source.name: shutil.copy(source, folder) for source in [*simulation.sources(), *extra]})
     given = top_parameters(config) if parameters is None else parameters
     options = " ".join(f"-G {name}={value}" for name, value in given.items())

@@ -113,9 +113,10 @@ def test_only_registers_without_reset_are_packed():
         ([], "TARGET= is unknown: accepted are ulx3s"),
         (["TARGET=ulx3s", "SEEDS=1,x"], "SEEDS=1,x: accepted are different whole numbers"),
         (["TARGET=ulx3s", "SEEDS=2,2"], "SEEDS=2,2"),
-        (["TARGET=ulx3s", "FRAMES=ball"], "FRAMES=ball: unknown variable"),
+        (["TARGET=ulx3s", "GAPS=0.5"], "GAPS=0.5: unknown variable"),
         (["TARGET=ulx3s", "N=100"], "100"),
         (["TARGET=ulx3s", "CALIBRATION=none.npz"], "none.npz"),
+        (["TARGET=ulx3s", "REFERENCE=none.png"], "none.png"),
     ],
 )
 def test_bad_input(arguments, said, tmp_path):
