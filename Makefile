@@ -14,11 +14,12 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 REFLEX_VARIABLES := N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM VIDEO OUT
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
-
+FPGA_VARIABLES := TARGET SEEDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE \
+  CALIBRATION GRADIENT CONFIG OUT
 ASIC_VARIABLES := LIB NODE_NM CLOCK_MHZ TIMED N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE \
   REFERENCE CALIBRATION GRADIENT SEED CONFIG OUT
 
-.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines asic setup clean
+.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines asic fpga synth netlists setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -103,6 +104,10 @@ calibrate: $(STAMP)
 asic: $(HARDWARE)
 	@$(PY) -m commands.asic $(foreach v,$(ASIC_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
+# On a board: synthesis, place, route, bitstream, the clock it reaches and what it takes. TARGET=ulx3s SEEDS=1,2,3 OUT
+fpga: $(HARDWARE)
+	@$(PY) -m commands.fpga $(foreach v,$(FPGA_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)
 	@$(PY) -m commands.registers
@@ -136,7 +141,7 @@ $(BASELINES): $(STAMP) requirements-baselines.txt
 	    || { failed=1; echo "$$requirement cannot be installed: its rows will say so" >&2; }; \
 	done; test -n "$$failed" || touch $@
 
-# What make asic adds.
+# What the flows for hardware need.
 $(HARDWARE): $(TOOLS) requirements-hardware.txt
 	@echo "setting up the hardware tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt

@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
+from commands import fpga
 from commands import simulator as simulation
 from commands import yosys as yosys_runner
 from models.calibration import load
@@ -175,10 +176,15 @@ def columns(files: Iterable[Path], limit: int = 120) -> str:
 def checks() -> list[Check]:
     files = simulation.sources()
     benches = sorted((simulation.ROOT / "tb").glob("*.sv"))
+    boards = [path for sources in fpga.SOURCES.values() for path in sources]
+    tops = [Structure(name) for name in modules(boards)]
     cores, whole = [Structure(name) for name in modules(files)], structures()
     found = [Check("verilator", s.name, lambda s=s: verilator(s, files)) for s in (*cores, *whole)]
     found += [Check("icarus", s.name, lambda s=s: icarus(s, files)) for s in (*cores, *whole)]
+    found += [Check("verilator", s.name, lambda s=s: verilator(s, [*files, *boards])) for s in tops]
+    found += [Check("icarus", s.name, lambda s=s: icarus(s, [*files, *boards])) for s in tops]
     found.append(Check("slang", "cores", lambda: slang(modules(files), {}, files)))
+    found.append(Check("slang", "boards", lambda: slang(modules(boards), {}, [*files, *boards])))
     found += [Check("slang", s.name, lambda s=s: slang([s.top], s.parameters, files)) for s in whole]
     found.append(Check("yosys", "cores", lambda: yosys_cores(files)))
     found += [
@@ -186,8 +192,8 @@ def checks() -> list[Check]:
         for s in whole
         if s.config is not None and s.config.columns == GRIDS[0]
     ]
-    found.append(Check("verible", "rules", lambda: verible([*files, *benches])))
-    found.append(Check("verible", "columns", lambda: columns([*files, *benches])))
+    found.append(Check("verible", "rules", lambda: verible([*files, *boards, *benches, *fpga.TECHNOLOGY])))
+    found.append(Check("verible", "columns", lambda: columns([*files, *boards, *benches, *fpga.TECHNOLOGY])))
     python = [sys.executable, "-m"]
     found.append(Check("ruff", "check", lambda: told([*python, "ruff", "check", "--quiet", "."])))
     found.append(Check("ruff", "format", lambda: told([*python, "ruff", "format", "--quiet", "--diff", "."])))

@@ -136,7 +136,8 @@ def run_tb(simulator, request):
 
         began = time.monotonic()
         play(folder / "run.log", environment)
-        if not begins_at_random(request.node) or "rst" not in (simulation.HDL / f"{toplevel}.sv").read_text():
+        top = next(path for path in [*simulation.sources(sources), *files] if path.stem == toplevel)
+        if not begins_at_random(request.node) or "rst" not in top.read_text():
             return
         quick = {**(environment or {}), "COCOTB_TEST_FILTER": shortest(folder / "results.xml", QUICK_CLOCKS)}
         for power_up in range(1, POWER_UPS):  # the run above was the first

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// uart_transmit: bytes onto a serial line of 8 bits, lowest first, no parity, one stop bit.
+//
+// Bytes in: ready/valid; one is taken when the line is free. Model: models/uart.py.
+
+module uart_transmit #(
+  parameter int Divider = 33  // clocks a bit
+) (
+  input  logic       clk,
+  input  logic       rst,
+  input  logic       in_valid,
+  output logic       in_ready,
+  input  logic [7:0] in_data,
+  output logic       line
+);
+
+  localparam int CountWidth = $clog2(Divider);
+  localparam int Bits = 10;
+
+  logic [CountWidth-1:0] count;  // clocks that the bit on the line stays, less one
+  logic [3:0] left;              // bits not yet over
+  logic [Bits-2:0] rest;         // those after the one on the line
+
+  assign in_ready = left == '0;
+
+  always_ff @(posedge clk) begin
+    if (in_ready) begin
+      if (in_valid) begin
+        line <= 1'b0;
+        rest <= {1'b1, in_data};
+        left <= 4'(Bits);
+      end
+      count <= CountWidth'(Divider - 1);
+    end else if (count != '0) begin
+      count <= count - CountWidth'(1);
+    end else begin
+      count <= CountWidth'(Divider - 1);
+      left <= left - 4'd1;
+      {rest, line} <= {1'b1, rest};
+    end
+    if (rst) begin
+      line <= 1'b1;
+      left <= '0;
+    end
+  end
+
+`ifndef SYNTHESIS
+  initial if (Divider < 2) $fatal(1, "%m: Divider must be at least 2");
+`endif
+
+endmodule
