@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from commands import simulator as simulation
-from models.calibration import load
+from models.calibration import Calibration, load
 from models.configuration import Configuration
 from models.tactile_depth import top_parameters, write_roms
 
@@ -20,25 +20,27 @@ def read(
     folder: Path,
     config: Configuration,
     *,
-    calibration: str = "synthetic",
+    calibration: str | Calibration = "synthetic",
     top: str = "tactile_depth",
     parameters: Mapping[str, int] | None = None,
     extra: Sequence[Path] = (),
+    options: str = "",
 ) -> list[str]:
     """Write the sources and the ROMs of a configuration into a folder; lines of Yosys that read them there.
 
-    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/.
+    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/;
+    `options` go to the front end.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_roms(folder, load(calibration), config)
+    write_roms(folder, load(calibration) if isinstance(calibration, str) else calibration, config)
     names = []
     for source in [*simulation.sources(), *extra]:
         shutil.copy(source, folder)
         names.append(source.name)
     given = top_parameters(config) if parameters is None else parameters
-    options = " ".join(f"-G {name}={value}" for name, value in given.items())
+    values = " ".join(f"-G {name}={value}" for name, value in given.items())
     return [
-        f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {' '.join(names)}",
+        f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {values} {' '.join(names)}",
         f"hierarchy -top {top}",
         "proc",
         SMALL_ROMS,
