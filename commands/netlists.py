@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make netlists`: every core after synthesis through its own testbench, and the whole at 32 x 32 with each solver.
+
+CORE=name,.. SEED=1. The netlist is that of Yosys for 7-series logic, whose cells have simulation models in Yosys'
+library: LUT1 to LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as hdl/ram.sv and hdl/rom.sv have them:
+they are where a macro goes. The testbench compares every output with the bit-accurate model, as it does for the RTL.
+Parameters are those at which `make mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tqdm import tqdm
+
+from commands import mutants, mutate
+from commands import simulator as simulation
+from models.calibration import synthetic
+from models.configuration import COLUMNS, Configuration
+from models.errors import InputError
+from models.tactile_depth import top_parameters, write_roms
+
+OUT = simulation.ROOT / "build" / "netlists"
+WHOLE = "tactile_depth"
+WHOLE_SIZE = 32
+# Of the testbench of the whole: frames alone and on end, contact, faults and a reset, gaps and stalls.
+WHOLE_TESTS = "configuration|one_frame|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=4"
+# What Verilator says of the library's cells and of a netlist is not ours to change.
+RULES = ("SPECIFYIGN", "INITIALDLY", "UNOPTFLAT")
+
+
+@dataclass(frozen=True)
+class Case:
+    """A core as its test builds it."""
+
+    core: str
+    name: str
+    structure: mutants.Structure
+    simulator: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """Cells of a netlist, and how many tests it ran and failed."""
+
+    case: Case
+    cells: Mapping[str, int]
+    tests: int
+    failed: int
+    seconds: float
+
+
+def cases(names: Sequence[str]) -> list[Case]:
+    """Of the cores named, those of `make mutate`; of the whole, both solvers."""
+    found = []
+    for name in names:
+        if name == WHOLE:
+            found += [whole(solver) for solver in COLUMNS]
+            continue
+        core = mutate.CORES[name]
+        for index in core.structures:
+            found.append(Case(name, f"{name}-{index}", mutants.structure(name, index), core.simulators[0]))
+    return found
+
+
+def whole(solver: str) -> Case:
+    choices = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
+    config = Configuration(**choices)
+    structure = mutants.Structure(
+        WHOLE,
+        None,
+        top_parameters(config),
+        f"tb_{WHOLE}",
+        lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+        {"COCOTB_TEST_FILTER": WHOLE_TESTS, "CONFIGURATION": json.dumps(choices)},
+    )
+    return Case(WHOLE, f"{WHOLE}-{solver}", structure, "verilator")
+
+
+def library() -> Path:
+    """Yosys' simulation models of the cells.
+
+    Raises
+    ------
+    InputError
+    """
+    wheel = importlib.util.find_spec("pyosys")
+    if wheel is None or not wheel.submodule_search_locations:
+        raise InputError("pyosys is not installed in this Python environment: run `make setup`")
+    return Path(wheel.submodule_search_locations[0]) / "share" / "xilinx" / "cells_sim.v"
+
+
+def netlist(case: Case, folder: Path) -> dict[str, int]:
+    """Write netlist.v and wrapper.sv; its cells by type.
+
+    Raises
+    ------
+    RuntimeError
+    """
+    core, outside = case.core, mutate.CORES[case.core].outside
+    if case.structure.roms:
+        case.structure.roms(folder)
+    top = f"{core}_netlist"
+    synth = f"synth_xilinx -family xc7 -noiopad -noclkbuf -flatten -top {top}"
+    mutants.yosys(
+        f"{mutants.base(core, case.structure, outside)}rename {core} {top}\n{synth} -run begin:map_memory\n"
+        f"opt -fast -full\n{synth} -run fine:edif\ntee -q -o cells.json stat -json\nwrite_verilog -noattr netlist.v\n",
+        folder,
+        "netlist",
+    )
+    (folder / "wrapper.sv").write_text(mutants.wrapper(core, folder, mutate.CORES[core].inside, selector=""))
+    return json.loads((folder / "cells.json").read_text())["modules"][f"\\{top}"]["num_cells_by_type"]
+
+
+def run(case: Case, seed: int) -> Result:
+    """Synthesis, and the testbench on what comes of it.
+
+    Raises
+    ------
+    RuntimeError
+    """
+    began = time.monotonic()
+    folder = OUT / case.name
+    folder.mkdir(parents=True, exist_ok=True)
+    cells = netlist(case, folder)
+    files = (library(), folder / "netlist.v", folder / "wrapper.sv")
+    waivers = [f'public_flat_rw -module "{case.core}" -var "*"']
+    waivers += [f'lint_off -file "*{file.name}"' for file in files]
+    waivers += [f'lint_off -rule {rule} -file "*{file.name}"' for rule in RULES for file in files]
+    (folder / "public.vlt").write_text("\n".join(["`verilator_config", *waivers]) + "\n")
+    package = [path for path in simulation.sources(None) if path.stem.endswith("_pkg")]
+    build = folder / case.simulator
+    simulation.build(
+        case.simulator,
+        case.core,
+        [folder / "public.vlt", *package, *files],
+        case.structure.parameters,
+        build,
+        fast=True,
+        log=folder / "build.log",
+    )
+    count, failed = simulation.run(
+        case.core,
+        case.structure.test_module,
+        build,
+        folder,
+        simulator=case.simulator,
+        seed=seed,
+        environment=case.structure.environment,
+        log=folder / "run.log",
+    )
+    return Result(case, cells, count, failed, time.monotonic() - began)
+
+
+COLUMNS_SHOWN = {"LUT": 7, "FF": 7, "DSP": 5, "memories": 10, "tests": 7, "failed": 8, "seconds": 9}
+HEAD = f"{'netlist':<28}{'simulator':<11}" + "".join(f"{name:>{width}}" for name, width in COLUMNS_SHOWN.items())
+
+
+def row(result: Result) -> str:
+    cells = Counter(result.cells)
+    luts = sum(count for cell, count in cells.items() if cell.startswith(("LUT", "INV", "SRL")))
+    registers = sum(count for cell, count in cells.items() if cell.startswith("FD"))
+    numbers = (luts, registers, cells["DSP48E1"], cells["$mem_v2"], result.tests, result.failed, round(result.seconds))
+    shown = "".join(f"{number:>{width},}" for number, width in zip(numbers, COLUMNS_SHOWN.values(), strict=True))
+    verdict = "" if result.tests and not result.failed else "  DIFFERS"
+    return f"{result.case.name:<28}{result.case.simulator:<11}{shown}{verdict}"
+
+
+def parse(arguments: list[str]) -> tuple[list[str], int]:
+    """Names of cores, and the seed.
+
+    Raises
+    ------
+    InputError
+    """
+    given = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
+    for argument in arguments:
+        name, equals, value = argument.partition("=")
+        if not equals or name not in given:
+            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(given)}")
+        given[name] = value or given[name]
+    names = given["CORE"].split(",")
+    for name in names:
+        if name not in mutate.CORES:
+            raise InputError(f"CORE={name} is unknown: accepted are {', '.join(mutate.CORES)}")
+    if not given["SEED"].isdecimal():
+        raise InputError(f"SEED={given['SEED']}: accepted is a whole number")
+    return names, int(given["SEED"])
+
+
+def main() -> None:
+    try:
+        names, seed = parse(sys.argv[1:])
+        library()
+        for simulator in simulation.SIMULATORS:
+            simulation.check(simulator)
+        results = []
+        print(HEAD)
+        with tqdm(cases(names), leave=False, disable=None) as bar:
+            for case in bar:
+                bar.set_description(case.name)
+                results.append(run(case, seed))
+                tqdm.write(row(results[-1]))
+                sys.stdout.flush()
+    except InputError as error:
+        print(f"make netlists: {error}", file=sys.stderr)
+        sys.exit(2)
+    except RuntimeError as error:
+        print(f"make netlists: {error}", file=sys.stderr)
+        sys.exit(1)
+    wrong = [result.case.name for result in results if result.failed or not result.tests]
+    tests = sum(result.tests for result in results)
+    print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")
+    print(f", not as the RTL: {', '.join(wrong)}" if wrong else ": all as the RTL")
+    sys.exit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()
