@@ -7,7 +7,7 @@
 //
 // The last row goes past the memory. In place: while row Rows - 1 - r of a frame is read, row r of the next frame
 // cannot have begun; it is written into the freed place. So the writer of a frame goes the way that the reader of the
-// frame before went: rows upwards and downwards in turn.
+// frame before goes: rows upwards and downwards in turn.
 //
 // WordsPerRow words lie side by side in a row of the memory, collected before the write and taken apart after the read.
 // Where Size is no multiple of it the first row of a burst has fewer, so that a burst ends with a full one.
@@ -47,19 +47,19 @@ module frame_stack #(
     left_after = left == '0 ? FullLeft : left - LeftWidth'(1);
   endfunction
 
-  // The memory row after this one: the next, or behind a burst on the way down the first of the burst below.
+  // The way of the reader, and of the writer until its last row begins: from the uppermost burst down, or up from 0.
+  logic down;
   function automatic logic [AddressWidth-1:0] address_after(
-    input logic [AddressWidth-1:0] address, input logic burst_end, input logic down
+    input logic [AddressWidth-1:0] address, input logic last_of_burst, input logic downwards
   );
-    address_after = address + (burst_end & down ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
+    address_after = address + (last_of_burst & downwards ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
   endfunction
 
   // Writer.
   logic [PositionWidth-1:0] write_position;
   logic [LeftWidth-1:0] write_left, write_left_q;
   logic [AddressWidth-1:0] write_address, write_address_q;
-  logic write_active, write_end, write_down, write_down_q, write_last_q, write_row;
-  logic read_down, read_down_q;
+  logic write_active, write_end, write_last_q, write_row;
   logic [Kept*Width-1:0] kept;  // words before in_data, the latest in the lowest bits
   burst_counter #(.Size(Size)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
@@ -67,8 +67,7 @@ module frame_stack #(
   assign write_end = write_active & (write_position == LastPosition);
   assign write_left = in_start ? FirstLeft : write_left_q;
   assign write_row = write_active & (write_left == '0);
-  assign write_down = in_frame_start ? read_down_q : write_down_q;
-  assign write_address = in_frame_start ? (read_down_q ? AddressWidth'(Top) : '0) : write_address_q;
+  assign write_address = in_frame_start ? (down ? AddressWidth'(Top) : '0) : write_address_q;
 
   // Reader. Its first burst is the last row, which needs no memory.
   logic [PositionWidth-1:0] read_position;
@@ -76,17 +75,16 @@ module frame_stack #(
   logic [AddressWidth-1:0] read_address;
   logic read_begin, read_more, read_start, read_active, read_end, read_past, read_past_q, read_past_q2, read_last;
   logic start_q, frame_start_q;
-  logic [WordsPerRow-1:0][Width-1:0] read_data;
+  logic [WordsPerRow*Width-1:0] read_data;
   burst_counter #(.Size(Size)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
   );
   assign read_begin = in_start & ~in_frame_start & write_last_q;
   assign read_start = read_begin | read_more;
-  assign read_down = read_begin ? ~write_down_q : read_down_q;
   assign read_past = read_begin | read_past_q;
   assign read_left = read_start ? FirstLeft : read_left_q;
   assign read_end = read_active & (read_position == LastPosition);
-  assign read_last = read_address == (read_down_q ? AddressWidth'(Burst - 1) : AddressWidth'(Depth - 1));
+  assign read_last = read_address == (down ? AddressWidth'(Burst - 1) : AddressWidth'(Depth - 1));
 
   ram #(.Width(WordsPerRow * Width), .Depth(Depth), .Style(Style)) u_ram (
     .clk,
@@ -102,18 +100,17 @@ module frame_stack #(
     if (en) begin
       kept <= (Kept * Width)'({kept, in_data});
       write_left_q <= left_after(write_left);
-      write_down_q <= write_down;
-      write_address_q <= write_row ? address_after(write_address, write_end, write_down) : write_address;
+      write_address_q <= write_row ? address_after(write_address, write_end, down) : write_address;
       if (write_end) begin  // of the row before the last
-        write_last_q <= write_address == (write_down ? AddressWidth'(2 * Burst - 1) : AddressWidth'(Top - 1));
+        write_last_q <= write_address == (down ? AddressWidth'(2 * Burst - 1) : AddressWidth'(Top - 1));
       end
       read_more <= read_end & (read_past | ~read_last);
-      read_down_q <= read_down;
+      down <= down ^ read_begin;
       read_past_q <= read_past & ~read_end;
       read_left_q <= left_after(read_left);
-      if (read_begin) read_address <= read_down ? AddressWidth'(Top - Burst) : AddressWidth'(Burst);
+      if (read_begin) read_address <= down ? AddressWidth'(Burst) : AddressWidth'(Top - Burst);
       else if (~read_past_q & read_active & read_left == '0) begin
-        read_address <= address_after(read_address, read_end, read_down_q);
+        read_address <= address_after(read_address, read_end, down);
       end
       start_q <= read_start;
       frame_start_q <= read_begin;
@@ -121,11 +118,11 @@ module frame_stack #(
       read_left_q2 <= read_left;
       out_start <= start_q;
       out_frame_start <= frame_start_q;
-      out_data <= read_past_q2 ? kept[Width-1:0] : read_data[read_left_q2];
+      out_data <= read_past_q2 ? kept[Width-1:0] : read_data[32'(read_left_q2)*Width+:Width];
     end
     if (rst) begin
       read_more <= 1'b0;
-      read_down_q <= 1'b0;
+      down <= 1'b0;
       start_q <= 1'b0;
       frame_start_q <= 1'b0;
       out_start <= 1'b0;

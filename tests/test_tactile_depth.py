@@ -20,7 +20,7 @@ SLOW = f"{FORMATS}|one_frame|words_before|resets"
 # Of the other: every test, but of those that are repeated for each disturbance one.
 REPEATED = "gaps_and_stalls|random_streams|side_by_side|every_fault_in_a_row/.*random"
 ONCE = f"^(?!.*({REPEATED}))|gaps_and_stalls/offers=random/accepts=4"
-PACKED = "back_to_back|gaps_and_stalls/offers=random/accepts=4"
+PACKED = "back_to_back"
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=4"
 
 
