@@ -38,6 +38,7 @@ module frame_stack #(
   localparam int Top = Depth - Burst;  // the first memory row of the uppermost burst
   localparam int LeftWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
   localparam int Kept = WordsPerRow > 2 ? WordsPerRow - 1 : 1;
+  localparam logic [31:0] WordBits = 32'(Width);
   localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Size - 1);
   // Words of a memory row that are still to come: of a burst's first, and of any other.
   localparam logic [LeftWidth-1:0] FirstLeft = LeftWidth'((Size - 1) % WordsPerRow);
@@ -118,7 +119,7 @@ module frame_stack #(
       read_left_q2 <= read_left;
       out_start <= start_q;
       out_frame_start <= frame_start_q;
-      out_data <= read_past_q2 ? kept[Width-1:0] : read_data[32'(read_left_q2)*Width+:Width];
+      out_data <= read_past_q2 ? kept[Width-1:0] : Width'(read_data >> (WordBits * 32'(read_left_q2)));
     end
     if (rst) begin
       read_more <= 1'b0;
