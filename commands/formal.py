@@ -345,11 +345,12 @@ PROOFS: tuple[Proof, ...] = (
         Proof(
             "frame_stack",
             "an arbitrary word at its place, last row first; latency 2 from the first word of the last row",
-            f"rows and positions are only counted; rows no power of two, and one; {WORD_FREE}",
-            {"Rows": rows, "Size": size},
-            depth=45,
+            "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
+            f"a memory row that divide a burst, and not; {WORD_FREE}",
+            {"Rows": rows, "Size": size, "WordsPerRow": words},
+            depth=3 * rows * size + 5,
         )
-        for rows, size in ((3, 4), (4, 4))
+        for rows, size, words in ((3, 4, 1), (4, 4, 1), (3, 4, 2), (3, 4, 3), (3, 5, 3), (2, 3, 3))
     ),
     *(
         Proof(

@@ -89,7 +89,7 @@ def cases() -> list[Case]:
         ),
         Case("frame_guard", {"Rows": 5, "Columns": 8}),
         Case("frame_output", {"Width": 4, "Rows": 5, "Columns": 8}),
-        Case("frame_stack", {"Width": 3, "Rows": 5, "Size": 8}),
+        *(Case("frame_stack", {"Width": 3, "Rows": 5, "Size": 8, "WordsPerRow": words}) for words in (1, 3)),
         *(Case("flat_field", FIELD | more) for more in ({}, {"Drop": 22, "Offset": 4, "OutWidth": 5, "Flat": 0})),
         *(Case("frame_tags", {"Width": 4, "Latency": latency, "Pixels": 8}) for latency in (6, 20)),
         *(Case("gain_map", {"Rows": rows, "Columns": 8, "BlockLog2": 1}) for rows in (3, 5)),

@@ -81,7 +81,7 @@ CORES = {
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
     "divergence": Core(protocols.divergence, (5,)),
     "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (5,)),
-    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (4,)),
+    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (7,)),
     "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (1,)),
     "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
     "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),

@@ -4,9 +4,10 @@
 // bursts, any en, any frame number, and frames that begin before the last one is whole.
 
 module fv_frame_stack #(
-  parameter int Width = 1,
-  parameter int Rows  = 3,
-  parameter int Size  = 4,
+  parameter int Width       = 1,
+  parameter int Rows        = 3,
+  parameter int Size        = 4,
+  parameter int WordsPerRow = 1,
   localparam int PositionWidth = $clog2(Size),
   localparam int RowWidth = $clog2(Rows + 1),
   localparam int PlaceWidth = $clog2(Rows * Size)
@@ -33,7 +34,7 @@ module fv_frame_stack #(
 
   logic out_start, out_frame_start;
   logic [Width-1:0] out_data;
-  frame_stack #(.Width(Width), .Rows(Rows), .Size(Size)) dut (
+  frame_stack #(.Width(Width), .Rows(Rows), .Size(Size), .WordsPerRow(WordsPerRow)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
 

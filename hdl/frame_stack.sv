@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// frame_stack: rows of a frame in, last row first out, through one memory of exactly Rows x Size words.
+// frame_stack: rows of a frame in, last row first out, through one memory that holds a frame.
 //
 // Stream in: bursts of Size words, Rows of them a frame, gaps between bursts anywhere; rows count from a frame's start.
 // Stream out: Rows bursts without a pause. Latency: 2 cycles from the first word of the last row to the first word out;
 // nothing need follow, the reader runs by itself.
 //
-// In place: while row Rows - 1 - r of a frame is read, row r of the next frame cannot have begun; it is written into
-// the freed place. So the order of rows in the memory is the reverse of the frame read last. Bit-accurate model:
-// models/frame_stack.py.
+// The last row goes past the memory. In place: while row Rows - 1 - r of a frame is read, row r of the next frame
+// cannot have begun; it is written into the freed place. So the writer of a frame goes the way that the reader of the
+// frame before goes: rows upwards and downwards in turn.
+//
+// WordsPerRow words lie side by side in a row of the memory, collected before the write and taken apart after the read.
+// Where Size is no multiple of it the first row of a burst has fewer, so that a burst ends with a full one.
+// Bit-accurate model: models/frame_stack.py.
 
 module frame_stack #(
-  parameter int Width = 24,
-  parameter int Rows  = 128,
-  parameter int Size  = 128
+  parameter int Width       = 24,
+  parameter int Rows        = 128,
+  parameter int Size        = 128,
+  parameter int WordsPerRow = 1,
+  parameter int Style       = 1   // of the memory, hdl/ram.sv
 ) (
   input  logic             clk,
   input  logic             rst,
@@ -26,61 +32,100 @@ module frame_stack #(
 );
 
   localparam int PositionWidth = $clog2(Size);
-  localparam int RowWidth = $clog2(Rows);
-  localparam int UltraBits = 16 * 36864;  // from here a frame store is cheaper in ultra than in block RAM
-  localparam logic [RowWidth-1:0] LastRow = RowWidth'(Rows - 1);
+  localparam int Burst = (Size + WordsPerRow - 1) / WordsPerRow;  // memory rows of a burst
+  localparam int Depth = Rows * Burst;
+  localparam int AddressWidth = $clog2(Depth);
+  localparam int Top = Depth - Burst;  // the first memory row of the uppermost burst
+  localparam int LeftWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
+  localparam int Kept = WordsPerRow > 2 ? WordsPerRow - 1 : 1;
+  localparam logic [31:0] WordBits = 32'(Width);
+  localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Size - 1);
+  // Words of a memory row that are still to come: of a burst's first, and of any other.
+  localparam logic [LeftWidth-1:0] FirstLeft = LeftWidth'((Size - 1) % WordsPerRow);
+  localparam logic [LeftWidth-1:0] FullLeft = LeftWidth'(WordsPerRow - 1);
 
-  // Writer. flipped: row 0 of this frame lies at the top of the memory.
-  logic [PositionWidth-1:0] write_position, read_position;
-  logic [RowWidth-1:0] row, row_q, step, step_q;
-  logic write_active, write_flipped, write_flipped_q, read_flipped, last_row_start;
+  function automatic logic [LeftWidth-1:0] left_after(input logic [LeftWidth-1:0] left);
+    left_after = left == '0 ? FullLeft : left - LeftWidth'(1);
+  endfunction
+
+  // The way of the reader, and of the writer until its last row begins: from the uppermost burst down, or up from 0.
+  logic down;
+  function automatic logic [AddressWidth-1:0] address_after(
+    input logic [AddressWidth-1:0] address, input logic last_of_burst, input logic downwards
+  );
+    address_after = address + (last_of_burst & downwards ? AddressWidth'(1 - 2 * Burst) : AddressWidth'(1));
+  endfunction
+
+  // Writer.
+  logic [PositionWidth-1:0] write_position;
+  logic [LeftWidth-1:0] write_left, write_left_q;
+  logic [AddressWidth-1:0] write_address, write_address_q;
+  logic write_active, write_end, write_last_q, write_row;
+  logic [Kept*Width-1:0] kept;  // words before in_data, the latest in the lowest bits
   burst_counter #(.Size(Size)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
-  assign row = in_frame_start ? '0 : row_q;
-  assign write_flipped = in_frame_start ? ~read_flipped : write_flipped_q;
-  assign last_row_start = in_start & (row == LastRow);
+  assign write_end = write_active & (write_position == LastPosition);
+  assign write_left = in_start ? FirstLeft : write_left_q;
+  assign write_row = write_active & (write_left == '0);
+  assign write_address = in_frame_start ? (down ? AddressWidth'(Top) : '0) : write_address_q;
 
-  // Reader: step r reads row Rows - 1 - r.
-  logic read_start, read_begin, read_more, read_active;
-  assign read_start = read_begin | read_more;
-  assign step = read_begin ? '0 : step_q;
+  // Reader. Its first burst is the last row, which needs no memory.
+  logic [PositionWidth-1:0] read_position;
+  logic [LeftWidth-1:0] read_left, read_left_q, read_left_q2;
+  logic [AddressWidth-1:0] read_address;
+  logic read_begin, read_more, read_start, read_active, read_end, read_past, read_past_q, read_past_q2, read_last;
+  logic start_q, frame_start_q;
+  logic [WordsPerRow*Width-1:0] read_data;
   burst_counter #(.Size(Size)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
   );
+  assign read_begin = in_start & ~in_frame_start & write_last_q;
+  assign read_start = read_begin | read_more;
+  assign read_past = read_begin | read_past_q;
+  assign read_left = read_start ? FirstLeft : read_left_q;
+  assign read_end = read_active & (read_position == LastPosition);
+  assign read_last = read_address == (down ? AddressWidth'(Burst - 1) : AddressWidth'(Depth - 1));
 
-  ram #(
-    .Width(Width),
-    .Depth(Rows * Size),
-    .Style(Rows * Size * Width >= UltraBits ? 2 : 1)
-  ) u_ram (
+  ram #(.Width(WordsPerRow * Width), .Depth(Depth), .Style(Style)) u_ram (
     .clk,
-    .write_en     (en & write_active),
-    .write_address({write_flipped ? LastRow - row : row, write_position}),
-    .write_data   (in_data),
-    .read_en      (en & read_active),
-    .read_address ({read_flipped ? step : LastRow - step, read_position}),
-    .read_data    (out_data)
+    .write_en     (en & write_row),
+    .write_address(write_address),
+    .write_data   ((WordsPerRow * Width)'({kept, in_data})),
+    .read_en      (en & read_active & ~read_past & (read_start | (read_left == FullLeft))),
+    .read_address (read_address),
+    .read_data    (read_data)
   );
-
-  logic read_row_end;
-  assign read_row_end = read_active & (read_position == PositionWidth'(Size - 1));
 
   always_ff @(posedge clk) begin
     if (en) begin
-      row_q <= row + RowWidth'(write_active & (write_position == PositionWidth'(Size - 1)));
-      write_flipped_q <= write_flipped;
-      if (last_row_start) read_flipped <= write_flipped;
-      read_begin <= last_row_start;
-      read_more <= read_row_end & (step != LastRow);
-      step_q <= step + RowWidth'(read_row_end);
-      out_start <= read_start;
-      out_frame_start <= read_begin;
+      kept <= (Kept * Width)'({kept, in_data});
+      write_left_q <= left_after(write_left);
+      write_address_q <= write_row ? address_after(write_address, write_end, down) : write_address;
+      if (write_end) begin  // of the row before the last
+        write_last_q <= write_address == (down ? AddressWidth'(2 * Burst - 1) : AddressWidth'(Top - 1));
+      end
+      read_more <= read_end & (read_past | ~read_last);
+      down <= down ^ read_begin;
+      read_past_q <= read_past & ~read_end;
+      read_left_q <= left_after(read_left);
+      if (read_begin) read_address <= down ? AddressWidth'(Burst) : AddressWidth'(Top - Burst);
+      else if (~read_past_q & read_active & read_left == '0) begin
+        read_address <= address_after(read_address, read_end, down);
+      end
+      start_q <= read_start;
+      frame_start_q <= read_begin;
+      read_past_q2 <= read_past;
+      read_left_q2 <= read_left;
+      out_start <= start_q;
+      out_frame_start <= frame_start_q;
+      out_data <= read_past_q2 ? kept[Width-1:0] : Width'(read_data >> (WordBits * 32'(read_left_q2)));
     end
     if (rst) begin
-      read_flipped <= 1'b0;
-      read_begin <= 1'b0;
       read_more <= 1'b0;
+      down <= 1'b0;
+      start_q <= 1'b0;
+      frame_start_q <= 1'b0;
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
     end
@@ -88,8 +133,9 @@ module frame_stack #(
 
 `ifndef SYNTHESIS
   initial begin
-    if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
+    if (Size < 2) $fatal(1, "%m: Size must be at least 2");
     if (Rows < 2) $fatal(1, "%m: Rows must be at least 2");
+    if (WordsPerRow < 1) $fatal(1, "%m: WordsPerRow must be at least 1");
   end
 `endif
 

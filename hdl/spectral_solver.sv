@@ -23,7 +23,8 @@ module spectral_solver #(
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
   parameter int DivideDrop       = 23,
-  parameter int Neumann          = 0    // 1: zero slope at the edge and zero mean, by cosine transforms
+  parameter int Neumann          = 0,   // 1: zero slope at the edge and zero mean, by cosine transforms
+  parameter int StoreStyle       = 1    // of the frame stores, hdl/ram.sv
 ) (
   input  logic                        clk,
   input  logic                        rst,
@@ -63,7 +64,7 @@ module spectral_solver #(
     .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes), .saturations(clipped_a)
   );
 
-  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(0), .MakhoulOut(1)) u_to_columns (
+  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle)) u_to_columns (
     .clk, .rst, .en, .in_start(row_modes_start), .in_frame_start(row_modes_frame_start), .in_data(row_modes),
     .out_start(column_start), .out_frame_start(column_frame_start), .out_data(column_data)
   );
@@ -93,7 +94,7 @@ module spectral_solver #(
     .saturations(clipped_c)
   );
 
-  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(1), .MakhoulOut(0)) u_to_rows (
+  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
     .clk, .rst, .en, .in_start(column_out_start), .in_frame_start(column_out_frame_start), .in_data(column_out),
     .out_start(depth_row_start), .out_frame_start(depth_row_frame_start), .out_data(depth_row_data)
   );

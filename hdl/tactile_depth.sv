@@ -34,6 +34,7 @@ module tactile_depth
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
   parameter int DivideDrop       = 23,
+  parameter int StoreStyle       = 1,    // of a frame store, hdl/ram.sv
   parameter int StoreDrop        = 3,    // from here: tridiagonal
   parameter int TableWords       = 1379,
   parameter int SettledWidth     = 7,
@@ -41,6 +42,7 @@ module tactile_depth
   parameter int MomentDrop       = 7,
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
+  parameter int WordsPerRow      = 1,    // of the frame store's memory
   parameter int FrameLatency     = 17204,  // last pixel out of the guard to first depth out of the solver
   parameter int FlatField        = 0,    // 1: colours relative to a reference frame
   parameter int Quadratic        = 0,    // gradient model: 0 table, 1 quadratics, which need FlatField
@@ -262,7 +264,7 @@ module tactile_depth
       .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut), .StoreDrop(StoreDrop),
       .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
       .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
-      .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
+      .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .StoreStyle(StoreStyle), .WordsPerRow(WordsPerRow)
     ) u_solver (
       .clk, .rst, .en, .in_valid(divergence_valid), .in_frame_start(divergence_frame_start),
       .in_data(divergence_data),
@@ -273,7 +275,7 @@ module tactile_depth
       .Size(Size), .InWidth(GradientWidth + 2), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
       .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
       .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
-      .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann)
+      .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann), .StoreStyle(StoreStyle)
     ) u_solver (
       .clk, .rst, .en, .in_valid(divergence_valid), .in_frame_start(divergence_frame_start),
       .in_data(divergence_data),

@@ -16,7 +16,8 @@ module transpose #(
   parameter int Width      = 24,
   parameter int Size       = 128,
   parameter int MakhoulIn  = 0,
-  parameter int MakhoulOut = 1
+  parameter int MakhoulOut = 1,
+  parameter int Style      = 1   // of the memory, hdl/ram.sv
 ) (
   input  logic             clk,
   input  logic             rst,
@@ -30,7 +31,6 @@ module transpose #(
 );
 
   localparam int IndexWidth = $clog2(Size);
-  localparam int UltraBits = 16 * 36864;  // from here a frame store is cheaper in ultra than in block RAM
 
   function automatic logic [IndexWidth-1:0] makhoul(input logic [IndexWidth-1:0] p);
     makhoul = {p[IndexWidth-2:0] ^ {(IndexWidth - 1){p[IndexWidth-1]}}, p[IndexWidth-1]};
@@ -60,7 +60,7 @@ module transpose #(
   ram #(
     .Width(Width),
     .Depth(Size * Size),
-    .Style(Size * Size * Width >= UltraBits ? 2 : 1)
+    .Style(Style)
   ) u_ram (
     .clk,
     .write_en     (en & write_active),

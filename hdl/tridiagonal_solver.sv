@@ -26,7 +26,9 @@ module tridiagonal_solver #(
   parameter int LastShiftWidth = 1,
   parameter int MomentDrop     = 7,
   parameter int MeanReciprocal = 65536,
-  parameter int MeanDrop       = 16
+  parameter int MeanDrop       = 16,
+  parameter int StoreStyle     = 1,    // of the frame store, hdl/ram.sv
+  parameter int WordsPerRow    = 1     // of its memory
 ) (
   input  logic                        clk,
   input  logic                        rst,
@@ -77,7 +79,9 @@ module tridiagonal_solver #(
     .saturations(clipped_down)
   );
 
-  frame_stack #(.Width(DataWidth), .Rows(Rows), .Size(Size)) u_stack (
+  frame_stack #(
+    .Width(DataWidth), .Rows(Rows), .Size(Size), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
+  ) u_stack (
     .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_data(eliminated),
     .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_data(stacked)
   );

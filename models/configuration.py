@@ -30,6 +30,10 @@ DEEPEST = 0.67  # depth that slopes up to 1 can reach over N pixels (L1 norm of 
 COARSEST_LSB = 1 / 32  # of a mode's word, as a share of the deepest depth: with less a word carries no shape
 SMALLEST_DEPTH_RANGE_PX = 1 / 16
 
+# Styles of hdl/ram.sv for a frame store. One as large as two UltraRAMs is cheaper in those than in block RAM.
+BLOCK, ULTRA = 1, 2
+ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
+
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
 DATA_WIDTHS = (12, 32)
@@ -214,6 +218,19 @@ class Configuration:
         """Rows and columns of the grid of gains; a last row of blocks that the frame cuts has none of its own."""
         return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
+    @property
+    def store_style(self) -> int:
+        """Of the memory of a frame store."""
+        return ULTRA if self.rows * self.columns * self.data_width >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
+
+    @property
+    def words_per_row(self) -> int:
+        """Stored words side by side in a row of the tridiagonal solver's frame store: as many as an UltraRAM's takes.
+
+        A block RAM's rows are as wide as the words. The spectral solver reads words of one column in turn.
+        """
+        return ULTRA_WIDTH // self.data_width if self.store_style == ULTRA and self.solver == "tridiagonal" else 1
+
     # Formats, in the order of the stream. Slopes, divergence and forward modes count in `unit_px`; everything behind
     # the solve along the columns counts in units of `depth_limit_px`.
 
@@ -301,6 +318,7 @@ class Configuration:
             "ColumnInverseOut": self.column_inverse.fraction - self.depth_modes.fraction,
             "RowInverseIn": self.depth_modes.fraction - self.row_inverse.fraction,
             "RowInverseOut": self.row_inverse.fraction - self.depth.fraction,
+            "StoreStyle": self.store_style,
         }
 
     # Gain.

@@ -141,7 +141,7 @@ def _spectral(p: dict[str, int]) -> Parts:
 
 def _tridiagonal(p: dict[str, int]) -> Parts:
     size, rows, data, width, coefficient = p["Size"], p["Rows"], p["DataWidth"], p["Width"], p["CoeffWidth"]
-    words = p["TableWords"]
+    words, packed = p["TableWords"], p["WordsPerRow"]
     one_way = (  # down or up
         [Multiplier(width, coefficient)],
         [
@@ -156,7 +156,7 @@ def _tridiagonal(p: dict[str, int]) -> Parts:
     return _joined(
         _forward(p),
         one_way,
-        (mean, [Memory("frame stores", data, rows * size)]),
+        (mean, [Memory("frame stores", data * packed, rows * -(-size // packed))]),
         one_way,
         _inverse(p, width),
     )

@@ -39,6 +39,8 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
         "MomentDrop": config.moment_drop,
         "MeanReciprocal": reciprocal,
         "MeanDrop": mean_drop - config.moment_drop,
+        "StoreStyle": config.store_style,
+        "WordsPerRow": config.words_per_row,
     }
 
 

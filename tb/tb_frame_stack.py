@@ -17,7 +17,7 @@ async def check(dut, frames=FRAMES, **behaviour):
     def model(x, monitor):
         return frame_stack(x.reshape(-1, rows, size))
 
-    words = places(frames * rows * size, width)
+    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a place stays
     source, sink = await check_bursts(
         dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=rows, **behaviour
     )
@@ -38,6 +38,14 @@ async def frames(dut, gap, pause):
 async def reset_in_mid_frame(dut, halves):
     size, rows = parameters(dut, "Size", "Rows")
     await check(dut, frames=2, interrupts=[halves * size * rows // 2 + size // 2])
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def resets_as_a_frame_begins_to_leave(dut):
+    """With the last row's first words, and around its end: each register that says so is set in one of these clocks."""
+    size, rows = parameters(dut, "Size", "Rows")
+    clocks = (1, 2, 3, size, size + 1, size + 2)
+    await check(dut, frames=2, interrupts=[(rows - 1) * size + clock for clock in clocks])
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")

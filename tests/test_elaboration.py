@@ -13,7 +13,7 @@ INVALID = {
     "row_reorder": ["Size=12", "Size=2"],
     "transpose": ["Size=12", "Size=2"],
     "mode_pairs": ["Size=12", "Size=2"],
-    "frame_stack": ["Size=12", "Rows=1"],
+    "frame_stack": ["Size=1", "Rows=1", "WordsPerRow=0"],
     "frame_guard": ["Rows=1", "Columns=1"],
     "frame_output": ["Columns=12", "Rows=1"],
     "divergence": ["Columns=1"],

@@ -8,7 +8,7 @@ import pytest
 from conftest import REGRESS
 
 from models.calibration import synthetic
-from models.configuration import COLUMNS, Configuration
+from models.configuration import COLUMNS, ULTRA, Configuration
 from models.scenes import render
 from models.tactile_depth import tactile_depth, top_parameters, write_roms
 
@@ -20,6 +20,7 @@ SLOW = f"{FORMATS}|one_frame|words_before|resets"
 # Of the other: every test, but of those that are repeated for each disturbance one.
 REPEATED = "gaps_and_stalls|random_streams|side_by_side|every_fault_in_a_row/.*random"
 ONCE = f"^(?!.*({REPEATED}))|gaps_and_stalls/offers=random/accepts=4"
+PACKED = "back_to_back"
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=4"
 
 
@@ -56,6 +57,20 @@ def test_rtl(run_tb, simulator, choices, tests):
         top_parameters(config),
         roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         environment={"COCOTB_TEST_FILTER": tests, "CONFIGURATION": json.dumps(choices)},
+    )
+
+
+@pytest.mark.parametrize("simulator", ["icarus"], indirect=True)
+def test_words_side_by_side_in_the_frame_store(run_tb, simulator):
+    """As on grids too large for the tests of each beat."""
+    choices = {"columns": 32, "solver": "tridiagonal", "bits_per_channel": 2}
+    config = Configuration(**choices)
+    run_tb(
+        "tactile_depth",
+        None,
+        top_parameters(config) | {"WordsPerRow": 3, "StoreStyle": ULTRA},
+        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+        environment={"COCOTB_TEST_FILTER": PACKED, "CONFIGURATION": json.dumps(choices)},
     )
 
 

@@ -9,7 +9,7 @@ from test_spectral_solver import PEAKS, SOLVER_SOURCES
 from test_thomas_table import THOMAS_SOURCES
 
 from models import reference, spectral_solver
-from models.configuration import Configuration
+from models.configuration import ULTRA, Configuration
 from models.divergence import divergence
 from models.rom_files import write_solver
 from models.round_saturate import Monitor
@@ -21,23 +21,25 @@ SOURCES = sorted(
     | {"forward_elimination.sv", "back_substitution.sv"}
 )
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/configuration.py
 
 
 @pytest.mark.structures(
-    "choices",
-    both=[(CHOICES,)],
+    "choices store",
+    both=[(CHOICES, {})],
     icarus=[
-        (CHOICES | {"rows": 21, "neumann": True},),
-        (CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10},),
-        (CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3},),
+        (CHOICES | {"rows": 21, "neumann": True}, {}),
+        (CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}),
+        (CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
+        (CHOICES | {"columns": 32, "rows": 11}, PACKED),
     ],
 )
-def test_rtl(run_tb, choices):
+def test_rtl(run_tb, choices, store):
     config = Configuration(**choices)
     run_tb(
         "tridiagonal_solver",
         SOURCES,
-        solver_parameters(config),
+        solver_parameters(config) | store,
         roms=lambda folder: write_solver(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},
     )
