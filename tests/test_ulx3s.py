@@ -15,7 +15,7 @@ CLOCKS_A_BIT = 4
 
 
 def test_rtl(run_tb, simulator):
-    tests = "frames" if simulator == "icarus" and not REGRESS else ""  # 20 times slower there
+    tests = "wakes|frames" if simulator == "icarus" and not REGRESS else ""  # 20 times slower there
     choices = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
     config = Configuration(**choices)
     given = {"ClockMhz": CLOCK_MHZ, "Baud": CLOCK_MHZ * 10**6 // CLOCKS_A_BIT, "Threshold": threshold(config)}
