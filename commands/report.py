@@ -3,7 +3,8 @@
 
 Takes OUT=folder. What it shows it measures: the bench's contacts through the RTL of both solvers, a thousand frames and
 more on end; the sweep, which goes on where it stopped; the extremes. What `make reflex` and `make baselines` left in
-build/ it takes, and runs them when they have not been. Each figure names the command that remakes it.
+build/ it takes, and runs them when they have not been; of `make synth`, `make fpga` and `make asic` only what they left.
+Each figure names the command that remakes it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands import baselines, extremes, reflex, sim, sweep
+from commands import baselines, extremes, reflex, sim, sweep, synth
 from commands.tune import CLOCK_MHZ
 from models import reference
 from models.calibration import synthetic
@@ -427,6 +428,48 @@ def baselines_figure(document: dict[str, Any]) -> Figure:
     return Figure("baselines", "The solve in software", text, "make baselines", content)
 
 
+def latest(flow: str, file: str) -> dict[str, Any] | None:
+    """What a flow left last in build/<flow>/, of any configuration."""
+    found = sorted((ROOT / "build" / flow).glob(f"*/{file}"), key=lambda path: path.stat().st_mtime)
+    return json.loads(found[-1].read_text()) if found else None
+
+
+def synth_figure(document: dict[str, Any]) -> Figure:
+    head, *rows = synth.grid_rows(document)
+    text = "On an XCZU7EV, as Yosys maps it, beside the published design. " + " ".join(synth.NOTES)
+    return Figure("synth", "On an FPGA: what it takes", text, document["command"], table(head, rows))
+
+
+def fpga_figure(document: dict[str, Any]) -> Figure:
+    rows = [
+        *((f"clock, seed {seed}", f"{mhz:.1f} MHz") for seed, mhz in document["fmax_mhz_by_seed"].items()),
+        *((name, f"{use['used']:,} of {use['available']:,}") for name, use in document["utilization"].items()),
+    ]
+    text = (
+        f"{' x '.join(map(str, document['grid']))}, {document['solver']}, placed and routed: "
+        f"{document['fmax_mhz']:.1f} MHz is the median of {len(document['fmax_mhz_by_seed'])}; "
+        f"{document['clock_mhz']:g} MHz is the board's clock."
+    )
+    return Figure("fpga", "On a board: the ULX3S", text, document["command"], table(("", ""), rows))
+
+
+def asic_figure(document: dict[str, Any]) -> Figure:
+    from commands import asic  # needs what only make asic installs
+
+    return asic.figure(document)
+
+
+def hardware_figures() -> list[Figure]:
+    """Of each flow what it left last; they take minutes, so a page does not run them."""
+    flows: list[tuple[str, str, Callable[[dict[str, Any]], Figure]]] = [
+        ("synth", "resources.json", synth_figure),
+        ("fpga", "fpga.json", fpga_figure),
+        ("asic", "asic.json", asic_figure),
+    ]
+    found = [(figure, latest(flow, file)) for flow, file, figure in flows]
+    return [figure(document) for figure, document in found if document is not None]
+
+
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; color: #111; }
 img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.85rem; margin: 1rem 0; }
@@ -483,6 +526,7 @@ def build(folder: Path) -> Path:
         word_figure(rows, folder),
         front_figure(rows, folder),
         *extremes_figures(folder / "extremes"),
+        *hardware_figures(),
         reflex_figure(done[-2]),
         baselines_figure(done[-1]),
     ]
