@@ -3,7 +3,7 @@
 
 Takes OUT=folder. What it shows it measures: the bench's contacts through the RTL of both solvers, a thousand frames and
 more on end; the sweep, which goes on where it stopped; the extremes. What `make reflex` and `make baselines` left in
-build/ it takes, and runs them when they have not been; of `make synth`, `make fpga` and `make asic` only what they left.
+build/ it takes, and runs them when they have not been; of `make synth`, `make fpga` and `make asic` what is there.
 Each figure names the command that remakes it.
 """
 
