@@ -51,8 +51,8 @@ module sdf_butterfly #(
     assign turn = &position[QuarterBit+:2];
     assign minus_re = turn & (Inverse != 0);
     assign minus_im = turn & (Inverse == 0);
-    assign b_re = (turn ? in_im : in_re) ^ {Width{minus_re}};
-    assign b_im = (turn ? in_re : in_im) ^ {Width{minus_im}};
+    assign b_re = $unsigned(turn ? in_im : in_re) ^ {Width{minus_re}};
+    assign b_im = $unsigned(turn ? in_re : in_im) ^ {Width{minus_im}};
   end else begin : g_straight
     assign minus_re = 1'b0;
     assign minus_im = 1'b0;

@@ -49,7 +49,8 @@ module thomas_table #(
       position_q3 <= position_q2;
       last_q3 <= row_q2 == RowWidth'(Rows - 1);
       last_q4 <= last_q3;
-      address <= base + (CompareWidth'(row_q2) < CompareWidth'(settled) ? AddressWidth'(row_q2) : AddressWidth'(settled));
+      address <= base
+          + (CompareWidth'(row_q2) < CompareWidth'(settled) ? AddressWidth'(row_q2) : AddressWidth'(settled));
     end
   end
 
