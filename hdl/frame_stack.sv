@@ -38,7 +38,6 @@ module frame_stack #(
   localparam int Top = Depth - Burst;  // the first memory row of the uppermost burst
   localparam int LeftWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
   localparam int Kept = WordsPerRow > 2 ? WordsPerRow - 1 : 1;
-  localparam logic [31:0] WordBits = 32'(Width);
   localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Size - 1);
   // Words of a memory row that are still to come: of a burst's first, and of any other.
   localparam logic [LeftWidth-1:0] FirstLeft = LeftWidth'((Size - 1) % WordsPerRow);
@@ -46,6 +45,15 @@ module frame_stack #(
 
   function automatic logic [LeftWidth-1:0] left_after(input logic [LeftWidth-1:0] left);
     left_after = left == '0 ? FullLeft : left - LeftWidth'(1);
+  endfunction
+
+  function automatic logic [Width-1:0] word_of(
+    input logic [WordsPerRow*Width-1:0] words, input logic [LeftWidth-1:0] left
+  );
+    word_of = words[Width-1:0];
+    for (int word = 1; word < WordsPerRow; word++) begin
+      if (left == LeftWidth'(word)) word_of = words[word*Width+:Width];
+    end
   endfunction
 
   // The way of the reader, and of the writer until its last row begins: from the uppermost burst down, or up from 0.
@@ -119,7 +127,7 @@ module frame_stack #(
       read_left_q2 <= read_left;
       out_start <= start_q;
       out_frame_start <= frame_start_q;
-      out_data <= read_past_q2 ? kept[Width-1:0] : Width'(read_data >> (WordBits * 32'(read_left_q2)));
+      out_data <= read_past_q2 ? kept[Width-1:0] : word_of(read_data, read_left_q2);
     end
     if (rst) begin
       read_more <= 1'b0;
