@@ -112,7 +112,10 @@ CORES = {
         simulators=("verilator",),
         bar=WHOLE,
         tests=TOP_TESTS,
-        inside={"threshold": "logic signed [31:0]", "hold_contact": "logic"},
+        inside={
+            **dict.fromkeys(("threshold", "off_threshold"), "logic signed [31:0]"),
+            **{"minimum_area": "logic [31:0]", "debounce": "logic [7:0]", "hold_contact": "logic"},
+        },
     ),
 }
 # Nothing in them to mutate.
