@@ -29,7 +29,7 @@ sim: $(STAMP)
 	@$(PY) -m commands.sim $(foreach v,$(SIM_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
 
 # The whole suite: lint, models, every core on every simulator.
-test: lint
+test: $(HARDWARE) lint
 	@$(PY) -m pytest -n auto --dist worksteal
 
 # What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
