@@ -61,8 +61,8 @@ class Proof:
         Of mode prove.
     roms : callable
         Writes the files that $readmemh reads into the folder given.
-    free : str
-        A wire of the core that takes any values instead of its own.
+    free : tuple of str
+        Wires of the core that take any values instead of their own.
     """
 
     core: str
@@ -72,7 +72,7 @@ class Proof:
     depth: int = 20
     engine: str = "abc pdr"
     roms: Callable[[Path], None] | None = None
-    free: str = ""
+    free: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -267,15 +267,24 @@ PROOFS: tuple[Proof, ...] = (
         )
         for polynomial in (0, 4, 2)
     ),
+    Proof(
+        "flat_field",
+        "beside a pixel's gains, 9 enabled clocks after it came, stand its own colours, valid and place",
+        f"every clock reads a node; {WORD_FREE}",
+        {"Meets": 1},
+        depth=45,
+        roms=gain_rom(2),
+        free=("gains",),
+    ),
     *(
         Proof(
             "flat_field",
-            "a colour times its gain, whatever that is, rounded, saturated; dark pixels held and counted; latency 12",
+            "whatever stands there: a colour times its gain, rounded, saturated; dark pixels held and counted; 3 clocks",
             f"products are exact at any width; {ROUNDING}",
-            {"GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
+            {"Meets": 0, "GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
             depth=45,
             roms=gain_rom(2),
-            free="gains",
+            free=("gains", "gain_valid", "gain_place", "colours", "dim"),
         )
         for offset, width, flat in ((0, 1, 1), (2, 2, 0))
     ),
@@ -283,9 +292,11 @@ PROOFS: tuple[Proof, ...] = (
         Proof(
             "reference_capture",
             claim,
-            "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+            "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width"
+            + (", whatever the divider writes behind them" if sums else ""),
             {"Sums": sums},
             depth=60,
+            free=("word",) if sums else (),
         )
         for sums, claim in (
             (
@@ -303,7 +314,7 @@ PROOFS: tuple[Proof, ...] = (
             {"Along": along, "Columns": 4},
             depth=45,
             roms=gain_rom(4),
-            free="sums" if along else "",
+            free=("sums",) if along else (),
         )
         for along, claim in (
             (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
@@ -552,11 +563,9 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         "[script]",
         f"read_slang --threads 1 --top {bench} {parameters} {' '.join(file.name for file in files)}",
         f"prep -flatten -top {bench}",
-        *(
-            [f"select -assert-count 1 w:dut.{proof.free}", f"cutpoint w:dut.{proof.free}", "opt_clean"]
-            if proof.free
-            else []
-        ),
+        *(f"select -assert-count 1 w:dut.{wire}" for wire in proof.free),
+        *(f"cutpoint w:dut.{wire}" for wire in proof.free),
+        *(["opt_clean"] if proof.free else []),
         f"select -assert-min 1 t:$check r:FLAVOR={flavor} %i",
         "select -clear",
         "[files]",

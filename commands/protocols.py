@@ -157,24 +157,16 @@ def depth_gate(_: Mapping[str, int]) -> Protocol:
 
 
 def gradient_lookup(_: Mapping[str, int]) -> Protocol:
-    """Nothing is written while a change-over is due, or from a read to its words, 3 clocks later; frames have more than
-    one pixel; a bank that is asked for stays so until a frame or a reset has taken it."""
-    begins = "en & in_valid & in_place[0] & in_place[1]"
-    registers = f"""
-  reg [2:0] asked = 3'd0;
-  reg begun = 1'b0, reads = 1'b0;
+    """Nothing is written while a change-over is due, or with a read; an entry stands 2 clocks after it was asked for."""
+    registers = """
+  reg asked = 1'b0, reads = 1'b0;
   always @(posedge clk) begin
-    asked <= rst ? 3'd0 : {{asked[1:0], table_read}};
-    begun <= {begins};
-    if (rst | table_read) reads <= 1'b0;
-    else if (asked[1]) reads <= 1'b1;
+    asked <= ~rst & table_read;
+    if (rst) reads <= 1'b0;
+    else if (asked) reads <= 1'b1;
   end
 """
-    assume = (
-        "~table_write | ~rst & table_bank == table_in_use & asked == 3'd0 & ~table_read",
-        "~table_read | ~rst & asked == 3'd0",
-        f"~(begun & {begins})",
-    )
+    assume = ("~table_write | ~rst & table_bank == table_in_use & ~table_read", "~table_read | ~rst")
     word, read = "live & ~rst & en & out_valid", "live & reads"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
     compare |= {"table_read_gx": read, "table_read_gy": read, "table_in_use": "live"}

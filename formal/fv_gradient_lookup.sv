@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_gradient_lookup: the slopes of a pixel are those that stand at the index of its colour in the bank that its frame
-// began with, from power-up or as last written; valid and place travel with it, 2 enabled clocks; while en is low all
-// outputs hold. An entry asked for stands on the read port 3 clocks later and until the next: that of the bank not in use.
+// began with, from power-up or as last written; valid and place travel with it, 3 enabled clocks; while en is low all
+// outputs hold. An entry asked for stands on the read port 2 clocks later and until the next: that of the bank not in use.
 //
-// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or from a read to
-// its words; reads are 4 clocks apart; the first pixels of two frames do not follow each other in successive clocks.
+// Assumed, as axil_registers has it: nothing is written while a change-over is due, or with a read.
 
 module fv_gradient_lookup #(
   parameter int Width          = 1,
@@ -55,15 +54,14 @@ module fv_gradient_lookup #(
   logic [2:0] valid;           // of the pixels 1, 2 and 3 enabled clocks ago
   logic [11:0] place;
   logic [6*Width-1:0] slopes;
-  logic held, begun;
+  logic held;
   logic [4+2*Width:0] out_q;
-  logic [2:0] asked;           // a read 1, 2, 3 clocks ago
+  logic asked;                 // a read a clock ago
   logic read_known, changed_over;
   logic [2*Width-1:0] asked_word, read_word;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
-    begun <= begins & ~rst;
     out_q <= {out_valid, out_place, out_gx, out_gy};
     if (rst || begins) in_use <= table_bank;
     if (table_write) written[!in_use] <= 1'b1;
@@ -74,26 +72,22 @@ module fv_gradient_lookup #(
       place <= {place[7:0], in_place};
       slopes <= {slopes[4*Width-1:0], used ? bank_1[index] : bank_0[index]};
     end
-    asked <= {asked[1:0], table_read};
-    if (table_read) begin
-      asked_word <= used ? bank_0[table_index] : bank_1[table_index];
-      read_known <= 1'b0;
-    end
-    if (asked[1]) begin
+    asked <= table_read;
+    if (table_read) asked_word <= in_use ? bank_0[table_index] : bank_1[table_index];
+    if (asked) begin
       read_known <= 1'b1;
       read_word <= asked_word;
     end
     changed_over <= ~rst & (changed_over | (begins & table_bank != in_use));
     if (rst) begin
       valid <= '0;
-      asked <= '0;
+      asked <= 1'b0;
       read_known <= 1'b0;
     end
   end
   always_comb begin
-    if (table_write) assume (table_bank == in_use && !rst && asked == '0 && !table_read);
-    if (table_read) assume (asked == '0 && !rst);
-    if (begun) assume (!begins);
+    if (table_write) assume (table_bank == in_use && !rst && !table_read);
+    if (table_read) assume (!rst);
   end
 
   always_comb begin
@@ -103,10 +97,10 @@ module fv_gradient_lookup #(
       if (out_valid) place_travels: assert (out_place == place[11:8]);
       if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[4*Width+:2*Width]);
       if (held) holds: assert ({out_valid, out_place, out_gx, out_gy} == out_q);
-      if (read_known && !asked[0] && !asked[1]) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
+      if (read_known) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
       from_power_up: cover (out_valid && written == '0);
       from_write: cover (out_valid && changed_over && in_valid && valid == 3'b111 && held);
-      read_in_change: cover (asked[2] && read_known && written == 2'b11 && changed_over);
+      read_in_change: cover (asked && read_known && begins && table_bank != in_use && written == 2'b11 && changed_over);
     end
   end
 

@@ -7,8 +7,9 @@
 // z positive into the gel. Latency: 3 cycles. The table is held in two banks, both with the calibration at power-up.
 // A frame uses the bank that table_bank names when its first pixel is taken, or in reset; table_in_use says which. The
 // other is written by table_write, whenever no change-over is due (table_bank is table_in_use), and read by table_read:
-// the entry stands on table_read_* from 3 clocks later until the next, en or not. No table_write from a table_read
-// until then. Bit-accurate model: models/gradient_lookup.py, which also writes the table.
+// the entry stands on table_read_* from 2 clocks later until the next, en or not. Asked for in the clock of a
+// change-over it is of the bank that comes into use. Bit-accurate model: models/gradient_lookup.py, which also writes
+// the table.
 
 module gradient_lookup #(
   parameter int Width          = 21,
@@ -48,23 +49,16 @@ module gradient_lookup #(
     };
   end
 
-  // A pixel stays on the output of its bank until en, and the clock that changes over has en: the bank left is free
-  // from the next clock on. In that clock itself the other is still being read, so a table_read waits one clock.
+  // The bank changes as the first pixel of a frame gets here, so it is that of the pixel that is about to be read, and
+  // nothing that comes in with the pixel reaches an address.
   logic bank = 1'b0;  // no reset: it says where the table is, which no reset touches
-  logic take, starts, used, changes, late, fetch, fetched, fetched_bank;
-  logic [IndexWidth-1:0] late_index, fetch_index;
-  assign take = en & in_valid;
-  assign starts = take & in_place[0] & in_place[1];
-  assign used = starts ? table_bank : bank;  // by the pixel of this clock
-  assign changes = used != bank;
-  assign fetch = (table_read & ~changes) | late;
-  assign fetch_index = late ? late_index : table_index;
+  logic valid_q, valid_q2;
+  logic [3:0] place_q, place_q2;
+  logic [IndexWidth-1:0] index_q;
   assign table_in_use = bank;
 
-  logic [1:0][2*Width-1:0] words, words_q;
+  logic [1:0][2*Width-1:0] words;
   for (genvar b = 0; b < 2; b++) begin : g_bank
-    logic pixel;
-    assign pixel = take & (used == 1'(b));
     ram #(
       .Width(2 * Width),
       .Depth(1 << IndexWidth),
@@ -75,37 +69,39 @@ module gradient_lookup #(
       .write_en     (table_write & (bank != 1'(b))),
       .write_address(table_index),
       .write_data   ({table_gy, table_gx}),
-      .read_en      (pixel | (fetch & (bank != 1'(b)))),
-      .read_address (pixel ? index : fetch_index),
+      .read_en      (bank == 1'(b) ? en & valid_q : table_read),
+      .read_address (bank == 1'(b) ? index_q : table_index),
       .read_data    (words[b])
     );
   end
 
-  logic valid_q, valid_q2, bank_q;
-  logic [3:0] place_q, place_q2;
+  // A memory's output is the pixel's for one clock: from then on its bank may be software's. Until en it is held here.
+  logic fresh, bank_read, fetched, fetched_bank;
+  logic [2*Width-1:0] slopes, held;
+  assign slopes = fresh ? words[bank_read] : held;
+
   always_ff @(posedge clk) begin
     if (en) begin
       valid_q <= in_valid;
       place_q <= in_place;
-      words_q <= words;
-      bank_q <= bank;
+      index_q <= index;
       valid_q2 <= valid_q;
       place_q2 <= place_q;
+      bank_read <= bank;
       out_valid <= valid_q2;
       out_place <= place_q2;
-      {out_gy, out_gx} <= words_q[bank_q];
+      {out_gy, out_gx} <= slopes;
     end
-    if (rst || starts) bank <= table_bank;
-    late <= table_read & changes;
-    late_index <= table_index;
-    fetched <= fetch;
+    if (rst || (en && in_valid && in_place[0] && in_place[1])) bank <= table_bank;
+    fresh <= en;
+    held <= slopes;
+    fetched <= table_read;
     fetched_bank <= ~bank;
     if (fetched) {table_read_gy, table_read_gx} <= words[fetched_bank];
     if (rst) begin
       valid_q <= 1'b0;
       valid_q2 <= 1'b0;
       out_valid <= 1'b0;
-      late <= 1'b0;
       fetched <= 1'b0;
     end
   end

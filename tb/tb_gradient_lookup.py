@@ -16,7 +16,7 @@ from models.latency import GRADIENT_LOOKUP
 PIXEL = ["pixel", "place"]
 SLOPES = ["gx", "gy", "place"]
 FIRST = 0b0011  # place of the first pixel: in the first row and the first column
-READ_CLOCKS = 3  # from table_read to its words
+READ_CLOCKS = 2  # from table_read to its words
 
 
 def every_colour(bits, random):
@@ -73,6 +73,8 @@ class Lookup:
         while True:
             await RisingEdge(dut.clk)
             assert int(dut.table_in_use.value) == self.banks.in_use
+            if dut.table_read.value:  # in the clock of a change-over: of the bank that comes into use
+                self.to_read = self.banks.spare[int(dut.table_index.value)].tolist()
             self.banks.wanted = int(dut.table_bank.value)
             if dut.table_write.value:
                 word = (dut.table_gx.value.to_signed(), dut.table_gy.value.to_signed())
@@ -86,8 +88,6 @@ class Lookup:
                     self.tables.add(self.banks.in_use)
                 pixel = colours_of(int(dut.in_pixel.value))
                 self.expected.append(gradient_lookup(pixel, table, self.bits).copy())
-            if dut.table_read.value:  # in the clock of a change-over: of the bank that is left
-                self.to_read = self.banks.spare[int(dut.table_index.value)].tolist()
 
     # Software.
 
