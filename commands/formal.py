@@ -279,7 +279,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "flat_field",
-            "whatever stands there: a colour times its gain, rounded, saturated; dark pixels held and counted; 3 clocks",
+            "whatever stands there: a colour times its gain, rounded, saturated; dark pixels held, counted; 3 clocks",
             f"products are exact at any width; {ROUNDING}",
             {"Meets": 0, "GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
             depth=45,

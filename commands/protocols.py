@@ -157,7 +157,7 @@ def depth_gate(_: Mapping[str, int]) -> Protocol:
 
 
 def gradient_lookup(_: Mapping[str, int]) -> Protocol:
-    """Nothing is written while a change-over is due, or with a read; an entry stands 2 clocks after it was asked for."""
+    """Nothing is written while a change-over is due, or with a read; an entry stands 2 clocks after it is asked for."""
     registers = """
   reg asked = 1'b0, reads = 1'b0;
   always @(posedge clk) begin

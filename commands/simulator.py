@@ -7,6 +7,7 @@ import contextlib
 import importlib.metadata
 import importlib.util
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -14,6 +15,7 @@ import time
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from xml.etree import ElementTree
 
 from cocotb_tools.runner import Runner, Verilator, get_results, get_runner
 
@@ -25,6 +27,9 @@ SIMULATORS = ("verilator", "icarus")
 
 # HDL_COVERAGE=1, set by commands/coverage.py: Verilator counts what a run reaches, in builds and data of their own
 # (COVERAGE alone is cocotb's, for Python).
+# cocotb has pytest rewrite every module that a simulation imports, numpy's too, so that a failed assertion shows its
+# values: seconds a run, where most runs take less. With this variable set to *.py it does.
+NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
 COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
 BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
 COVERAGE_ARGUMENTS = (
@@ -151,6 +156,18 @@ def versions() -> list[str]:
     return [f"{name} {importlib.metadata.version(name)}" for name in ("cocotb", "verilator")]
 
 
+def unmatched(pattern: str, names: Sequence[str]) -> list[str]:
+    """Alternatives of a filter of tests, as COCOTB_TEST_FILTER has it, that match none of these names."""
+    parts, depth = [""], 0
+    for letter in pattern:
+        depth += (letter == "(") - (letter == ")")
+        if letter == "|" and not depth:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [part for part in parts if not any(re.search(part, name) for name in names)]
+
+
 def run(
     toplevel: str,
     test_module: str,
@@ -172,6 +189,11 @@ def run(
     Returns
     -------
     tests run, tests failed
+
+    Raises
+    ------
+    ValueError
+        An alternative of COCOTB_TEST_FILTER in `environment` matches no test of those that were run.
     """
     check(simulator)
     for path in (str(ROOT), str(ROOT / "tb")):  # the runner hands sys.path to the simulator
@@ -196,9 +218,13 @@ def run(
             test_dir=run_folder,
             results_xml=str(results),
             seed=seed,
-            extra_env=dict(environment or {}),
+            extra_env=NO_REWRITING | dict(environment or {}),
             waves=waves,
             log_file=log,
             test_args=arguments,
         )
+    if pattern := (environment or {}).get("COCOTB_TEST_FILTER"):
+        cases = ElementTree.parse(results).getroot().iter("testcase")
+        if parts := unmatched(pattern, [f"{case.get('classname')}.{case.get('name')}" for case in cases]):
+            raise ValueError(f"of the filter of {test_module} these match no test: {', '.join(parts)}")
     return get_results(results)

@@ -20,7 +20,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
 
 from models.errors import InputError
 
@@ -175,6 +174,8 @@ def _cap_depth(edge_slope: float) -> float:
 
 def _cap(distance: np.ndarray, depth: float, radius: float) -> np.ndarray:
     """A round body pressed in: circular where it touches, then the gel leaving it smoothly and rising to its rest."""
+    from scipy.optimize import brentq  # here, for it takes longer than all else that a testbench imports
+
     edge_slope = brentq(lambda slope: _cap_depth(slope) - depth / radius, 0, 100) if depth > 0 else 0.0
     touching = edge_slope / math.hypot(1, edge_slope)  # lengths in radii, up to the last line
     sagitta = 1 - math.sqrt(1 - touching**2)

@@ -75,7 +75,7 @@ async def words(dut, offers, accepts):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(accepts=["none", "alternating", "long"], clocks=[1, 2, 5])
+@cocotb.parametrize(accepts=["none", "alternate", "long"], clocks=[1, 2, 5])
 async def resets(dut, accepts, clocks):
     """After a reset nothing of before is left, and nothing of after is lost."""
     source, taken, left = await start(dut, "none", accepts)

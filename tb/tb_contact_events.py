@@ -425,7 +425,7 @@ async def packets(dut, accepts):
     assert sorted(bench.sent, key=lambda words: words[1]) == bench.sent
     if accepts == "never":
         assert bench.lost == 58, "one is sent, one waits"
-    if accepts in ("none", "one_in_four"):
+    if accepts in ("none", "one_in_4"):
         assert not bench.lost
 
 
@@ -456,7 +456,7 @@ async def the_sink_takes_the_last_word(dut):
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut):
     """In any clock of a frame and after it: no trace is left, registers read zero."""
-    bench = Bench(dut, accepts="alternating")
+    bench = Bench(dut, accepts="alternate")
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     total = bench.pixels + bench.latency + 2 * WORDS + 3

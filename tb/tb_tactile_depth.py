@@ -693,7 +693,7 @@ async def silence(dut):
 
 
 @TEST
-@cocotb.parametrize(offers=["none", "random"], accepts=["none", "alternating", "random"])
+@cocotb.parametrize(offers=["none", "random"], accepts=["none", "alternate", "random"])
 async def random_streams(dut, offers, accepts):
     """Good and broken frames, stray words and pauses at random."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
@@ -873,7 +873,7 @@ async def resets(dut, clocks, phase):
     if phase == "filling":
         streams[1] = broken(streams[1], "row_short", pipeline.random.randrange(10), pipeline.columns)
     if phase in ("stalled", "full"):
-        pipeline.sink.stall(repeat(False) if phase == "full" else profile("alternating"))
+        pipeline.sink.stall(repeat(False) if phase == "full" else profile("alternate"))
     cocotb.start_soon(pipeline.send(*streams))
     await ClockCycles(dut.clk, wait)
     await pipeline.reset(clocks)

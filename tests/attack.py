@@ -31,12 +31,12 @@ STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where t
 # As PROFILES of tb/axis.py. `LONGEST`: clocks that each may wait at a time (at random: all but certainly).
 PROFILES = {
     "none": bench.turns(0, 0),
-    "one_in_four": bench.turns(3, 1),
-    "alternating": bench.turns(1, 1),
+    "one_in_4": bench.turns(3, 1),
+    "alternate": bench.turns(1, 1),
     "long": bench.turns(150, 200),
     "random": bench.chance(0.4),
 }
-LONGEST = {"none": 0, "one_in_four": 1, "alternating": 1, "long": 200, "random": 40}
+LONGEST = {"none": 0, "one_in_4": 1, "alternate": 1, "long": 200, "random": 40}
 
 
 @dataclass(frozen=True)
