@@ -91,7 +91,7 @@ def environment(core: str, folder: Path, protocol: Protocol) -> str:
     declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
     declared += [f"output wire looked_at_{name}" for name in outputs]
     declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
-    names = re.compile(r"\b(" + "|".join(inputs) + r")\b")
+    names = re.compile(r"(?<!')\b(" + "|".join(inputs) + r")\b")  # 1'b1 is no input b1
     holds = " & ".join(f"({expression})" for expression in protocol.assume) or ALWAYS
     holds = names.sub(r"any_\1", holds)
     lines = [f"module environment ({', '.join(declared)});", "  wire holds;"]

@@ -252,7 +252,7 @@ PROOFS: tuple[Proof, ...] = (
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
     Proof(
         "gradient_lookup",
-        "slopes of the pixel's own index in the bank its frame began with, latency 3; reads of the other bank",
+        "slopes of the pixel's own index in the bank its frame began with, latency 4; reads of the other bank",
         f"{WORD_FREE}; one bit a channel has the same index",
         roms=gradient_rom,
     ),
@@ -392,7 +392,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "twiddle_multiply",
-            "an arbitrary word meets the factor of its own position; latency 6",
+            "an arbitrary word meets the factor of its own position; latency 7",
             f"the address is the burst's position; {ROUNDING}",
             {"Size": 8, "Block": block, "RealOnly": real_only},
             depth=35,

@@ -157,16 +157,22 @@ def depth_gate(_: Mapping[str, int]) -> Protocol:
 
 
 def gradient_lookup(_: Mapping[str, int]) -> Protocol:
-    """Nothing is written while a change-over is due, or with a read; an entry stands 2 clocks after it is asked for."""
+    """Nothing is written while a change-over is due, or with a read; an entry stands 2 clocks after it is asked for.
+    Frames have more than one pixel."""
     registers = """
-  reg asked = 1'b0, reads = 1'b0;
+  reg asked = 1'b0, reads = 1'b0, begun = 1'b0;
   always @(posedge clk) begin
+    if (en) begun <= in_valid & in_place[0] & in_place[1];
     asked <= ~rst & table_read;
     if (rst) reads <= 1'b0;
     else if (asked) reads <= 1'b1;
   end
 """
-    assume = ("~table_write | ~rst & table_bank == table_in_use & ~table_read", "~table_read | ~rst")
+    assume = (
+        "~table_write | ~rst & table_bank == table_in_use & ~table_read",
+        "~table_read | ~rst",
+        "~(begun & in_valid & in_place[0] & in_place[1])",
+    )
     word, read = "live & ~rst & en & out_valid", "live & reads"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
     compare |= {"table_read_gx": read, "table_read_gy": read, "table_in_use": "live"}

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_gradient_lookup: the slopes of a pixel are those that stand at the index of its colour in the bank that its frame
-// began with, from power-up or as last written; valid and place travel with it, 3 enabled clocks; while en is low all
+// began with, from power-up or as last written; valid and place travel with it, 4 enabled clocks; while en is low all
 // outputs hold. An entry asked for stands on the read port 2 clocks later and until the next: that of the bank not in use.
 //
-// Assumed, as axil_registers has it: nothing is written while a change-over is due, or with a read.
+// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read; the
+// first pixels of two frames do not follow each other.
 
 module fv_gradient_lookup #(
   parameter int Width          = 1,
@@ -51,9 +52,10 @@ module fv_gradient_lookup #(
   assign begins = en && in_valid && (in_place & 4'b0011) == 4'b0011;
   assign used = begins ? table_bank : in_use;
 
-  logic [2:0] valid;           // of the pixels 1, 2 and 3 enabled clocks ago
-  logic [11:0] place;
-  logic [6*Width-1:0] slopes;
+  logic [3:0] valid;           // of the pixels 1 to 4 enabled clocks ago
+  logic [15:0] place;
+  logic [8*Width-1:0] slopes;
+  logic begun;                 // the last pixel taken was the first of a frame
   logic held;
   logic [4+2*Width:0] out_q;
   logic asked;                 // a read a clock ago
@@ -68,9 +70,10 @@ module fv_gradient_lookup #(
     if (table_write && in_use) bank_0[table_index] <= {table_gy, table_gx};
     if (table_write && !in_use) bank_1[table_index] <= {table_gy, table_gx};
     if (en) begin
-      valid <= {valid[1:0], in_valid};
-      place <= {place[7:0], in_place};
-      slopes <= {slopes[4*Width-1:0], used ? bank_1[index] : bank_0[index]};
+      valid <= {valid[2:0], in_valid};
+      begun <= begins;
+      place <= {place[11:0], in_place};
+      slopes <= {slopes[6*Width-1:0], used ? bank_1[index] : bank_0[index]};
     end
     asked <= table_read;
     if (table_read) asked_word <= in_use ? bank_0[table_index] : bank_1[table_index];
@@ -88,18 +91,19 @@ module fv_gradient_lookup #(
   always_comb begin
     if (table_write) assume (table_bank == in_use && !rst && !table_read);
     if (table_read) assume (!rst);
+    if (begun && in_valid) assume (!(&in_place[1:0]));
   end
 
   always_comb begin
     if (started) begin
       bank_shown: assert (table_in_use == in_use);
-      valid_travels: assert (out_valid == valid[2]);
-      if (out_valid) place_travels: assert (out_place == place[11:8]);
-      if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[4*Width+:2*Width]);
+      valid_travels: assert (out_valid == valid[3]);
+      if (out_valid) place_travels: assert (out_place == place[15:12]);
+      if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[6*Width+:2*Width]);
       if (held) holds: assert ({out_valid, out_place, out_gx, out_gy} == out_q);
       if (read_known) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
       from_power_up: cover (out_valid && written == '0);
-      from_write: cover (out_valid && changed_over && in_valid && valid == 3'b111 && held);
+      from_write: cover (out_valid && changed_over && in_valid && valid == 4'b1111 && held);
       read_in_change: cover (asked && read_known && begins && table_bank != in_use && written == 2'b11 && changed_over);
     end
   end

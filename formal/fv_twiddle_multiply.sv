@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_twiddle_multiply: an arbitrary word meets the ROM word of its own position modulo Block and leaves 6 enabled
+// fv_twiddle_multiply: an arbitrary word meets the ROM word of its own position modulo Block and leaves 7 enabled
 // clocks later; start and frame_start likewise. The words are 1 or j, so that what leaves is the factor itself, and
 // every field of it is seen; the exact product is proven of dot_product, rounding of round_saturate.
 
@@ -18,7 +18,7 @@ module fv_twiddle_multiply #(
   input logic pick
 );
 
-  localparam int Latency = 6;
+  localparam int Latency = 7;
   localparam int CoeffWidth = 5;
   localparam int OutWidth = 8;
 

@@ -4,7 +4,7 @@
 //   {gx, gy} = table[ top bits of R | top bits of G | top bits of B ],  BitsPerChannel of each
 //
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy,
-// z positive into the gel. Latency: 3 cycles. The table is held in two banks, both with the calibration at power-up.
+// z positive into the gel. Latency: 4 cycles. The table is held in two banks, both with the calibration at power-up.
 // A frame uses the bank that table_bank names when its first pixel is taken, or in reset; table_in_use says which. The
 // other is written by table_write, whenever no change-over is due (table_bank is table_in_use), and read by table_read:
 // the entry stands on table_read_* from 2 clocks later until the next, en or not. Asked for in the clock of a
@@ -52,8 +52,8 @@ module gradient_lookup #(
   // The bank changes as the first pixel of a frame gets here, so it is that of the pixel that is about to be read, and
   // nothing that comes in with the pixel reaches an address.
   logic bank = 1'b0;  // no reset: it says where the table is, which no reset touches
-  logic valid_q, valid_q2;
-  logic [3:0] place_q, place_q2;
+  logic valid_q, valid_q2, valid_q3;
+  logic [3:0] place_q, place_q2, place_q3;
   logic [IndexWidth-1:0] index_q;
   assign table_in_use = bank;
 
@@ -75,10 +75,11 @@ module gradient_lookup #(
     );
   end
 
-  // A memory's output is the pixel's for one clock: from then on its bank may be software's. Until en it is held here.
-  logic fresh, bank_read, fetched, fetched_bank;
-  logic [2*Width-1:0] slopes, held;
-  assign slopes = fresh ? words[bank_read] : held;
+  // What is read for the last pixel before a change-over stands there for a clock, then its bank may be software's, and
+  // the pipeline may not have moved: it is kept. No two pixels in a row are the last ones of their frames.
+  logic starts, changed, bank_read, left_q, bank_q, fetched, fetched_bank;
+  logic [1:0][2*Width-1:0] words_q, kept;
+  assign starts = en & in_valid & in_place[0] & in_place[1];
 
   always_ff @(posedge clk) begin
     if (en) begin
@@ -88,19 +89,25 @@ module gradient_lookup #(
       valid_q2 <= valid_q;
       place_q2 <= place_q;
       bank_read <= bank;
-      out_valid <= valid_q2;
-      out_place <= place_q2;
-      {out_gy, out_gx} <= slopes;
+      valid_q3 <= valid_q2;
+      place_q3 <= place_q2;
+      words_q <= words;
+      bank_q <= bank_read;
+      left_q <= bank_read != bank;
+      out_valid <= valid_q3;
+      out_place <= place_q3;
+      {out_gy, out_gx} <= left_q ? kept[bank_q] : words_q[bank_q];
     end
-    if (rst || (en && in_valid && in_place[0] && in_place[1])) bank <= table_bank;
-    fresh <= en;
-    held <= slopes;
+    if (rst || starts) bank <= table_bank;
+    changed <= starts;
+    if (changed) kept <= words;
     fetched <= table_read;
     fetched_bank <= ~bank;
     if (fetched) {table_read_gy, table_read_gx} <= words[fetched_bank];
     if (rst) begin
       valid_q <= 1'b0;
       valid_q2 <= 1'b0;
+      valid_q3 <= 1'b0;
       out_valid <= 1'b0;
       fetched <= 1'b0;
     end

@@ -43,7 +43,7 @@ module tactile_depth
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
   parameter int WordsPerRow      = 1,    // of the frame store's memory
-  parameter int FrameLatency     = 17204,  // last pixel out of the guard to first depth out of the solver
+  parameter int FrameLatency     = 17221,  // last pixel out of the guard to first depth out of the solver
   parameter int FlatField        = 0,    // 1: colours relative to a reference frame
   parameter int Quadratic        = 0,    // gradient model: 0 table, 1 quadratics, which need FlatField
   parameter int BlockLog2        = 3,    // from here: FlatField

@@ -3,7 +3,7 @@
 //
 //   out = sat( round( in w / 2^Drop ) ),  w = word (position mod Block) of the ROM
 //
-// Stream in: bursts of Size complex words. Stream out: the same. Latency: 6 cycles.
+// Stream in: bursts of Size complex words. Stream out: the same. Latency: 7 cycles.
 // A factor of 1 is 2^(CoeffWidth-1) - 1, so with Drop = CoeffWidth - 1 the gain is 1 - 2^(1 - CoeffWidth).
 // Bit-accurate model: models/twiddle_multiply.py, which also says what the ROMs hold.
 
@@ -32,7 +32,7 @@ module twiddle_multiply #(
 );
 
   localparam int SumWidth = InWidth + CoeffWidth + 1;
-  localparam int ToSum = 5;  // cycles to the exact product: ROM, dot product
+  localparam int ToSum = 6;  // cycles to the exact product: ROM, a register behind it, dot product
 
   localparam int PositionWidth = $clog2(Size);
   localparam int BlockWidth = $clog2(Block);
@@ -43,9 +43,10 @@ module twiddle_multiply #(
     .clk, .rst, .en, .start(in_start), .position, .active
   );
 
+  logic [3*CoeffWidth-1:0] factor;
   logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
   rom #(.Width(3 * CoeffWidth), .Depth(Block), .File(File)) u_rom (
-    .clk, .en, .address(position[BlockWidth-1:0]), .data({w_minus_im, w_im, w_re})
+    .clk, .en, .address(position[BlockWidth-1:0]), .data(factor)
   );
 
   if (PositionWidth > BlockWidth) begin : g_unused
@@ -53,12 +54,15 @@ module twiddle_multiply #(
     assign unused_position = ^position[PositionWidth-1:BlockWidth];
   end
 
-  logic signed [InWidth-1:0] re_q, im_q;
+  logic signed [InWidth-1:0] re_q, im_q, re_q2, im_q2;
   logic [ToSum-1:0] start_q, frame_start_q, active_q;
   always_ff @(posedge clk) begin
     if (en) begin
       re_q <= in_re;
       im_q <= in_im;
+      re_q2 <= re_q;
+      im_q2 <= im_q;
+      {w_minus_im, w_im, w_re} <= factor;
       start_q <= {start_q[ToSum-2:0], in_start};
       frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start};
       active_q <= {active_q[ToSum-2:0], active};
@@ -75,7 +79,7 @@ module twiddle_multiply #(
 
   logic signed [SumWidth-1:0] sum_re;
   dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
-    .clk, .en, .a0(re_q), .b0(w_re), .a1(im_q), .b1(w_minus_im), .sum(sum_re)
+    .clk, .en, .a0(re_q2), .b0(w_re), .a1(im_q2), .b1(w_minus_im), .sum(sum_re)
   );
   round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round_re (
     .in(sum_re), .out(rounded_re), .clipped(clipped[0])
@@ -84,7 +88,7 @@ module twiddle_multiply #(
   if (RealOnly == 0) begin : g_im
     logic signed [SumWidth-1:0] sum_im;
     dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_im (
-      .clk, .en, .a0(re_q), .b0(w_im), .a1(im_q), .b1(w_re), .sum(sum_im)
+      .clk, .en, .a0(re_q2), .b0(w_im), .a1(im_q2), .b1(w_re), .sum(sum_im)
     );
     round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round_im (
       .in(sum_im), .out(rounded_im), .clipped(clipped[1])

@@ -48,7 +48,7 @@ module frame_bench
   parameter int MeanReciprocal   = 65536,
   parameter int MeanDrop         = 16,
   parameter int WordsPerRow      = 1,
-  parameter int FrameLatency     = 17204,
+  parameter int FrameLatency     = 17221,
   parameter int FlatField        = 0,
   parameter int Quadratic        = 0,
   parameter int BlockLog2        = 3,
