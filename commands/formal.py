@@ -355,7 +355,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "frame_stack",
-            "an arbitrary word at its place, last row first; latency 2 from the first word of the last row",
+            "an arbitrary word at its place, last row first; latency 3 from the first word of the last row",
             "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
             f"a memory row that divide a burst, and not; {WORD_FREE}",
             {"Rows": rows, "Size": size, "WordsPerRow": words},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_frame_stack: an arbitrary word leaves at its place of its row, last row first, unchanged; the last row 2 enabled
+// fv_frame_stack: an arbitrary word leaves at its place of its row, last row first, unchanged; the last row 3 enabled
 // clocks behind its own first word, the others behind it without a pause; frame_start with the first. Any gaps between
 // bursts, any en, any frame number, and frames that begin before the last one is whole.
 
@@ -41,7 +41,7 @@ module fv_frame_stack #(
   logic due, present, watched;
   logic [PlaceWidth-1:0] place;
   logic [Width-1:0] value;
-  follow_word #(.Width(Width), .Words(Rows * Size), .Latency(2)) u_follow (
+  follow_word #(.Width(Width), .Words(Rows * Size), .Latency(3)) u_follow (
     .clk, .rst, .en, .pick, .in_word(active), .in_first(in_frame_start), .in_closed(last_row & ~in_start),
     .in_place(PlaceWidth'((Rows - 1 - 32'(row)) * Size + 32'(position))), .in_data, .close(in_start & last_row),
     .due, .present, .place, .watched, .value

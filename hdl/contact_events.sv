@@ -81,9 +81,7 @@ module contact_events #(
     assign row = in_user ? '0 : next_row;
   end
 
-  logic signed [31:0] on, on_q, off, off_q;
-  assign on = in_user ? on_threshold : on_q;
-  assign off = in_user ? off_threshold : off_q;
+  logic signed [31:0] on_q, off_q;
 
   // Of the frame that is coming in, and of the last that came in whole.
   logic [31:0] minimum, minimum_closed, begun, begun_closed;
@@ -96,9 +94,9 @@ module contact_events #(
       next_column <= in_last ? '0 : column + ColumnWidth'(1);
       if (in_last) next_row <= BottomFirst != 0 ? row - RowWidth'(1) : row + RowWidth'(1);
       else next_row <= row;
-      on_q <= on;
-      off_q <= off;
       if (in_user) begin
+        on_q <= on_threshold;
+        off_q <= off_threshold;
         minimum <= minimum_area;
         frames_needed <= debounce;
         begun <= in_time;
@@ -112,8 +110,8 @@ module contact_events #(
     column_q <= column;
     row_q <= row;
     data_q <= in_data;
-    above_on <= 32'(in_data) > on;
-    above_off <= 32'(in_data) > off;
+    above_on <= in_user ? 32'(in_data) > on_threshold : 32'(in_data) > on_q;
+    above_off <= in_user ? 32'(in_data) > off_threshold : 32'(in_data) > off_q;
     valid_q <= in_valid;
     first_q <= in_user;
     end_q <= in_frame_end;

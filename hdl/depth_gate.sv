@@ -42,8 +42,6 @@ module depth_gate #(
 
   logic dropping;  // drop_frames, of the frame that is coming in
   logic room, look_room;
-  assign en = dropping ? look_room : room;
-
   logic given_up, give, unlooked, leaves;
   assign give = in_user | ~given_up;
   assign event_dropped = en & in_valid & give & ~room;
@@ -68,12 +66,20 @@ module depth_gate #(
   );
   assign look_valid = look_waits & look_now;
 
+  // en is `dropping ? look_room : room`, worked out a clock ahead: it goes everywhere, so it comes from a register.
+  logic dropping_next, room_next, look_room_next;
+  assign dropping_next = !in_valid || (en && in_frame_end) ? drop_frames : dropping;
+  assign room_next = ~m_valid | m_ready | (room & ~(en & in_valid & give));
+  assign look_room_next = ~look_waits | look_now | (look_room & ~(en & in_valid));
+
   always_ff @(posedge clk) begin
     if (en && in_valid) given_up <= ~(give & room);
-    if (!in_valid || (en && in_frame_end)) dropping <= drop_frames;
+    dropping <= dropping_next;
+    en <= dropping_next ? look_room_next : room_next;
     ahead <= ahead + 2'(look_valid & look_given) - 2'(leaves);
     if (rst) begin
       dropping <= 1'b0;
+      en <= 1'b0;
       ahead <= '0;
     end
   end

@@ -2,7 +2,7 @@
 // frame_stack: rows of a frame in, last row first out, through one memory that holds a frame.
 //
 // Stream in: bursts of Size words, Rows of them a frame, gaps between bursts anywhere; rows count from a frame's start.
-// Stream out: Rows bursts without a pause. Latency: 2 cycles from the first word of the last row to the first word out;
+// Stream out: Rows bursts without a pause. Latency: 3 cycles from the first word of the last row to the first word out;
 // nothing need follow, the reader runs by itself.
 //
 // The last row goes past the memory. In place: while row Rows - 1 - r of a frame is read, row r of the next frame
@@ -83,7 +83,8 @@ module frame_stack #(
   logic [LeftWidth-1:0] read_left, read_left_q, read_left_q2;
   logic [AddressWidth-1:0] read_address;
   logic read_begin, read_more, read_start, read_active, read_end, read_past, read_past_q, read_past_q2, read_last;
-  logic start_q, frame_start_q;
+  logic start_q, start_q2, frame_start_q, frame_start_q2, read_past_q3;
+  logic [Width-1:0] kept_q, word;  // the word that is read stands in a register before it goes on
   logic [WordsPerRow*Width-1:0] read_data;
   burst_counter #(.Size(Size)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
@@ -125,15 +126,22 @@ module frame_stack #(
       frame_start_q <= read_begin;
       read_past_q2 <= read_past;
       read_left_q2 <= read_left;
-      out_start <= start_q;
-      out_frame_start <= frame_start_q;
-      out_data <= read_past_q2 ? kept[Width-1:0] : word_of(read_data, read_left_q2);
+      start_q2 <= start_q;
+      frame_start_q2 <= frame_start_q;
+      read_past_q3 <= read_past_q2;
+      kept_q <= kept[Width-1:0];
+      word <= word_of(read_data, read_left_q2);
+      out_start <= start_q2;
+      out_frame_start <= frame_start_q2;
+      out_data <= read_past_q3 ? kept_q : word;
     end
     if (rst) begin
       read_more <= 1'b0;
       down <= 1'b0;
       start_q <= 1'b0;
       frame_start_q <= 1'b0;
+      start_q2 <= 1'b0;
+      frame_start_q2 <= 1'b0;
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
     end

@@ -24,7 +24,7 @@ FRAME_GUARD = 1
 AXIS_SKID = 1
 THOMAS_TABLE = 5
 FORWARD_ELIMINATION = 9
-FRAME_STACK = 2  # from the first word of the last row
+FRAME_STACK = 3  # from the first word of the last row
 BACK_SUBSTITUTION = 8
 
 

@@ -40,7 +40,7 @@ module ulx3s
   parameter int MeanDrop         = 16,
   parameter int StoreStyle       = 1,
   parameter int WordsPerRow      = 1,
-  parameter int FrameLatency     = 565,
+  parameter int FrameLatency     = 566,
   parameter int FlatField        = 0,
   parameter int Quadratic        = 0,
   parameter int BlockLog2        = 3,
