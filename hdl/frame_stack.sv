@@ -84,7 +84,7 @@ module frame_stack #(
   logic [AddressWidth-1:0] read_address;
   logic read_begin, read_more, read_start, read_active, read_end, read_past, read_past_q, read_past_q2, read_last;
   logic start_q, start_q2, frame_start_q, frame_start_q2, read_past_q3;
-  logic [Width-1:0] kept_q, word;  // the word that is read stands in a register before it goes on
+  logic [Width-1:0] kept_q, word_q;  // the word that is read stands in a register before it goes on
   logic [WordsPerRow*Width-1:0] read_data;
   burst_counter #(.Size(Size)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
@@ -130,10 +130,10 @@ module frame_stack #(
       frame_start_q2 <= frame_start_q;
       read_past_q3 <= read_past_q2;
       kept_q <= kept[Width-1:0];
-      word <= word_of(read_data, read_left_q2);
+      word_q <= word_of(read_data, read_left_q2);
       out_start <= start_q2;
       out_frame_start <= frame_start_q2;
-      out_data <= read_past_q3 ? kept_q : word;
+      out_data <= read_past_q3 ? kept_q : word_q;
     end
     if (rst) begin
       read_more <= 1'b0;
