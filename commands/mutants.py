@@ -263,6 +263,7 @@ def run(
         seed=seed,
         environment=environment,
         log=folder / f"{simulator}.log",
+        forks=True,
     )
     seen = [json.loads(line) for line in results.read_text().splitlines()] if results.exists() else []
     if failed or len(seen) != len(mutants) + 1:

@@ -145,7 +145,14 @@ def test_an_interrupted_sweep_goes_on(tmp_path, moment):
     )
     environment = {**os.environ, "LOKY_MAX_CPU_COUNT": "1"}
     command = [sys.executable, "-c", script, f"OUT={tmp_path}", json.dumps(rows)]
-    running = subprocess.Popen(command, cwd=simulation.ROOT, env=environment, stderr=subprocess.PIPE, text=True)
+    running = subprocess.Popen(
+        command,
+        cwd=simulation.ROOT,
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a suite in the background has it ignored
+    )
     path = tmp_path / "sweep.csv"
     deadline = time.monotonic() + 120
     while not path.is_file() or path.read_bytes().count(b"\n") < 4:
