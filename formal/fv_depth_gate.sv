@@ -106,6 +106,7 @@ module fv_depth_gate #(
 
   always_comb begin
     if (started) begin
+      enable_is_room: assert (dut.en == (dut.dropping ? dut.look_room : dut.room));
       offered: assert (m_valid == (held != 2'd0));
       if (stalled) stable: assert (m_valid && sent == stalled_word);
       if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);

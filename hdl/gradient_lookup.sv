@@ -77,7 +77,7 @@ module gradient_lookup #(
 
   // What is read for the last pixel before a change-over stands there for a clock, then its bank may be software's, and
   // the pipeline may not have moved: it is kept. No two pixels in a row are the last ones of their frames.
-  logic starts, changed, bank_read, left_q, bank_q, fetched, fetched_bank;
+  logic starts, starts_q, bank_read, left_q, bank_q, fetched, fetched_bank;
   logic [1:0][2*Width-1:0] words_q, kept;
   assign starts = en & in_valid & in_place[0] & in_place[1];
 
@@ -99,8 +99,8 @@ module gradient_lookup #(
       {out_gy, out_gx} <= left_q ? kept[bank_q] : words_q[bank_q];
     end
     if (rst || starts) bank <= table_bank;
-    changed <= starts;
-    if (changed) kept <= words;
+    starts_q <= starts;
+    if (starts_q) kept <= words;
     fetched <= table_read;
     fetched_bank <= ~bank;
     if (fetched) {table_read_gy, table_read_gx} <= words[fetched_bank];

@@ -6,6 +6,7 @@ import time
 from itertools import product
 
 import pytest
+from attack import PROFILES
 from conftest import REGRESS
 
 from models.calibration import synthetic
@@ -21,7 +22,6 @@ FORMATS = (
 FLAT = f"{FORMATS}|capture|dark_pixels|depth_frames|resets.*=2.*full"
 # On the first of each solver everything, but of the pairs of gaps and stalls each with one solver, every gap and every
 # stall with both. `make regress` runs all.
-PROFILES = ("none", "one_in_4", "alternate", "long", "random")
 PAIRS = {
     solver: "|".join(
         f"gaps_and_stalls/offers={gap}/accepts={stall}$"
