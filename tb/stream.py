@@ -16,6 +16,7 @@ from models.configuration import Configuration
 from models.round_saturate import Monitor
 
 CLOCK_NS = 6
+REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
 
 
 def parameters(dut, *names):

@@ -14,14 +14,13 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import settings
 from records import record
+from stream import CLOCK_NS
 
 from commands import simulator as simulation
 
 SEED = int(os.environ.get("SEED", "1"))
-REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
 POWER_UPS = int(os.environ.get("POWER_UPS", "8"))  # random states to begin from
-QUICK_CLOCKS = 5000
-CLOCK_NS = 6  # of the testbenches
+QUICK_CLOCKS = 2000
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
 
 settings.register_profile("no deadline", deadline=None)  # a busy machine is no failure of a model

@@ -16,8 +16,9 @@ from itertools import groupby
 
 import pytest
 from attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
-from conftest import REGRESS, SEED
+from conftest import SEED
 from records import record
+from stream import REGRESS
 
 from models.configuration import COLUMNS, Configuration
 

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import REGRESS
+from stream import REGRESS
 
 from models.configuration import DEVIATION, GAIN_FRACTION, Configuration
 from models.flat_field import (

@@ -4,7 +4,7 @@
 import json
 
 import pytest
-from conftest import REGRESS
+from stream import REGRESS
 
 from models.configuration import Configuration
 from models.flat_field import unit_gains

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import REGRESS
+from stream import REGRESS
 
 from models.configuration import GAIN_WIDTH, Configuration
 from models.reference_capture import largest_log2_frames, reference_capture, reference_capture_parameters

@@ -6,8 +6,8 @@ import os
 
 import numpy as np
 import pytest
-from conftest import REGRESS
 from skimage import io
+from stream import REGRESS
 
 from commands import sim
 from models.calibration import load

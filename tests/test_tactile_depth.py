@@ -7,7 +7,7 @@ from itertools import product
 
 import pytest
 from attack import PROFILES
-from conftest import REGRESS
+from stream import REGRESS
 
 from models.calibration import synthetic
 from models.configuration import COLUMNS, ULTRA, Configuration
@@ -39,6 +39,7 @@ REPEATED = f"gaps_and_stalls|{LONG}|random_streams|side_by_side|every_fault_in_a
 ONCE = f"^(?!.*({REPEATED}))|gaps_and_stalls/offers=random/accepts=random"
 PACKED = "back_to_back"
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=random"
+LARGER_SLOW = "configuration|back_to_back"
 
 
 SECOND = (
@@ -71,6 +72,8 @@ def test_rtl(run_tb, simulator, choices, tests):
         tests = f"^(?!.*(gaps_and_stalls{f'|{LONG}' if spectral else ''}))|{PAIRS[config.solver]}"
         if simulator == "icarus":
             tests = SLOW if spectral else ONCE
+    if (simulator, tests) == ("icarus", LARGER) and not REGRESS:
+        tests = LARGER_SLOW
     run_tb(
         "tactile_depth",
         None,

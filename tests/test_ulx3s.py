@@ -3,7 +3,7 @@
 
 import json
 
-from conftest import REGRESS
+from stream import REGRESS
 
 from commands.fpga import SOURCES, threshold
 from models.calibration import synthetic

@@ -2,7 +2,7 @@
 """A sample of the soft errors that `make upsets` counts: no hang, and the frames sent after one are right."""
 
 import pytest
-from conftest import REGRESS
+from stream import REGRESS
 
 from commands.upsets import CASES, run
 
