@@ -37,7 +37,7 @@ ROOT = simulation.ROOT
 POWER_UPS = 100
 SEEDS = (2, 3)
 # Tests of RTL, and what else asks for REGRESS.
-WHOLE = "test_rtl or second_client or test_sample or (test_every_grid and icarus and 256)"
+WHOLE = "test_rtl or second_client or test_sample or (test_every_grid and icarus)"
 CODES = 6_000_000  # of each job of `codes`, or more: what makes a whole frame
 MODEL_PIXELS = 1 << 20  # that go through the models at a time
 SCENES_RENDERED = 160  # of a job, at most

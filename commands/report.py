@@ -287,6 +287,7 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
                 "solver": solver,
                 "boundary": "dirichlet",
                 "columns": str(SIZE),
+                "depth_range": "default",
                 fixed: str(getattr(default, fixed)),
             }
             curve = sorted(buildable(rows, **wanted), key=lambda row: int(row[varied]))
@@ -296,6 +297,15 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
             )
             worst = LOOKS[solver] | {"marker": "", "linewidth": 0.7}
             axis.plot(widths, [float(row["rms_percent_worst"]) for row in curve], **worst)
+        unlimited = buildable(rows, solver=solver, boundary="dirichlet", depth_range="worst")
+        curve = sorted(unlimited, key=lambda row: int(row["data_width"]))
+        safe = LOOKS[solver] | {"marker": "", "linestyle": (0, (1, 1.5))}
+        left.plot(
+            [int(row["data_width"]) for row in curve],
+            [float(row["rms_percent_mean"]) for row in curve],
+            **safe,
+            label=f"{solver}, DEPTH_RANGE=worst",
+        )
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
         axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
         axis.set(yscale="log", xlabel=name)
@@ -305,7 +315,8 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     left.legend()
     text = (
         f"Mean of the contacts at {SIZE} (with marks), and the worst (thin). Left with {default.coefficient_width}-bit "
-        f"coefficients, right with {default.data_width}-bit words. Dotted: the published {PUBLISHED_RMS} %."
+        f"coefficients, right with {default.data_width}-bit words. Dotted and level: the published {PUBLISHED_RMS} %; "
+        "dotted and falling: the mean where no slopes can saturate anything."
     )
     return Figure("words", "Word lengths", text, "make sweep", picture(figure, folder, "words"))
 
@@ -319,7 +330,7 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     )
     for axis, (column, name, scale, published) in zip(axes, columns, strict=True):
         for solver in COLUMNS:
-            points = buildable(rows, solver=solver, boundary="dirichlet", columns=str(SIZE))
+            points = buildable(rows, solver=solver, boundary="dirichlet", columns=str(SIZE), depth_range="default")
             x = [scale * float(row[column]) for row in points]
             y = [float(row["rms_percent_mean"]) for row in points]
             look = {"color": LOOKS[solver]["color"], "marker": LOOKS[solver]["marker"]}

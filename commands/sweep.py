@@ -25,7 +25,7 @@ import joblib
 from tqdm import tqdm
 
 from models import accuracy
-from models.accuracy import CONFIGURATION, MEASURED, VERSION, configuration_cells, measure
+from models.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from models.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
 from models.errors import InputError
 
@@ -45,8 +45,9 @@ Row = dict[str, str]
 def plan() -> list[Choices]:
     """Every configuration of the sweep, by the arguments of `Configuration` in which it differs from the default.
 
-    One axis at a time from the default (grid, boundary, the two widths), and the plane of the two widths. The widest
-    grids come first, so that no core is left alone with one at the end.
+    One axis at a time from the default (grid, boundary, the two widths), and the plane of the two widths; and a depth
+    range that nothing leaves (DEPTH_RANGE=worst), with each data width and at both boundaries. The widest grids come
+    first, so that no core is left alone with one at the end.
     """
     default = Configuration()
     widths = [range(low, high + 1) for low, high in (DATA_WIDTHS, COEFFICIENT_WIDTHS)]
@@ -58,6 +59,8 @@ def plan() -> list[Choices]:
         rows.append({"solver": solver, "neumann": True})
         for data in widths[0]:
             rows += [{"solver": solver, "data_width": data, "coefficient_width": c} for c in widths[1]]
+            rows.append({"solver": solver, "data_width": data, "depth_range_px": WORST})
+        rows.append({"solver": solver, "neumann": True, "depth_range_px": WORST})
     return sorted(rows, key=pixels, reverse=True)
 
 
@@ -246,6 +249,24 @@ def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> li
     return [done[key(choices)] for choices in rows]
 
 
+def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
+    """What a depth range that no slopes can leave costs in accuracy, and in bits to have it back."""
+    errors = {}
+    for depth_range in ("default", "worst"):
+        wanted = configuration_cells({"solver": solver}) | {"depth_range": depth_range}
+        errors[depth_range] = {
+            int(row["data_width"]): float(row["rms_percent_mean"])
+            for row in rows
+            if not row["problem"] and all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
+        }
+    width = Configuration().data_width
+    if not all(width in found for found in errors.values()):
+        return []
+    line = f"{solver}: DEPTH_RANGE=worst, {errors['worst'][width]:.4f} % in place of {errors['default'][width]:.4f} %"
+    enough = [wide for wide, error in errors["worst"].items() if error <= errors["default"][width]]
+    return [f"{line}; as good again with DATA_WIDTH={min(enough)}" if enough else f"{line}; no words are as good"]
+
+
 def summary(rows: list[Row]) -> str:
     """A line for each solver and boundary at the default, and the narrowest words that are good enough."""
     default = configuration_cells({})
@@ -268,6 +289,7 @@ def summary(rows: list[Row]) -> str:
         ]
         if narrow:
             lines.append(f"{solver}: mean RMS at most {PUBLISHED_RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
+        lines += cost_of_worst(rows, solver)
     refused = sum(bool(row["problem"]) for row in rows)
     lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")
     return "\n".join(lines)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib.resources
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,6 +17,7 @@ import numpy as np
 
 from models import reference
 from models.calibration import Calibration, synthetic
+from models.certificate import deepest
 from models.configuration import Configuration
 from models.cost import cost
 from models.errors import InputError
@@ -80,6 +82,7 @@ def _bench(size: int, neumann: bool) -> _Bench:
     return _Bench(scene.frames, height, reference.depth(scene.frames, synthetic(), neumann))
 
 
+WORST = math.inf  # as a depth range: as deep as any slopes can make it
 CONFIGURATION = ("solver", "boundary", "rows", "columns", "data_width", "coefficient_width", "depth_range")
 MEASURED = (
     "problem",
@@ -119,7 +122,7 @@ def configuration_cells(choices: dict[str, Any]) -> dict[str, str]:
         "columns": str(columns),
         "data_width": str(choices.get("data_width", default.data_width)),
         "coefficient_width": str(choices.get("coefficient_width", default.coefficient_width)),
-        "depth_range": "default" if depth_range is None else str(depth_range),
+        "depth_range": {None: "default", WORST: "worst"}.get(depth_range, str(depth_range)),
     }
 
 
@@ -129,7 +132,7 @@ def measure(choices: dict[str, Any]) -> dict[str, str]:
     Parameters
     ----------
     choices : dict
-        Arguments of a `Configuration`, of a square grid.
+        Arguments of a `Configuration`, of a square grid; `depth_range_px` may be WORST.
 
     Returns
     -------
@@ -139,6 +142,10 @@ def measure(choices: dict[str, Any]) -> dict[str, str]:
     """
     row = dict.fromkeys((*CONFIGURATION, *MEASURED), "")
     row |= configuration_cells(choices) | {"scene": SCENE, "seed": str(SEED), "models": VERSION}
+    if choices.get("depth_range_px") == WORST:
+        grid = Configuration(**{name: value for name, value in choices.items() if name in ("solver", "columns")})
+        range_px = deepest(grid.rows, grid.columns, choices.get("neumann", False)) * synthetic().gradient_limit
+        choices = choices | {"depth_range_px": range_px}
     try:
         config = Configuration(**choices)
     except InputError as error:

@@ -860,12 +860,20 @@ async def random_traffic(dut, pressure) -> None:
             unmapped_too = range(0, 1 << ADDRESS_WIDTH, BYTES)
             return rng.choice(rng.choice((writable, tuple(OFFSET.values()))) if rng.random() < 0.9 else unmapped_too)
 
+        tables = [table for table, size in checker.build.table_sizes.items() if size]
+
+        def any_data(offset: int) -> int:
+            if offset == OFFSET["TABLE_SELECT"] and rng.random() < 0.7:
+                return rng.choice(tables)  # what is behind any other number takes no entries
+            return rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), rng.getrandbits(4), WORD))
+
         async def writes() -> None:
             while not done:
+                offset = any_offset()
                 await response_of(
                     master.write(
-                        any_offset(),
-                        rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), rng.getrandbits(4), WORD)),
+                        offset,
+                        any_data(offset),
                         byte_enable=rng.choice((None, rng.getrandbits(BYTES))),
                         address_latency=rng.choice((0, 0, 1, 3)),
                         data_latency=rng.choice((0, 0, 1, 3)),
@@ -902,6 +910,6 @@ async def random_traffic(dut, pressure) -> None:
         for kind, responses in checker.responses.items():
             seen = {response: responses.count(response) for response in Response}
             dut._log.info("%s: %s, %d table writes", kind, seen, len(checker.model.table_writes))
-            assert min(seen.values()) > 10, f"the {kind}s were too much alike: {seen}"
+            assert min(seen.values()) > 5, f"the {kind}s were too much alike: {seen}"
         assert len(checker.model.table_writes) > 5
         assert bool(checker.model.captures) == bool(tables_present(checker.build) & REFERENCE_BIT)

@@ -2,19 +2,21 @@
 """forward_elimination against its model: codes, latency, saturations; gaps, pauses, reset."""
 
 import cocotb
-from stream import check_bursts, configuration, uniform
+from stream import MANY, check_bursts, configuration, corners, uniform
 
 from models.forward_elimination import forward_elimination
 from models.latency import FORWARD_ELIMINATION
 
 
 async def check(dut, amplitude, frames=3, **behaviour):
+    """Random words up to an amplitude; None: mostly the lowest and the highest."""
     config = configuration()
 
     def model(x, monitor):
         return forward_elimination(x.reshape(-1, config.rows, config.columns), config, monitor)
 
-    words = uniform((frames * config.rows, config.columns, 1), config.arithmetic_width, amplitude)
+    shape, width = (frames * config.rows, config.columns, 1), config.arithmetic_width
+    words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
     behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.rows}
     await check_bursts(dut, words, model, FORWARD_ELIMINATION, **behaviour)
 
@@ -23,6 +25,13 @@ async def check(dut, amplitude, frames=3, **behaviour):
 @cocotb.parametrize(gap=[0, 30], pause=[0.0, 0.3], amplitude=[0.01, 1.0])
 async def frames(dut, gap, pause, amplitude):
     await check(dut, amplitude, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.003, 0.1, None])
+async def many_frames(dut, amplitude):
+    """Ties of every rounding, and clips of every one that can."""
+    await check(dut, amplitude, frames=MANY)
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, extremes, parameters, uniform
+from stream import MANY, check_bursts, corners, extremes, parameters, uniform
 
 from models.latency import sdf_fft_latency
 from models.sdf_fft import sdf_fft
@@ -26,6 +26,15 @@ async def check(dut, x, **behaviour):
 async def bursts(dut, gap, pause, amplitude):
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((5, size, 2), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def many_bursts(dut, amplitude):
+    """Ties of every rounding, and clips of every one that can."""
+    size, width = parameters(dut, "Size", "Width")
+    shape = (2 * MANY, size, 2)
+    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")

@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, configuration, extremes, parameters, uniform
+from stream import MANY, check_bursts, configuration, corners, extremes, parameters, uniform
 
 from models.latency import SPECTRAL_DIVIDE
 from models.spectral_divide import spectral_divide
@@ -24,6 +24,15 @@ async def check(dut, x, **behaviour):
 async def frames(dut, gap, pause, amplitude):
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((3 * size, size, 1), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.01, 0.2, None])
+async def many_frames(dut, amplitude):
+    """Ties of the rounding, and values that just clip."""
+    size, width = parameters(dut, "Size", "Width")
+    shape = (MANY * size, size, 1)
+    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

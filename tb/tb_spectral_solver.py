@@ -3,7 +3,18 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, configuration, interrupt, send_apart, uniform
+from stream import (
+    MANY,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    configuration,
+    corners,
+    interrupt,
+    send_apart,
+    uniform,
+)
 
 from models.latency import spectral_solver_latency
 from models.round_saturate import Monitor
@@ -11,9 +22,10 @@ from models.spectral_solver import spectral_solver
 
 
 def codes(frames, amplitude):
-    """Random divergence; at 0.002 of full scale its depth fits."""
+    """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
     config = configuration()
-    return uniform((frames, config.columns, config.columns), config.divergence.width, amplitude)
+    shape, width = (frames, config.columns, config.columns), config.divergence.width
+    return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
 
 
 async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
@@ -57,6 +69,13 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 async def frames_that_fit(dut, gap, pause):
     await check(dut, codes(3, 0.002), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.002, 0.05, None])
+async def many_frames(dut, amplitude):
+    """Ties of every rounding, and clips of every one that can."""
+    await check(dut, codes(MANY, amplitude))
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")

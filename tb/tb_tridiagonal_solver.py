@@ -3,7 +3,18 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, configuration, interrupt, send_apart, uniform
+from stream import (
+    MANY,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    configuration,
+    corners,
+    interrupt,
+    send_apart,
+    uniform,
+)
 
 from models.latency import tridiagonal_solver_latency
 from models.round_saturate import Monitor
@@ -46,15 +57,23 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
 
 
 def codes(frames, amplitude):
-    """Random divergence; at 0.002 of full scale its depth fits."""
+    """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
     config = configuration()
-    return uniform((frames, config.rows, config.columns), config.divergence.width, amplitude)
+    shape, width = (frames, config.rows, config.columns), config.divergence.width
+    return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)]))
 async def frames(dut, gap, pause):
     assert not await check(dut, codes(4, 0.002), gap, pause)
+
+
+@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.002, 0.05, None])
+async def many_frames(dut, amplitude):
+    """Ties of every rounding, and clips of every one that can."""
+    await check(dut, codes(MANY, amplitude))
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")

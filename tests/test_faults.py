@@ -6,8 +6,8 @@ Icarus is a hundred times slower than Verilator, so on each grid:
                 make test                              REGRESS=1
     Verilator   every break at every position, one     the full product of breaks, positions and what follows,
                 of what can follow drawn for each      with and without stalls
-    Icarus      one in 4 of it on the smallest grid,   every break at every position, one of what can follow
-                on the others one in 32                drawn for each; stalled half of them
+    Icarus      one in 8 of it on the smallest grid,   every break at every position, one of what can follow
+                on the others one in 64                drawn for each; stalled half of them
 """
 
 import random
@@ -32,9 +32,9 @@ GRIDS = {
 }
 SMALLEST = "tridiagonal-8x16-neumann"
 BOTH = [(grid,) for grid in GRIDS][: None if REGRESS else 2]  # on both simulators
-STRIDE = {"verilator": 1, "icarus": 32}
-SMALLEST_STRIDE = {"verilator": 1, "icarus": 4}
-PHASES = {"verilator": 3, "icarus": 64}  # one in so many; REGRESS: each, with each number of clocks
+STRIDE = {"verilator": 1, "icarus": 64}
+SMALLEST_STRIDE = {"verilator": 1, "icarus": 8}
+PHASES = {"verilator": 3, "icarus": 128}  # one in so many; REGRESS: each, with each number of clocks
 CLOCKS = (1, 2, 16)  # of a reset
 SINKS = ("none", *(name for name in PROFILES if name != "none"), "full")
 
@@ -82,7 +82,7 @@ def test_resets_in_every_phase(device, simulator, grid):
     config, began = Configuration(**GRIDS[grid]), time.monotonic()
     every = phases(config)
     full = REGRESS and simulator == "verilator"
-    stride = 1 if full else PHASES[simulator] // (8 if REGRESS else 1)
+    stride = 1 if full else PHASES[simulator] // (16 if REGRESS else 1)
     lengths = CLOCKS if full else (0,)
     some = [
         Reset(phase, clocks or CLOCKS[index % len(CLOCKS)], SINKS[(index // len(CLOCKS) + clocks) % len(SINKS)])

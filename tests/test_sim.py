@@ -35,8 +35,8 @@ def only(values):
 @pytest.mark.parametrize("solver", COLUMNS)
 @pytest.mark.parametrize("size", [64, 128, 256])
 def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
-    if (simulator, solver) == ("icarus", "spectral") and size > 64 and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): a minute; every two of the three meet in the others")
+    if simulator == "icarus" and (size == 256 or (size, solver) == (128, "spectral")) and not REGRESS:
+        pytest.skip("REGRESS=1 is not set (make regress sets it): up to a minute; Verilator runs the same")
     report = run(tmp_path, f"N={size}", f"SIM={simulator}", f"SOLVER={solver}")
     assert report["bit_exact"]
     assert report["registers_agree"]

@@ -39,14 +39,26 @@ def test_the_plan_is_the_issue_s():
         plane = {
             (int(row["data_width"]), int(row["coefficient_width"]))
             for row in mine
-            if row["columns"] == "128" and row["boundary"] == "dirichlet"
+            if row["columns"] == "128" and row["boundary"] == "dirichlet" and row["depth_range"] == "default"
         }
         assert plane == {(d, c) for d in range(12, 33) for c in range(10, 25)}
-        others = [row for row in mine if (row["columns"], row["boundary"]) != ("128", "dirichlet")]
+        safe = [row for row in mine if row["depth_range"] == "worst"]
+        assert {int(row["data_width"]) for row in safe} == set(range(12, 33))
+        assert Counter(row["boundary"] for row in safe) == {"dirichlet": 21, "neumann": 1}
+        within = [row for row in mine if row["depth_range"] == "default"]
+        others = [row for row in within if (row["columns"], row["boundary"]) != ("128", "dirichlet")]
         for row in others:  # differ from the default in one thing
             assert sum(row[name] != default[name] for name in ("columns", "boundary", "data_width")) == 1
         assert {row["columns"] for row in others} == {"32", "64", "128", "256", "512"}
         assert Counter(row["boundary"] for row in others)["neumann"] == 1
+
+
+def test_a_range_that_nothing_leaves():
+    row, default = (accuracy.measure({"columns": 32, "depth_range_px": limit}) for limit in (accuracy.WORST, None))
+    assert (row["depth_range"], default["depth_range"]) == ("worst", "default")
+    assert float(row["depth_range_mm"]) > float(default["depth_range_mm"])
+    assert row["saturations"] == "0"
+    assert float(row["rms_percent_mean"]) > float(default["rms_percent_mean"])
 
 
 def test_a_row_holds_what_was_measured():
