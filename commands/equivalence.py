@@ -20,6 +20,7 @@ import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
+from itertools import product
 from pathlib import Path
 
 from commands.mutants import SELECTOR, instance, ports, yosys
@@ -28,6 +29,8 @@ EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
 
 ALWAYS = "1'b1"
+HOLDS = "protocol_holds"
+ENABLE, RESET = "any_en", "any_rst"
 TO_GRAPH = """read_rtlil mutants.il
 read_verilog -sv environment.v
 hierarchy -top environment
@@ -89,15 +92,15 @@ def environment(core: str, folder: Path, protocol: Protocol) -> str:
     outputs = {name: bits for name, (side, bits) in sides.items() if side == "output"}
     declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
     declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
-    declared += [f"output wire looked_at_{name}" for name in outputs]
+    declared += [f"output wire looked_at_{name}" for name in outputs] + [f"output wire {HOLDS}"]
     declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
     names = re.compile(r"(?<!')\b(" + "|".join(inputs) + r")\b")  # 1'b1 is no input b1
     holds = " & ".join(f"({expression})" for expression in protocol.assume) or ALWAYS
     holds = names.sub(r"any_\1", holds)
-    lines = [f"module environment ({', '.join(declared)});", "  wire holds;"]
+    lines = [f"module environment ({', '.join(declared)});"]
     for name, bits in inputs.items():
-        lines += [f"  wire [{bits - 1}:0] {name} = holds ? any_{name} : {bits}'d{int(name == 'rst')};"]
-    lines += [instance(core, folder), protocol.registers, f"  assign holds = {holds};"]
+        lines += [f"  wire [{bits - 1}:0] {name} = {HOLDS} ? any_{name} : {bits}'d{int(name == 'rst')};"]
+    lines += [instance(core, folder), protocol.registers, f"  assign {HOLDS} = {holds};"]
     lines += [f"  assign looked_at_{name} = {protocol.compare.get(name, ALWAYS)};" for name in outputs]
     return "\n".join([*lines, "endmodule\n"])
 
@@ -252,7 +255,7 @@ class Miter(Gates):
         self.compared = []
         for name, literal in source.outputs.items():
             port = name.split("[")[0]
-            if port.startswith("looked_at_"):
+            if port == HOLDS or port.startswith("looked_at_"):
                 continue
             looked_at = read(value, source.outputs[f"looked_at_{port}"])
             different = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
@@ -304,16 +307,20 @@ class Span(Gates):
 
     `before` clocks go by in the core alone, so that its state is one that follows from another. `clocks` more, and a
     mutant shall be in the same state as the core again, with nothing seen on the way. That is the step of an
-    induction. Its base, `first`: from power-up, with a reset in the first clock.
+    induction. Its base, `first`: from power-up, with a reset in the first clock. `enables`: the pin `en` in each of the
+    clocks before, where it is not anything; then what that reset leaves as power-up made it may differ.
     """
 
-    def __init__(self, source: Graph, before: int, clocks: int, first: bool = False):
+    def __init__(
+        self, source: Graph, before: int, clocks: int, first: bool = False, enables: tuple[int, ...] | None = None
+    ):
         chosen = {literal for name, literal in source.inputs.items() if name.split("[")[0] == SELECTOR}
         inputs = {name: literal for name, literal in source.inputs.items() if literal not in chosen}
         self.leaves = len(source.latches) + len(inputs) * (before + clocks)
         super().__init__(1 + self.leaves)
         leaf = iter(range(2, 2 * self.first, 2))
         self.source, self.before = source, before
+        self.at_power_up = first and enables == ()
         self.values: list[dict[int, int]] = []  # of the core's nodes, by clock
         state = {latch: next(leaf) if not first or start == latch else start for latch, _, start in source.latches}
         self.states = [state]
@@ -321,7 +328,9 @@ class Span(Gates):
             value = {0: 0, 1: 1, **state, **dict.fromkeys(chosen, 0)}
             for name, literal in inputs.items():
                 node = next(leaf)
-                value[literal] = 1 if first and not clock and name == "any_rst" else node
+                value[literal] = 1 if first and not clock and name == RESET else node
+            if enables is not None and clock < before:
+                value[inputs[ENABLE]] = enables[clock]
             for out, a, b in source.ands:
                 value[out] = self.both(value[a & ~1] ^ (a & 1), value[b & ~1] ^ (b & 1))
             self.values.append(value)
@@ -360,30 +369,34 @@ class Span(Gates):
                     state[latch] = new ^ inverse
             following = self.states[clock + 1]
             state = {latch: new for latch, new in state.items() if new != following[latch]}
-        wrong += [self.differ(self.states[-1][latch], new) for latch, new in state.items()]
+        last = self.states[-1]
+        wrong += [
+            self.differ(last[latch], new) for latch, new in state.items() if last[latch] < 2 or not self.at_power_up
+        ]
         return self.either(wrong)
 
-    def write(self, bad: int, path: Path) -> None:
-        """What decides a literal, as a binary AIGER file with it for its output."""
-        needed: set[int] = set()
-        stack = [bad >> 1]
-        while stack:
-            node = stack.pop()
-            if node >= self.first and node not in needed:
-                needed.add(node)
-                stack += [literal >> 1 for literal in self.ands[node - self.first]]
-        gates = sorted(needed)
-        place = {node: self.first + index for index, node in enumerate(gates)}
 
-        def moved(literal: int) -> int:
-            return 2 * place.get(literal >> 1, literal >> 1) + (literal & 1)
+def write_formula(gates: Span | Idling, bad: int, path: Path) -> None:
+    """What decides a literal, as a binary AIGER file with it for its output."""
+    needed: set[int] = set()
+    stack = [bad >> 1]
+    while stack:
+        node = stack.pop()
+        if node >= gates.first and node not in needed:
+            needed.add(node)
+            stack += [literal >> 1 for literal in gates.ands[node - gates.first]]
+    order = sorted(needed)
+    place = {node: gates.first + index for index, node in enumerate(order)}
 
-        coded = bytearray()
-        for node in gates:
-            low, high = sorted(moved(literal) for literal in self.ands[node - self.first])
-            coded += number_of(2 * place[node] - high) + number_of(high - low)
-        head = f"aig {self.leaves + len(gates)} {self.leaves} 0 1 {len(gates)}\n{moved(bad)}\n"
-        path.write_bytes(head.encode() + bytes(coded))
+    def moved(literal: int) -> int:
+        return 2 * place.get(literal >> 1, literal >> 1) + (literal & 1)
+
+    coded = bytearray()
+    for node in order:
+        low, high = sorted(moved(literal) for literal in gates.ands[node - gates.first])
+        coded += number_of(2 * place[node] - high) + number_of(high - low)
+    head = f"aig {gates.leaves + len(order)} {gates.leaves} 0 1 {len(order)}\n{moved(bad)}\n"
+    path.write_bytes(head.encode() + bytes(coded))
 
 
 class Readers:
@@ -405,10 +418,13 @@ class Readers:
         self.outputs = [
             (source.outputs[f"looked_at_{name.split('[')[0]}"], to)
             for name, to in source.outputs.items()
-            if not name.startswith("looked_at_")
+            if name != HOLDS and not name.startswith("looked_at_")
         ]
 
 
+LINGERS = 2  # clocks without `en` after which nothing moves: a count of clipped values has two registers without it
+ENABLED = 2  # clocks with `en` before, at most
+LARGEST = 3_000_000  # gates that may take
 # Clocks (before, then) of the tries: what a state can never be takes some before, what passes on and dies some then.
 SPANS = ((0, 1), (2, 3), (3, 8))
 
@@ -418,18 +434,21 @@ class Spans:
 
     def __init__(self, source: Graph):
         self.source, self.readers = source, Readers(source)
-        self.made: dict[tuple[int, int, bool], Span] = {}
+        self.made: dict[tuple, Span] = {}
+        self.idles: bool | None = None
         self.lock = threading.Lock()  # the formulas of all mutants share their gates
 
-    def formula(self, number: int, before: int, clocks: int, first: bool, path: Path) -> int:
+    def formula(
+        self, number: int, before: int, clocks: int, first: bool, path: Path, enables: tuple[int, ...] | None = None
+    ) -> int:
         """Write it; its literal: 0 is never, 1 is always."""
         with self.lock:
-            key = before, clocks, first
+            key = before, clocks, first, enables
             if key not in self.made:
                 self.made[key] = Span(self.source, *key)
             bad = self.made[key].differs(number, self.readers)
             if bad > 1:
-                self.made[key].write(bad, path)
+                write_formula(self.made[key], bad, path)
         return bad
 
     def prove(self, number: int, folder: Path, seconds: int) -> bool:
@@ -444,6 +463,87 @@ class Spans:
             else:
                 return True
         return False
+
+    def prove_between_pauses(self, number: int, folder: Path, seconds: int) -> bool:
+        """The same from states that follow from others in clocks with `en`.
+
+        Any number of the clocks before may be without it, in which nothing follows from anything. But where longer
+        pauses make no other states (`Idling`), each state is one in which so many clocks with `en` ended, each with a
+        short pause behind it; or, close to power-up, fewer of them. What the first reset leaves in registers that it
+        does not set counts as power-up: that no output depends on it is proven elsewhere (commands/formal.py).
+        """
+        source = self.source
+        size = len(source.ands) * sum((LINGERS + 2) ** count * (count + LINGERS) for count in range(1, ENABLED + 1))
+        if not {ENABLE, RESET} <= source.inputs.keys() or size > LARGEST:
+            return False
+        name = f"pause{number}.aig"
+        for count in range(1, ENABLED + 1):
+            parts = [(False, 1, count)] + [(True, 0, early) for early in range(count)]
+            before = []
+            for first, begins, highs in parts:
+                for pauses in product(range(LINGERS + 2), repeat=highs + 1 - begins):
+                    lead = pauses[: 1 - begins]
+                    enables = [0] * sum(lead) + [en for pause in pauses[1 - begins :] for en in (1, *[0] * pause)]
+                    before.append((first, tuple(enables)))
+            for first, enables in before:
+                part = (len(enables), 1, first)
+                bad = self.formula(number, *part, folder / name, enables)
+                if bad and (bad == 1 or "UNSATISFIABLE" not in abc(f"read_aiger {name}; dc2; iprove", folder, seconds)):
+                    break
+            else:
+                with self.lock:
+                    if self.idles is None:
+                        self.idles = Idling(source, self.readers).proven(folder, seconds)
+                return self.idles
+        return False
+
+
+class Idling(Gates):
+    """What clocks without `en` do to the state of a core: after some, one more before them is nothing.
+
+    `fails` is the literal of the contrary: from some state, with a protocol that holds throughout, LINGERS clocks
+    without `en` leave another state than they do behind one more, which is no reset; or one in reset leaves another
+    than it does behind one more in reset. Where it is never true, every state is one that a sequence of clocks without
+    more than LINGERS + 1 in a row without `en` leads to: others may be left out, one by one.
+    """
+
+    def __init__(self, source: Graph, readers: Readers):
+        names = {name: literal for name, literal in source.inputs.items() if literal not in readers.selector}
+        self.leaves = len(source.latches) + len(names) * (LINGERS + 1)
+        super().__init__(1 + self.leaves)
+        leaf = iter(range(2, 2 * self.first, 2))
+        begun = {latch: next(leaf) for latch, _, _ in source.latches}
+        clocks = [{literal: next(leaf) for literal in names.values()} for _ in range(LINGERS + 1)]
+        chosen = dict.fromkeys(readers.selector, 0)
+
+        def after(row: Sequence[Mapping[int, int]]) -> tuple[dict[int, int], int]:
+            """The state behind clocks, and whether the protocol holds in all of them."""
+            state, holds = begun, 1
+            for given in row:
+                value = {0: 0, 1: 1, **state, **chosen, **given}
+                for out, a, b in source.ands:
+                    value[out] = self.both(value[a & ~1] ^ (a & 1), value[b & ~1] ^ (b & 1))
+                state = {latch: value[to & ~1] ^ (to & 1) for latch, to, _ in source.latches}
+                held = source.outputs[HOLDS]
+                holds = self.both(holds, value[held & ~1] ^ (held & 1))
+            return state, holds
+
+        self.fails = 0
+        for in_reset, count in ((0, LINGERS + 1), (1, 2)):
+            row = [given | {names[ENABLE]: 0} for given in clocks[:count]]
+            row[0][names[RESET]] = in_reset
+            if in_reset:
+                row[1][names[RESET]] = 1
+            longer, holds = after(row)
+            shorter, _ = after(row[1:])
+            apart = self.either(self.differ(longer[latch], shorter[latch]) for latch in begun)
+            self.fails = self.either((self.fails, self.both(holds, apart)))
+
+    def proven(self, folder: Path, seconds: int) -> bool:
+        if self.fails < 2:
+            return not self.fails
+        write_formula(self, self.fails, folder / "idling.aig")
+        return "UNSATISFIABLE" in abc("read_aiger idling.aig; dc2; iprove", folder, seconds)
 
 
 def abc(commands: str, folder: Path, seconds: int) -> str:
@@ -479,6 +579,8 @@ def settle(source: Graph, spans: Spans, number: int, folder: Path, seconds: int)
     miter = Miter(source, number)
     if miter.bad == 0:
         return EQUIVALENT, "by structure"
+    if spans.prove_between_pauses(number, folder, seconds):
+        return EQUIVALENT, "by induction between pauses"
     if spans.prove(number, folder, seconds):
         return EQUIVALENT, "by induction over a few clocks"
     name = f"miter{number}.aig"

@@ -141,7 +141,7 @@ def depth_gate(_: Mapping[str, int]) -> Protocol:
     if (rst) open <= 1'b0;
     else if (en & in_valid) open <= ~in_frame_end;
     stays <= in_valid & ~en & ~rst;
-    word_before <= {in_user, in_last, in_frame_end, in_data};
+    word_before <= rst ? 0 : {in_user, in_last, in_frame_end, in_data};
   end
 """
     assume = (
@@ -191,8 +191,8 @@ def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
   reg [3:0] place_before;
   always @(posedge clk) begin
     still <= ~en & ~rst;
-    valid_before <= in_valid;
-    place_before <= in_place;
+    valid_before <= rst ? 0 : in_valid;
+    place_before <= rst ? 0 : in_place;
     read <= live & (read | table_read);
     if (rst) begin
       begun <= 1'b0;
@@ -230,8 +230,8 @@ def bursts(size: int, rows: int | None, out_size: int | None = None, word: str =
   reg still = 1'b0, start_before, frame_start_before;
   always @(posedge clk) begin
     still <= ~en & ~rst;
-    start_before <= in_start;
-    frame_start_before <= in_frame_start;
+    start_before <= rst ? 0 : in_start;
+    frame_start_before <= rst ? 0 : in_frame_start;
     if (rst) begin
       in_left <= 16'd0;
       out_left <= 16'd0;
@@ -271,8 +271,8 @@ def words(size: int, rows: int | None, whole: bool) -> Protocol:
   reg begun = 1'b0, still = 1'b0, valid_before, frame_start_before;
   always @(posedge clk) begin
     still <= ~en & ~rst;
-    valid_before <= in_valid;
-    frame_start_before <= in_frame_start;
+    valid_before <= rst ? 0 : in_valid;
+    frame_start_before <= rst ? 0 : in_frame_start;
     if (rst) begin
       left <= 24'd0;
       out_left <= 16'd0;
@@ -302,14 +302,14 @@ def divergence(parameters: Mapping[str, int]) -> Protocol:
   reg first = 1'b1, last_before, still = 1'b0, valid_before;
   always @(posedge clk) begin
     still <= ~en & ~rst;
-    valid_before <= in_valid;
+    valid_before <= rst ? 0 : in_valid;
     if (rst) begin
       column <= 16'd0;
       first <= 1'b1;
     end else if (en & in_valid) begin
       column <= in_last_column ? 16'd0 : column + 16'd1;
       if (in_last_column) first <= in_last_row;
-      last_before <= in_last_row;
+      last_before <= rst ? 0 : in_last_row;
     end
   end
 """
@@ -416,7 +416,7 @@ def frame_tags(parameters: Mapping[str, int]) -> Protocol:
   reg still = 1'b0, push_before;
   always @(posedge clk) begin
     still <= ~en & ~rst;
-    push_before <= push;
+    push_before <= rst ? 0 : push;
     if (rst) since <= 16'd0;
     else if (en) since <= push ? 16'd1 : since + (since != 16'd0 & since != 16'd{pixels});
   end

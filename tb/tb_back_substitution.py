@@ -21,7 +21,7 @@ async def check(dut, amplitude, frames=3, **behaviour):
     await check_bursts(dut, words, model, BACK_SUBSTITUTION, **behaviour)
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(gap=[0, 30], pause=[0.0, 0.3], amplitude=[0.05, 1.0])
 async def frames(dut, gap, pause, amplitude):
     await check(dut, amplitude, gap=gap, pause=pause)
@@ -34,15 +34,17 @@ async def many_frames(dut, amplitude):
     await check(dut, amplitude, frames=MANY)
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
-async def reset_in_mid_frame(dut):
-    """At each of the first words, and in the midst of the frame."""
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def reset_in_mid_frame(dut, amplitude):
+    """At each of the first words, and in the midst of the frame, with en and without; as values are clipped, too."""
     config = configuration()
     inner = config.columns * (config.rows // 2) + config.columns // 2
-    await check(dut, 0.1, interrupts=[*range(1, 9), inner])
+    counts = [*range(1, 9), *range(inner, inner + 4)]
+    await check(dut, amplitude, interrupts=[count for count in counts for _ in "en"])
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut, strays):
     """After part of a frame, and after more than one without a start in between."""
