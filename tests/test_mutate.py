@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make mutate`: on one small core every verdict is the right one; every core of hdl/ is listed."""
 
+import itertools
 from dataclasses import replace
 
 import pytest
 
 from commands import mutate
 from commands import simulator as simulation
+from commands.equivalence import HOLDS, Gates, Graph, Spans
+from commands.mutants import SELECTOR
 
 SMALL = "burst_counter"
 
@@ -40,3 +43,43 @@ def test_holes_are_seen(outcome):
     assert seen.different > 0
     assert not seen.passed
     assert {survivor["verdict"] for survivor in seen.survivors} <= {"equivalent", "different"}
+
+
+def contrary(mutant):
+    """The graph of two registers that take a word and its inverse, and of a third that says so; all of them for `en`.
+
+    The output is the first, looked at while the third is high. Mutants invert it: "equal", where both are the same,
+    which no clock with `en` leaves; "loose" the same, but the second takes its word in every clock; "patient", where
+    four clocks without `en` have gone by.
+    """
+    en, rst, x, selector, word, inverse, valid, *idle = range(2, 2 * 12, 2)  # literals of inputs and registers
+    gates = Gates(12)
+
+    def choose(condition, one, other):
+        return gates.either((gates.both(condition, one), gates.both(condition ^ 1, other)))
+
+    following = {
+        word: choose(en, x, word),
+        inverse: x ^ 1 if mutant == "loose" else choose(en, x ^ 1, inverse),
+        valid: gates.both(rst ^ 1, gates.either((en, valid))),
+        idle[0]: en ^ 1,
+        **{later: gates.both(earlier, en ^ 1) for earlier, later in itertools.pairwise(idle)},
+    }
+    if mutant != "patient":
+        following |= dict.fromkeys(idle, 0)
+    inverts = idle[-1] if mutant == "patient" else gates.differ(word, inverse) ^ 1
+    outputs = {
+        "out[0]": gates.differ(word, gates.both(selector, inverts)),
+        "looked_at_out": gates.both(valid, rst ^ 1),
+        HOLDS: 1,
+    }
+    inputs = {"any_en": en, "any_rst": rst, "any_x": x, f"{SELECTOR}[0]": selector}
+    latches = [(latch, to, latch) for latch, to in following.items()]
+    return Graph(inputs, latches, outputs, [(2 * (12 + index), a, b) for index, (a, b) in enumerate(gates.ands)])
+
+
+@pytest.mark.parametrize(("mutant", "proven"), [("equal", True), ("loose", False), ("patient", False)])
+def test_what_only_a_clock_with_the_enable_makes(tmp_path, mutant, proven):
+    spans = Spans(contrary(mutant))
+    assert not spans.prove(1, tmp_path, 10), "the plain induction does for it: a poor test"
+    assert spans.prove_between_pauses(1, tmp_path, 10) == proven
