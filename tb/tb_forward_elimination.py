@@ -43,10 +43,10 @@ async def many_frames(dut, amplitude):
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.1, None])
 async def reset_in_mid_frame(dut, amplitude):
-    """At each of the first words, and in the midst of the frame, with en and without; as values are clipped, too."""
+    """As the first words enter and leave, and in the midst of the frame, with en and without; as values are clipped."""
     config = configuration()
     inner = config.columns * (config.rows // 2) + config.columns // 2
-    counts = [*range(1, 9), *range(inner, inner + 4)]
+    counts = [*range(1, FORWARD_ELIMINATION + 4), *range(inner, inner + 4)]
     await check(dut, amplitude, interrupts=[count for count in counts for _ in "en"])
 
 
