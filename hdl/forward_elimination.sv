@@ -143,7 +143,7 @@ module forward_elimination #(
   logic [1:0] clipped_mean;
   if (Neumann != 0) begin : g_mean
     // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its
-    // use. The products need no en: while it is low their operands stay.
+    // use.
     localparam int MomentWidth = Width + 2 * RowWidth + 2;
     logic [RowWidth:0] weight, weight_q;  // of d, row + 1
     assign weight = frame_start_q[ToState-1] ? (RowWidth + 1)'(1) : weight_q;
@@ -152,13 +152,12 @@ module forward_elimination #(
     logic signed [Width-1:0] sum, sum_q, mean;
     logic signed [ProductWidth-1:0] scaled;
     logic [3:0] after;  // clocks since d at position 0 was there
-    logic first_addend;
     logic [1:0] clipped_now;
     multiply #(.AWidth(Width), .BWidth(RowWidth + 2)) u_addend (
-      .clk, .en(start_q[ToState-1]), .a(d), .b({1'b0, weight}), .product(addend)
+      .clk, .en(en & start_q[ToState-1]), .a(d), .b({1'b0, weight}), .product(addend)
     );
     multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_scaled (
-      .clk, .en(after[2]), .a(sum_q), .b(CoeffWidth'(-MeanReciprocal)), .product(scaled)
+      .clk, .en(en & after[2]), .a(sum_q), .b(CoeffWidth'(-MeanReciprocal)), .product(scaled)
     );
     round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
       .in(moment), .out(sum), .clipped(clipped_now[0])
@@ -174,9 +173,8 @@ module forward_elimination #(
         after <= {after[2:0], start_q[ToState-1]};
         if (start_q[ToState-1]) begin
           weight_q <= weight + (RowWidth + 1)'(1);
-          first_addend <= frame_start_q[ToState-1];
         end
-        if (after[0]) moment <= (first_addend ? '0 : moment) + MomentWidth'(addend);
+        if (after[0]) moment <= (weight_q == (RowWidth + 1)'(2) ? '0 : moment) + MomentWidth'(addend);
         if (after[1]) sum_q <= sum;
         if (after[3]) mean_q <= mean;
       end
