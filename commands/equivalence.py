@@ -477,14 +477,17 @@ class Spans:
         if not {ENABLE, RESET} <= source.inputs.keys() or size > LARGEST:
             return False
         name = f"pause{number}.aig"
+        lengths = range(LINGERS + 2)  # of pauses
+
+        def patterns(count: int) -> list[tuple[int, ...]]:
+            """So many clocks with `en`, a pause behind each."""
+            every = product(lengths, repeat=count)
+            return [tuple(en for pause in pauses for en in (1, *[0] * pause)) for pauses in every]
+
         for count in range(1, ENABLED + 1):
-            parts = [(False, 1, count)] + [(True, 0, early) for early in range(count)]
-            before = []
-            for first, begins, highs in parts:
-                for pauses in product(range(LINGERS + 2), repeat=highs + 1 - begins):
-                    lead = pauses[: 1 - begins]
-                    enables = [0] * sum(lead) + [en for pause in pauses[1 - begins :] for en in (1, *[0] * pause)]
-                    before.append((first, tuple(enables)))
+            before = [(False, pattern) for pattern in patterns(count)]
+            for early, lead in product(range(count), lengths):
+                before += [(True, (0,) * lead + pattern) for pattern in patterns(early)]
             for first, enables in before:
                 part = (len(enables), 1, first)
                 bad = self.formula(number, *part, folder / name, enables)
