@@ -98,9 +98,9 @@ baselines: $(BASELINES)
 report: $(STAMP)
 	@$(PY) -m commands.report $(if $(OUT),'OUT=$(OUT)')
 
-# From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS OUT
+# From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS CIRCLES=found OUT
 calibrate: $(STAMP)
-	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS OUT,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS CIRCLES OUT,$(if $($(v)),'$(v)=$($(v))'))
 
 # Area, slack and power in standard cells, from any Liberty file (LIB, NODE_NM): docs/hardware.md. CLOCK_MHZ, TIMED.
 asic: $(HARDWARE)

@@ -3,11 +3,16 @@
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.contact_events import FRACTION, WORDS, Record, centroid, record
+from models.calibration import load
+from models.configuration import COLUMNS, Configuration
+from models.contact_events import FRACTION, WORDS, ContactEvents, Record, Settings, centroid, record
+from models.frames import load_frames
+from models.tactile_depth import tactile_depth
 
 SOURCES = ["round_saturate.sv", "contact_events.sv"]
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
@@ -34,3 +39,22 @@ def test_words_are_read_as_they_were_written(status, frame, time, area, peak, pl
     given = Record(status, frame, time, area, peak, place, least, greatest, area, frame, peak << 21, middle)
     assert len(given.words) == WORDS
     assert record(given.words) == given
+
+
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver):
+    """Neumann: what is not above has the mean -volume / (pixels - area)."""
+    config = Configuration(columns=32, solver=solver, neumann=True)
+    frames = load_frames("bench", (32, 32))
+    depths = tactile_depth(frames.pixels, load("synthetic").on_grid(frames.pixel_scale), config)
+    for depth in depths:
+        threshold = int(depth.max() // 4)
+        settings = Settings(threshold, threshold, 1, 1)
+        events = ContactEvents(32, 32, solver == "tridiagonal")
+        beats = [(int(code), at == 0, at % 32 == 31, at == depth.size - 1) for at, code in enumerate(depth.ravel())]
+        found = [events.beat(*beat, settings, 0) for beat in beats][-1]
+        assert found is not None
+        assert found.area > 0
+        floor = depth[depth <= threshold].mean()
+        told = -found.volume / (depth.size - found.area)
+        assert abs(told - floor) <= np.abs(depth).max() * 1e-5  # measured: 5e-7, 8e-6

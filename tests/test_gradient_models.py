@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from models import reference
 from models.calibration import Calibration
 from models.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
+from models.divergence import divergence
 from models.errors import InputError
 from models.flat_field import (
     captured_gains,
@@ -20,6 +21,7 @@ from models.flat_field import (
 )
 from models.quadratic_gradient import DROPPED, coefficient_map, polynomial_words, quadratic_gradient
 from models.round_saturate import Monitor
+from models.tactile_depth import solve
 
 SHAPES = [
     {"columns": 16},
@@ -47,6 +49,24 @@ def quadratics(seed: int, largest: float = 0.9) -> Calibration:
 
 
 # Flat-fielding.
+
+
+def test_a_capture_zeroes_the_depth_of_an_untouched_gel():
+    """Neumann, whose floor nothing else fixes: lights that drift tilt and bend it, and a capture takes that away."""
+    calibration = quadratics(3)
+    config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit)
+    words = polynomial_words(calibration, config, 15 / 64)
+    before = lit(config, 4, 16)
+    y, x = np.indices((64, 64)) / 64
+    drifted = np.clip(np.rint(before * (0.9 + 0.1 * np.stack([x, y, x * y], axis=-1))), 0, 255).astype(np.uint8)
+
+    def floor(frames, gains):
+        slopes = quadratic_gradient(deviations(frames[:1], gains, config), words, config)
+        return np.std(solve(divergence(slopes, True), config)) * config.depth_lsb_px
+
+    calibrated = floor(before, captured_gains(before, config))
+    assert floor(drifted, captured_gains(before, config)) > 10 * calibrated
+    assert floor(drifted, captured_gains(drifted, config)) < 2 * calibrated
 
 
 @pytest.mark.parametrize("choices", SHAPES, ids=str)
