@@ -4,8 +4,8 @@
 The folder holds background.png, the presses as PNGs, and presses.csv: `frame` (a path in the folder), `diameter_mm` (or
 `ball_diameter_mm`) of the ball, and, where they are known, the contact's circle `centre_x_px`, `centre_y_px`,
 `contact_radius_px`, and `ball_radius_px`, all in camera pixels. Circles that are not given are found in the picture;
-with CIRCLES=found all are: half a pixel in a radius of 26 is 4 % of the cap's height. A circle that is found lies about a
-pixel within the contact's edge, where the gel is still on the ball.
+with CIRCLES=found all are: half a pixel in a radius of 26 is 4 % of the cap's height. A circle that is found lies about
+a pixel within the contact's edge, where the gel is still on the ball.
 
 Frames are seen as the hardware sees them: brought to the grid, rounded to 8 bits, flat-fielded by interpolated gains
 (models/flat_field.py). The slope of a pixel is that of the ball where it touches, 0 elsewhere. A press that the square
