@@ -163,7 +163,7 @@ module gain_map #(
 
   // Stages behind the read.
 
-  logic read_q, upper_q, segment_read_q, read_q2, upper_q2, segment_read_q2, node_done, segment_done;
+  logic read_q, upper_q, segment_read_q, read_q2, first_q2, segment_read_q2, node_done, segment_done;
   logic [ToSum-1:0] begins_q, inner_q, start_q;
 
   always_ff @(posedge clk) begin
@@ -184,9 +184,9 @@ module gain_map #(
       upper_q <= upper;
       segment_read_q <= segment_q2;
       read_q2 <= read_q;
-      upper_q2 <= upper_q;
+      first_q2 <= ~upper_q;
       segment_read_q2 <= segment_read_q;
-      node_done <= read_q2 & upper_q2;
+      node_done <= read_q2 & ~first_q2;
       segment_done <= segment_read_q2;
       begins_q <= {begins_q[ToSum-2:0], begins};
       inner_q <= {inner_q[ToSum-2:0], inner};
@@ -246,7 +246,8 @@ module gain_map #(
     assign unused_sign = rounded[Width];
     always_ff @(posedge clk) begin
       if (en) begin
-        sums[c*SumWidth+:SumWidth] <= (upper_q2 ? sum : '0) + product[SumWidth-1:0];
+        // In this form: where the sum stands first, Yosys 0.70 packs it into a DSP48 with the choice inverted.
+        sums[c*SumWidth+:SumWidth] <= (first_q2 ? '0 : sum) + product[SumWidth-1:0];
         if (node_done) far <= sum;
         if (segment_done) begin
           near <= far;
