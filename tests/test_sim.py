@@ -51,6 +51,8 @@ def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
 @pytest.mark.parametrize("boundary", sim.BOUNDARIES)
 @pytest.mark.parametrize(("rows", "columns", "chosen"), [(8, 16, "icarus"), (240, 256, "verilator")])
 def test_rectangles(tmp_path, rows, columns, boundary, chosen):
+    if (rows, boundary) == (240, "neumann") and not REGRESS:
+        pytest.skip("REGRESS=1 is not set (make regress sets it): a large build; the small one runs here")
     given = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
     report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
     assert report["grid"] == [rows, columns]
