@@ -45,7 +45,7 @@ OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL, CAPTURE = REGISTERS["STATUS"], REGISTERS["CONTROL"], REGISTERS["CAPTURE"]
 COUNTER_SIGNALS = {name: name.lower() for name in COUNTERS} | {"SATURATIONS": "saturations_count"}
 HELD = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE", "TIMEOUT", "DARK_LEVEL")  # as outputs
-RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
+RANDOM_CLOCKS = 10_000 if REGRESS else 3_000
 TABLE_CLOCKS = 4  # from the one in which an entry is asked for to that which takes its words, both counted
 
 
