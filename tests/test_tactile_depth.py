@@ -73,7 +73,7 @@ def test_rtl(run_tb, simulator, choices, tests):
     spectral, slow = config.solver == "spectral", simulator == "icarus"
     if not REGRESS:
         if slow and tests == FLAT and spectral:
-            pytest.skip("REGRESS=1 is not set (make regress sets it): half a minute; the other solver runs it here")
+            pytest.skip("REGRESS=1 is not set (make regress sets it): half a minute; Verilator runs the same")
         if not tests and slow:
             tests = SLOW if spectral else f"{ONCE}|{DISTURBED}"
         elif not tests:
