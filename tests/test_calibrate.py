@@ -506,7 +506,7 @@ def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real
 
 @pytest.mark.parametrize("model", ["lut", "quadratic"])
 def test_a_capture_brings_the_floor_of_a_real_gel_back_when_its_light_has_drifted(real, real_presses, model):
-    """Lights up to 11 % weaker and 9 % stronger across the gel; Neumann, bit-accurate. And the heights come back with it."""
+    """Lights up to 11 % weaker and 9 % stronger across the gel; Neumann, bit-accurate. Heights come back with it."""
     presses, calibration = real_presses, load("gelsight-mini")
     config, size = pipeline(calibration, presses.size), presses.size
     background = read_picture(real / "background.png")

@@ -2,8 +2,8 @@
 """frame_guard: RTL against the model, the model against the table of its header."""
 
 import pytest
-from stream import REGRESS
 from axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
+from stream import REGRESS
 
 from models.frame_guard import Word, frame_guard
 
