@@ -8,7 +8,8 @@ initialised start with anything, but with the same in both. The first clock is o
 alike they are one, so that what is left for the solver is what the mutant can reach. Then yosys-abc: `bmc3` looks for
 a difference, `scorr` and `pdr` prove that there is none. Before them comes a proof that knows nothing of reachable
 states, and so takes seconds where a whole solver takes them hours: from any state that is the same in both copies, a
-few clocks later they are in the same state again, and nothing was seen (`Spans`).
+few clocks later they are in the same state again, and nothing was seen (`Spans`). And a proof that knows no data: where
+a difference can go (`Shadow`), for what is wrong only in places that are overwritten before anyone looks.
 """
 
 from __future__ import annotations
@@ -17,11 +18,14 @@ import heapq
 import re
 import subprocess
 import threading
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
+
+import numpy as np
 
 from commands.mutants import SELECTOR, instance, ports, yosys
 
@@ -549,6 +553,155 @@ class Idling(Gates):
         return "UNSATISFIABLE" in abc("read_aiger idling.aig; dc2; iprove", folder, seconds)
 
 
+EXACT = re.compile(r"any_(\w+|in_place\[\d+\])")  # inputs that are not left unknown: others are data
+
+
+class Shadow(Gates):
+    """Where a mutant's difference can go, whatever the data are.
+
+    Of each node of the core it is known whether it can be 1, whether it can be 0, and whether a mutant may have another
+    value there. Inputs of one bit and places of pixels are what they are, all others, and what is not initialised,
+    unknown: so few states are left that all can be visited (`never`). A difference passes a gate whose
+    other side may be 1; so more is reached than in truth, and where nothing that is looked at is reached there is no
+    difference. (Three values: R. E. Bryant, "A switch-level model", 1984; differences that are followed through gates:
+    M. Tiwari et al., "Complete information flow tracking from the gates up", ASPLOS 2009.)
+    """
+
+    def __init__(self, source: Graph, number: int, readers: Readers):
+        exact = [literal for name, literal in source.inputs.items() if EXACT.fullmatch(name)]
+        self.inputs = len(exact)
+        started = 2 * (1 + self.inputs)
+        super().__init__(2 + self.inputs + 3 * len(source.latches))
+        one, zero, differs = {0: 0}, {0: 1}, {0: 0}  # of nodes
+
+        def give(literal: int, can_be_one: int, can_be_zero: int, can_differ: int) -> None:
+            one[literal], zero[literal], differs[literal] = can_be_one, can_be_zero, can_differ
+
+        for literal in source.inputs.values():
+            give(literal, 1, 1, 0)
+        for place, literal in enumerate(exact, 1):
+            value = 2 * place
+            if literal == source.inputs.get(RESET):  # the first clock is one of reset
+                value = self.either((value, started ^ 1))
+            give(literal, value, value ^ 1, 0)
+        # In the core and in the mutant, of what hangs on the selector alone.
+        chosen = {0: (0, 0)} | {literal: (0, number >> bit & 1) for literal, bit in readers.selector.items()}
+        for literal, (here, there) in chosen.items():
+            give(literal, here, 1 - here, here ^ there)
+        # AIGER's latches start at 0, so that what a latch of the core can be is kept inverted where it can be that.
+        kept = []
+        for place, (latch, _, start) in enumerate(source.latches):
+            first = started + 2 + 6 * place
+            kept.append((first, int(start != 0), int(start != 1)))
+            give(latch, first ^ kept[-1][1], first + 2 ^ kept[-1][2], first + 4)
+        for out, *sides in source.ands:
+            held = [chosen.get(side & ~1) for side in sides]
+            known = [k and (k[0] ^ side & 1, k[1] ^ side & 1) for k, side in zip(held, sides, strict=True)]
+            if (0, 0) in known or all(known):
+                here, there = (min(pair) for pair in zip(*(k for k in known if k), strict=True))
+                chosen[out] = here, there
+                give(out, here, 1 - here, here ^ there)
+                continue
+            ones = [(zero if side & 1 else one)[side & ~1] for side in sides]
+            zeros = [(one if side & 1 else zero)[side & ~1] for side in sides]
+            apart = [differs[side & ~1] for side in sides]
+            opens = [max(k) if k else self.either((o, d)) for k, o, d in zip(known, ones, apart, strict=True)]
+            passes = self.either((self.both(apart[0], opens[1]), self.both(apart[1], opens[0])))
+            give(out, self.both(*ones), self.either(zeros), passes)
+        self.latches = [1]  # of `started`, then of what a latch can be and whether it differs
+        for (_, to, _), (_, not_one, not_zero) in zip(source.latches, kept, strict=True):
+            can_be_one, can_be_zero = (zero, one) if to & 1 else (one, zero)
+            self.latches += [can_be_one[to & ~1] ^ not_one, can_be_zero[to & ~1] ^ not_zero, differs[to & ~1]]
+        wrong = []
+        for looked_at, to in readers.outputs:
+            seen = self.either(((zero if looked_at & 1 else one)[looked_at & ~1], differs[looked_at & ~1]))
+            wrong.append(self.both(seen, differs[to & ~1]))
+        self.bad = self.either(wrong)
+
+    def write(self, path: Path) -> None:
+        """As a binary AIGER file with one output."""
+        top = self.first - 1 + len(self.ands)
+        head = f"aig {top} {self.inputs} {len(self.latches)} 1 {len(self.ands)}\n"
+        coded = bytearray()
+        for index, sides in enumerate(self.ands):
+            node, (low, high) = 2 * (self.first + index), sorted(sides)
+            coded += number_of(node - high) + number_of(high - low)
+        path.write_bytes((head + "".join(f"{to}\n" for to in [*self.latches, self.bad])).encode() + bytes(coded))
+
+    def never(self, folder: Path, name: str, seconds: int) -> bool:
+        """Whether no difference is ever seen: abc makes the graph small, then all its states are visited."""
+        if self.bad < 2 or self.inputs > MOST_EXACT:
+            return self.bad == 0
+        self.write(folder / name)
+        small = folder / f"small-{name}"
+        small.unlink(missing_ok=True)
+        abc(f"read_aiger {name}; scleanup; scorr; dc2; write_aiger {small.name}", folder, 6 * seconds + 20)
+        return small.is_file() and unreachable(small, 6 * seconds)
+
+
+MOST_EXACT = 9  # bits of inputs that are not left unknown
+MOST_STATES = 2_000_000
+CHUNK = 1 << 28  # bytes for all nodes of the states looked at together
+
+
+def unreachable(path: Path, seconds: int) -> bool:
+    """Whether the output of a binary AIGER file stays low in every state that its latches can reach from 0."""
+    data = path.read_bytes()
+    lines = data.split(b"\n", 1)
+    _, inputs, latches, _, ands = (int(word) for word in lines[0].split()[1:6])
+    *rows, data = lines[1].split(b"\n", latches + 1)
+    following, bad = [int(row.split()[0]) for row in rows[:-1]], int(rows[-1])
+    numbers: list[int] = []
+    value = shift = 0
+    for byte in data:
+        if len(numbers) == 2 * ands:  # behind that, names and a comment
+            break
+        value |= (byte & 127) << shift
+        shift += 7
+        if byte < 128:
+            numbers.append(value)
+            value = shift = 0
+    gates = []
+    for index, (far, near) in enumerate(zip(numbers[::2], numbers[1::2], strict=True)):
+        high = 2 * (1 + inputs + latches + index) - far
+        gates.append((high, high - near))
+    given = (np.arange(1 << inputs)[:, None] >> np.arange(inputs) & 1).astype(np.uint8)
+    most = max(1, (CHUNK * 8 // (1 + inputs + latches + ands)) >> inputs)
+    frontier, visited = np.zeros((1, latches), np.uint8), set()
+    end = time.monotonic() + seconds
+    while len(frontier):
+        found = []
+        for begin in range(0, len(frontier), most):
+            states = np.repeat(frontier[begin : begin + most], len(given), axis=0)
+            count = len(states)
+            inputs_now = np.tile(given, (count // len(given), 1))
+            leaves = np.concatenate((np.zeros((count, 1), np.uint8), inputs_now, states), axis=1)
+            nodes = list(np.packbits(leaves, axis=0).T.copy())
+
+            def read(literal: int, nodes: list[np.ndarray] = nodes) -> np.ndarray:
+                return ~nodes[literal >> 1] if literal & 1 else nodes[literal >> 1]
+
+            for a, b in gates:
+                nodes.append(read(a) & read(b))
+            if np.unpackbits(read(bad), count=count).any() or time.monotonic() > end:
+                return False
+            if not latches:
+                continue
+            # As bytes, a state each.
+            after = np.stack([np.unpackbits(read(literal), count=count) for literal in following], 1)
+            packed = np.packbits(after, axis=1)
+            words = packed.view(np.dtype((np.void, packed.shape[1]))).ravel()
+            for word in np.unique(words).tolist():
+                if word not in visited:
+                    visited.add(word)
+                    found.append(word)
+        if len(visited) > MOST_STATES:
+            return False
+        words = np.frombuffer(b"".join(found), np.uint8).reshape(len(found), -(-latches // 8))
+        frontier = np.unpackbits(words, axis=1, count=latches)
+    return True
+
+
 def abc(commands: str, folder: Path, seconds: int) -> str:
     """What yosys-abc prints, or nothing if it takes too long."""
     package = find_spec("pyosys")
@@ -582,6 +735,8 @@ def settle(source: Graph, spans: Spans, number: int, folder: Path, seconds: int)
     miter = Miter(source, number)
     if miter.bad == 0:
         return EQUIVALENT, "by structure"
+    if Shadow(source, number, spans.readers).never(folder, f"shadow{number}.aig", seconds):
+        return EQUIVALENT, "by where a difference can go"
     if spans.prove_between_pauses(number, folder, seconds):
         return EQUIVALENT, "by induction between pauses"
     if spans.prove(number, folder, seconds):

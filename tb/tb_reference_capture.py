@@ -9,7 +9,7 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 from stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, send_apart
 
-from models.configuration import GAIN_WIDTH
+from models.configuration import GAIN_FRACTION, GAIN_WIDTH
 from models.reference_capture import reference_capture, reference_capture_clocks
 
 PIXELS = 4096  # that a test sends, about
@@ -36,6 +36,7 @@ class Capture:
         self.captures = 0
         self.taken = []  # frames since the request: pixels, bad, log2_frames
         self.frame = None  # that is being sent: pixels, bad
+        self.flipped = None  # what a test put into the memory before the last frame
         dut.request.value, dut.log2_frames.value = 0, 0
 
     async def start(self):
@@ -70,6 +71,8 @@ class Capture:
                     found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)
                     if found:
                         self.due, self.gains = clock + self.clocks, found[1]
+                        if self.flipped is not None:
+                            self.gains = self.gains_behind_flips(self.taken[-1][0])
             if dut.request.value:
                 self.busy, self.due, self.inside = True, None, False
                 self.taken = []
@@ -99,6 +102,16 @@ class Capture:
             case 2:
                 return np.broadcast_to(self.generator.integers(0, 256, 3, dtype=np.uint8), shape)
         return self.generator.integers(0, 256, shape, dtype=np.uint8)
+
+    def gains_behind_flips(self, frame):
+        """Of sums that are what the memory was made to hold and those of the last frame, modulo their word."""
+        block = 1 << self.config.reference_block_log2
+        rows, columns = self.config.reference_nodes
+        whole = frame[: rows * block, : columns * block].astype(np.int64)
+        sums = whole.reshape(rows, block, columns, block, 3).sum(axis=(1, 3)).reshape(-1, 3)
+        sums = sums + self.flipped & (1 << GAIN_WIDTH) - 1
+        dividend = 2 * len(self.taken) * block * block << GAIN_FRACTION
+        return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << GAIN_WIDTH) - 1)
 
     async def send(self, bad=False):
         """A frame."""
@@ -149,6 +162,25 @@ async def most_frames(dut):
     dut.log2_frames.value = 0
     await device.until_done()
     assert len(device.taken) >= 1 << device.largest
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def any_sum(dut):
+    """The memory holds something else before the last frame: sums of all bits, which frames this small do not make."""
+    device = Capture(dut, 0.0, 0.0)
+    if len(device.places) > PIXELS:
+        return
+    await device.start()
+    for _ in range(10):
+        await device.request(1)
+        await device.send()
+        for _ in range(8):  # until its last sum is written
+            await RisingEdge(dut.clk)
+        device.flipped = device.generator.integers(0, 1 << GAIN_WIDTH, (len(device.memory), 3))
+        for node, (red, green, blue) in enumerate(device.flipped.tolist()):
+            device.memory[node] = red | green << GAIN_WIDTH | blue << 2 * GAIN_WIDTH
+        await device.until_done()
+    assert device.captures == 10
 
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")

@@ -8,7 +8,7 @@ import pytest
 
 from commands import mutate
 from commands import simulator as simulation
-from commands.equivalence import HOLDS, Gates, Graph, Spans
+from commands.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans
 from commands.mutants import SELECTOR
 
 SMALL = "burst_counter"
@@ -83,3 +83,22 @@ def test_what_only_a_clock_with_the_enable_makes(tmp_path, mutant, proven):
     spans = Spans(contrary(mutant))
     assert not spans.prove(1, tmp_path, 10), "the plain induction does for it: a poor test"
     assert spans.prove_between_pauses(1, tmp_path, 10) == proven
+
+
+@pytest.mark.parametrize(("stays", "proven"), [(False, True), (True, False)])
+def test_where_a_difference_can_go(tmp_path, stays, proven):
+    """A register that takes a word, and in the mutant one in every clock: seen where it is looked at later as well."""
+    take, rst, x, selector, word, valid = range(2, 2 * 7, 2)
+    gates = Gates(7)
+    takes = gates.either((take, selector))
+    following = {
+        word: gates.either((gates.both(takes, x), gates.both(takes ^ 1, word))),
+        valid: gates.both(rst ^ 1, gates.either((take, valid)) if stays else take),
+    }
+    graph = Graph(
+        {"any_take": take, "any_rst": rst, "any_x[0]": x, f"{SELECTOR}[0]": selector},
+        [(latch, to, latch) for latch, to in following.items()],
+        {"out[0]": word, "looked_at_out": gates.both(valid, rst ^ 1), HOLDS: 1},
+        [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
+    )
+    assert Shadow(graph, 1, Readers(graph)).never(tmp_path, "shadow.aig", 5) == proven
