@@ -117,12 +117,14 @@ def play(
     registers: Mapping[str, int] | None = None,
     seed: int = 1,
     waves: bool = False,
+    floor: np.ndarray | None = None,
 ) -> Played:
-    """Play entries in `folder`, from reset on, with `registers` written; then read the registers.
+    """Play entries in `folder`, from reset on, with `registers` written; then read the registers. `floor`: of
+    `models.tactile_depth`.
 
     It ends when the file does and `total_frames` have left, and fails after so many `clocks`.
     """
-    write_roms(folder, calibration, config)
+    write_roms(folder, calibration, config, floor)
     np.asarray(entries, dtype=">u4").tofile(folder / "entries.bin")
     built = build(simulator, config, waves)
     registers = dict(registers or {})

@@ -9,15 +9,17 @@ a pixel within the contact's edge, where the gel is still on the ball.
 
 Frames are seen as the hardware sees them: brought to the grid, rounded to 8 bits, flat-fielded by interpolated gains
 (models/flat_field.py). The slope of a pixel is that of the ball where it touches, 0 elsewhere. A press that the square
-crop cuts is fitted; of the whole ones every second is held out, and what is printed is of those alone.
+crop cuts is fitted; of the whole ones every second is held out, and what is printed is of those alone. HELD_OUT=each
+holds out every whole press in turn, each measured by a fit to all others: twice as many, for twenty times the fits.
 
 How the slopes are weighted was settled on the fitted presses alone, each left out in turn. `quadratic`: all pixels
 within 0.9 of the contact's radius count the same, the surroundings not at all: a pixel of the reference's colour reads
 0 whatever the coefficients, and just outside the circle the gel is not flat, so that labels of 0 there cost up to half
-of every height. At the circle itself the gel has left the ball. The presses are then moved to where the fit sees the
-ball's top (about a grid pixel), and the fit is repeated, twice. `lut`: what lies beyond twice the radius counts in all
-as much as the contacts, or a gel at rest would not read flat; bins seldom seen lean on a polynomial of third degree in
-the colour. Slopes steeper than those of the balls are unknown to both.
+of every height. At the circle itself the gel has left the ball. Besides slopes the heights of the caps are fitted, of
+the presses that are whole: the relative error of one counts as the slopes of `CAP_PIXELS` pixels do. The presses are
+then moved to where the fit sees the ball's top (about a grid pixel), and the fit is repeated, twice. `lut`: what lies
+beyond twice the radius counts in all as much as the contacts, or a gel at rest would not read flat; bins seldom seen
+lean on a polynomial of third degree in the colour. Slopes steeper than those of the balls are unknown to both.
 """
 
 from __future__ import annotations
@@ -38,9 +40,11 @@ from skimage.feature import canny
 from skimage.filters import gaussian
 from skimage.measure import CircleModel, ransac
 from skimage.transform import hough_circle
+from tqdm import tqdm
 
 from commands import draw
 from commands import simulator as simulation
+from models import reference
 from models.calibration import BITS_PER_CHANNEL, MODELS, Calibration
 from models.configuration import DEVIATION, Configuration
 from models.divergence import divergence
@@ -58,6 +62,7 @@ LARGEST_TABLE = 1 << 20  # bytes of presses.csv
 PITCHES_AGREE = 0.02  # share by which PITCH and the balls' radii in pixels may differ
 FITTED_SHARE = 0.9  # of the contact's radius
 RECENTRED = 2  # times
+CAP_PIXELS = 300
 FURTHEST_SHIFT = 0.25  # of the contact's radius
 NOTHING_TOUCHES = 2.0  # radii from the centre
 BITS = 5
@@ -451,21 +456,49 @@ def load_presses(folder: Path, pitch_mm: float | None = None, compare: bool = Fa
 # Fitting.
 
 
-def fit_quadratic(views: tuple[View, ...], pitch_mm: float) -> tuple[np.ndarray, tuple[View, ...]]:
-    """The coefficients, float64 (2, 3, 6), and the views with their presses moved to where the fit sees them."""
-    size = len(views[0].frame)
+Depths = dict[str, np.ndarray]
+
+
+def depths_of(feature: np.ndarray) -> np.ndarray:
+    """Depth, grid pixels, that each number of a fit makes of its colour: (2 n, size, size) of (size, size, n), dz/dx
+    first, then dz/dy. Neumann, in double precision: depth is linear in the numbers."""
+    size, count = len(feature), feature.shape[-1]
+    depths = []
+    for axis in (0, 1):
+        slopes = np.zeros((count, size, size, 2))
+        slopes[..., axis] = np.moveaxis(feature, -1, 0)
+        depths.append(reference.solve(divergence(slopes, True), True).astype(np.float32))
+    return np.concatenate(depths)
+
+
+def fit_quadratic(
+    views: tuple[View, ...], pitch_mm: float, known: Depths | None = None
+) -> tuple[np.ndarray, tuple[View, ...]]:
+    """The coefficients, float64 (2, 3, 6), and the views with their presses moved to where the fit sees them.
+
+    `known` keeps what `depths_of` finds, by press, from one fit to the next.
+    """
+    size, known = len(views[0].frame), {} if known is None else known
     terms = quadratic_terms(size, size, pitch_mm)
     features = [
         (view.deviations[..., None] * DEVIATION.lsb * terms[..., None, :]).reshape(size, size, -1) for view in views
     ]
+    for view, feature in zip(views, features, strict=True):
+        if view.press.margin(size) >= 0 and view.press.name not in known:
+            known[view.press.name] = depths_of(feature)
+    numbers = 2 * features[0].shape[-1]
     moved = views
     for again in range(RECENTRED + 1):
-        squares, products = 0, 0
-        for view, feature in zip(moved, features, strict=True):
+        squares, products = np.zeros((numbers, numbers)), np.zeros(numbers)
+        for view, original, feature in zip(moved, views, features, strict=True):
             inside = view.press.distance(size) < FITTED_SHARE
-            squares = squares + feature[inside].T @ feature[inside]
-            products = products + feature[inside].T @ view.press.slopes(size)[inside]
-        fitted = np.linalg.lstsq(squares, products, rcond=None)[0]
+            squares += np.kron(np.eye(2), feature[inside].T @ feature[inside])
+            products += (feature[inside].T @ view.press.slopes(size)[inside]).T.ravel()
+            if original.press.margin(size) >= 0:
+                cap = np.array([view.press.recovered(depth) for depth in known[view.press.name]])
+                squares += CAP_PIXELS * np.outer(cap, cap)
+                products += CAP_PIXELS * cap
+        fitted = np.linalg.lstsq(squares, products, rcond=None)[0].reshape(2, -1).T
         if again < RECENTRED:
             moved = tuple(
                 replace(view, press=recentred(original.press, feature @ fitted))
@@ -593,12 +626,12 @@ def summary(scores: list[Score]) -> dict[str, float]:
     }
 
 
-def table(presses: Presses, scores: dict[str, list[Score]], seen: np.ndarray | None) -> str:
+def table(measured: list[View], scores: dict[str, list[Score]], seen: np.ndarray | None) -> str:
     """Press by press, and all together."""
     head = "".join(f"{model:>24}" for model in scores)
     names = "".join(f"{'slope R2':>12}{'cap height':>12}" for _ in scores)
     lines = [f"{'held out':<20}{head}", f"{'':<20}{names}"]
-    for index, view in enumerate(presses.held_out):
+    for index, view in enumerate(measured):
         cells = "".join(f"{rows[index].r2:>12.3f}{rows[index].cap:>12.3f}" for rows in scores.values())
         lines.append(f"{view.press.name[-19:]:<20}{cells}")
     for label, key in (
@@ -614,10 +647,7 @@ def table(presses: Presses, scores: dict[str, list[Score]], seen: np.ndarray | N
     if seen is not None:
         bits = seen.shape[0].bit_length() - 1
         met = np.concatenate(
-            [
-                seen.ravel()[bins_of(view.codes, bits)[view.press.distance(presses.size) < 1]]
-                for view in presses.held_out
-            ]
+            [seen.ravel()[bins_of(view.codes, bits)[view.press.distance(len(view.frame)) < 1]] for view in measured]
         )
         lines.append(
             f"table of {bits} bits a colour: {100 * seen.mean():.1f} % of its bins were seen in the fit, and "
@@ -636,6 +666,7 @@ class Request:
     pitch_mm: float | None
     bits: int
     find: bool
+    each: bool
     out: Path | None
 
 
@@ -646,7 +677,7 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    given = dict.fromkeys(("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "OUT"), "")
+    given = dict.fromkeys(("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "HELD_OUT", "OUT"), "")
     for argument in arguments:
         key, equals, value = argument.partition("=")
         if not equals or key not in given:
@@ -671,6 +702,10 @@ def parse(arguments: list[str]) -> Request:
         raise InputError(
             f"CIRCLES={given['CIRCLES']}: accepted are table (where it has them) and found (in the pictures)"
         )
+    if given["HELD_OUT"] not in ("", "second", "each"):
+        raise InputError(
+            f"HELD_OUT={given['HELD_OUT']}: accepted are second and each: whole presses left out of the fit"
+        )
     bits = number("BITS", int, *BITS_PER_CHANNEL)
     out = Path(given["OUT"]) if given["OUT"] else None
     if out is not None and out.suffix != ".npz":
@@ -681,8 +716,46 @@ def parse(arguments: list[str]) -> Request:
         number("PITCH", float, 1e-6, 1e3),
         BITS if bits is None else int(bits),
         given["CIRCLES"] == "found",
+        given["HELD_OUT"] == "each",
         out,
     )
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What some presses make of the models asked for; `seen`: bins of the table; `moved`: the presses, recentred."""
+
+    calibration: Calibration
+    seen: np.ndarray | None
+    moved: tuple[View, ...]
+
+
+def fitted(presses: Presses, views: tuple[View, ...], request: Request, name: str, known: Depths) -> Fit:
+    coefficients, moved = fit_quadratic(views, presses.grid_pitch_mm, known)
+    gradient, seen = fit_table(moved, request.bits) if "lut" in request.models else (None, None)
+    quadratic = "quadratic" in request.models
+    calibration = Calibration(
+        name,
+        gradient,
+        presses.pitch_mm,
+        coefficients if quadratic else None,
+        max(view.press.largest_slope for view in views) if quadratic else 0.0,
+    )
+    return Fit(calibration, seen, moved)
+
+
+def scores_of_each(presses: Presses, request: Request, known: Depths) -> dict[str, list[Score]]:
+    """Of every whole press, by a fit to all others."""
+    every = presses.fitted + presses.held_out
+    scores: dict[str, list[Score]] = {model: [] for model in request.models}
+    whole = [view for view in every if view.press.margin(presses.size) >= 0]
+    for one in tqdm(whole, "holding out", leave=False, disable=None):
+        others = tuple(view for view in every if view is not one)
+        calibration = fitted(presses, others, request, "others", known).calibration
+        config = pipeline(calibration, presses.size)
+        for model, rows in scores.items():
+            rows.append(score(one, slope_codes(one, model, calibration, config, presses.grid_pitch_mm), config))
+    return scores
 
 
 def run(request: Request) -> int:
@@ -691,32 +764,30 @@ def run(request: Request) -> int:
     for note in presses.notes:
         print(f"make calibrate: {note}", file=sys.stderr)
     out = request.out or simulation.ROOT / "build" / "calibrate" / f"{folder.resolve().name}.npz"
-    coefficients, recentred_views = fit_quadratic(presses.fitted, presses.grid_pitch_mm)
-    gradient, seen = fit_table(recentred_views, request.bits) if "lut" in request.models else (None, None)
-    calibration = Calibration(
-        out.stem,
-        gradient,
-        presses.pitch_mm,
-        coefficients if "quadratic" in request.models else None,
-        max(view.press.largest_slope for view in presses.fitted) if "quadratic" in request.models else 0.0,
-    )
-    config = pipeline(calibration, presses.size)
-    pitch = presses.grid_pitch_mm
+    known: Depths = {}
+    fit = fitted(presses, presses.fitted, request, out.stem, known)
+    calibration, config, pitch = fit.calibration, pipeline(fit.calibration, presses.size), presses.grid_pitch_mm
     slopes = {
         model: [slope_codes(view, model, calibration, config, pitch) for view in presses.held_out]
         for model in request.models
     }
-    scores = {
-        model: [score(view, codes, config) for view, codes in zip(presses.held_out, found, strict=True)]
-        for model, found in slopes.items()
-    }
+    if request.each:
+        scores = scores_of_each(presses, request, known)
+        measured = [view for view in presses.fitted + presses.held_out if view.press.margin(presses.size) >= 0]
+    else:
+        measured = list(presses.held_out)
+        scores = {
+            model: [score(view, codes, config) for view, codes in zip(measured, found, strict=True)]
+            for model, found in slopes.items()
+        }
     best = max(scores, key=lambda model: summary(scores[model])["r2"])
     moved = [
         math.hypot(new.press.x - old.press.x, new.press.y - old.press.y) * presses.scale
-        for new, old in zip(recentred_views, presses.fitted, strict=True)
+        for new, old in zip(fit.moved, presses.fitted, strict=True)
     ]
     print(
-        f"{len(presses.fitted)} presses fitted, {len(presses.held_out)} held out, {presses.pitch_mm:g} mm per pixel, "
+        f"{len(presses.fitted)} presses fitted, {len(presses.held_out)} held out"
+        f"{f' (below: {len(measured)} in turn)' if request.each else ''}, {presses.pitch_mm:g} mm per pixel, "
         f"grid of {presses.size}; centres of the fitted moved by {np.median(moved):.1f} pixels (median)"
     )
     if len(presses.agreement):
@@ -726,10 +797,11 @@ def run(request: Request) -> int:
             f"circles found in {len(presses.agreement)} pictures, against the table's: x {x:+.1f} ({spread[0]:.1f}), "
             f"y {y:+.1f} ({spread[1]:.1f}), radius {radius:+.1f} ({spread[2]:.1f}) pixels, median (and deviation)"
         )
-    print(table(presses, scores, seen))
+    print(table(measured, scores, fit.seen))
+    gradient = calibration.gradient
     arrays = {"gradient": gradient if gradient is None else gradient.astype(np.float16), "coefficients": None}
     if calibration.coefficients is not None:
-        arrays |= {"coefficients": coefficients, "largest_slope": np.float64(calibration.largest_slope)}
+        arrays |= {"coefficients": calibration.coefficients, "largest_slope": np.float64(calibration.largest_slope)}
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         np.savez_compressed(

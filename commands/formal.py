@@ -29,7 +29,7 @@ from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
-from models.rom_files import write_gains, write_quadratic, write_words
+from models.rom_files import write_floor, write_gains, write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
@@ -124,6 +124,11 @@ def gain_rom(nodes: int) -> Callable[[Path], None]:
     """Gains of one bit."""
     gains = np.array([node % 3 & 1 for node in range(nodes)])
     return lambda folder: write_gains(folder, np.stack((gains, gains, gains), axis=-1), 1)
+
+
+def floor_rom(folder: Path) -> None:
+    """Two nodes of two bits."""
+    write_floor(folder, np.array([-1, 1]), 2)
 
 
 def transform_roms(folder: Path) -> None:
@@ -323,6 +328,33 @@ PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
+            "floor_capture",
+            "2^k frames behind a request, each node written once, 5 clocks behind its block, done after 6; memory as "
+            "ram.sv asks",
+            "two rows of blocks and a cut one, and a single whole one; rows, columns and frames are only counted",
+            {"Sums": 0, "Rows": rows},
+            depth=60,
+        )
+        for rows in (5, 2)
+    ),
+    Proof(
+        "floor_capture",
+        "an arbitrary depth is added once to its node, and to no other; a floor is the mean, ties to even",
+        f"a cut row of blocks; sums are exact at any width; {ROUNDING}",
+        {"Sums": 1, "Rows": 3},
+        depth=60,
+    ),
+    Proof(
+        "auto_zero",
+        "an arbitrary depth less whatever floor gain_map has, saturated, counted if clipped, with its marks; latency "
+        "10; active while a frame is inside; floors read back",
+        f"subtraction is exact at any width; {ROUNDING}; gain_map is proven by itself",
+        depth=45,
+        roms=floor_rom,
+        free=("floor_word",),
+    ),
+    *(
+        Proof(
             "frame_guard",
             "only whole frames leave, every fault flagged once, good frames unchanged, early starts kept",
             "rows and columns are only counted; a count that is no power of two, and one that is",
@@ -510,7 +542,7 @@ STRUCTURES = tuple(
     for neumann, colours in (
         (0, {}),
         (1, {}),
-        (1, {"flat_field": 1}),
+        (1, {"flat_field": 1, "auto_zero": 1}),
         (0, {"flat_field": 1, "gradient_model": "quadratic"}),
     )
 )
@@ -607,7 +639,7 @@ def run_structure(structure: Structure, mode: str) -> Outcome:
     """One run of Yosys, in build/formal/<name>/."""
     choices = dict(structure.choices)
     config = Configuration(
-        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field")},
+        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "auto_zero")},
     )
     folder = BUILD / structure.name
     shutil.rmtree(folder, ignore_errors=True)

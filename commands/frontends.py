@@ -25,7 +25,7 @@ from models import tridiagonal_solver
 from models.calibration import synthetic
 from models.configuration import Configuration
 from models.flat_field import unit_gains
-from models.rom_files import write_gains, write_quadratic, write_words
+from models.rom_files import write_floor, write_gains, write_quadratic, write_words
 from models.spectral_divide import reciprocals
 from models.tactile_depth import top_parameters, write_roms
 
@@ -42,6 +42,7 @@ QUADRATIC = {"Width": 3, "DeviationWidth": 3, "CoeffWidth": 3, "WordWidth": 5}
 ROM = {"Width": 7, "Depth": 12}
 FIELD = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Drop": 25, "OutWidth": 4, "Flat": 8}
 CAPTURE = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Width": 12, "GainFraction": 14, "MaxLog2": 2}
+FLOOR = {"Rows": 5, "Columns": 8, "BlockLog2": 1, "Width": 5}
 WITHIN_THE_WHOLE = {"spectral_solver", "tridiagonal_solver"}
 
 
@@ -70,6 +71,7 @@ def cases() -> list[Case]:
     table = reciprocals(SPECTRAL)
     divide = {"Size": size, "CoeffWidth": coefficient, "ShiftWidth": table.shift_width, "Drop": table.drop, "Width": 8}
     small = [
+        *(Case("auto_zero", FLOOR | {"Rows": rows}) for rows in (3, 5)),
         Case("axil_registers", {"Rows": 16, "Columns": 8, "GradientWidth": 9, "BitsPerChannel": 1}),
         Case("axis_skid", {"Width": 4}),
         Case("burst_counter", {"Size": 8}),
@@ -91,6 +93,7 @@ def cases() -> list[Case]:
         Case("frame_output", {"Width": 4, "Rows": 5, "Columns": 8}),
         *(Case("frame_stack", {"Width": 3, "Rows": 5, "Size": 8, "WordsPerRow": words}) for words in (1, 3)),
         *(Case("flat_field", FIELD | more) for more in ({}, {"Drop": 22, "Offset": 4, "OutWidth": 5, "Flat": 0})),
+        *(Case("floor_capture", FLOOR | {"MaxLog2": largest}) for largest in (0, 2)),
         *(Case("frame_tags", {"Width": 4, "Latency": latency, "Pixels": 8}) for latency in (6, 20)),
         *(Case("gain_map", {"Rows": rows, "Columns": 8, "BlockLog2": 1}) for rows in (3, 5)),
         Case("gradient_lookup", {"Width": SPECTRAL.gradient.width, "BitsPerChannel": SPECTRAL.bits_per_channel}),
@@ -188,6 +191,7 @@ def prove(case: Case, folder: Path = FOLDER) -> tuple[str, float]:
     write_roms(place, synthetic(case.config.bits_per_channel), case.config)
     write_words(place / "rom.hex", (37 * i % (1 << ROM["Width"]) for i in range(ROM["Depth"])), ROM["Width"])
     write_gains(place, unit_gains(case.config))
+    write_floor(place, np.arange(8) - 4, FLOOR["Width"])
     write_quadratic(place, np.arange(36).reshape(2, 3, 6), QUADRATIC["WordWidth"])
     problem = yosys.run(prepare(case.core, simulation.sources(), case.parameters, place), timeout_s=TIMEOUT_S)
     return problem, time.monotonic() - begin

@@ -23,11 +23,12 @@ import numpy as np
 from commands import fpga
 from commands import simulator as simulation
 from commands import yosys as yosys_runner
+from models.auto_zero import no_floor
 from models.calibration import load
 from models.configuration import COLUMNS, POLYNOMIAL, Configuration
 from models.errors import InputError
 from models.flat_field import unit_gains
-from models.rom_files import write_gains, write_quadratic, write_words
+from models.rom_files import write_floor, write_gains, write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
 
 GRIDS = (16, 128, 512)
@@ -151,6 +152,7 @@ def yosys_cores(files: Sequence[Path]) -> str:
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
     write_gains(folder, unit_gains(Configuration()))
+    write_floor(folder, no_floor(Configuration()), Configuration().depth.width)
     write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
     return yosys([Structure(name) for name in modules(files)], files, folder)
 

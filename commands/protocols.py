@@ -346,15 +346,13 @@ def raster(parameters: Mapping[str, int]) -> tuple[str, str]:
     return registers, "~in_valid | rst | in_place == place"
 
 
-def gain_map(parameters: Mapping[str, int]) -> Protocol:
-    """Bus and capture one at a time, neither while a change-over is due, but for what the bus reads."""
-    registers, in_order = raster(parameters)
-    nodes = (parameters["Rows"] >> parameters["BlockLog2"]) * (parameters["Columns"] >> parameters["BlockLog2"])
-    registers += """
+# Of the bus of gain_map.
+SETTLED = "table_bank == table_in_use"
+READ = "live & read & read_left == 2'd0"
+READS = """
   reg [1:0] read_left = 2'd0;  // clocks until what was read stands
-  reg read = 1'b0, captured = 1'b0;
+  reg read = 1'b0;
   always @(posedge clk) begin
-    captured <= capture_read;
     if (rst) begin
       read_left <= 2'd0;
       read <= 1'b0;
@@ -364,10 +362,16 @@ def gain_map(parameters: Mapping[str, int]) -> Protocol:
     end
   end
 """
-    settled = "table_bank == table_in_use"
+
+
+def gain_map(parameters: Mapping[str, int]) -> Protocol:
+    """Bus and capture one at a time, neither while a change-over is due, but for what the bus reads."""
+    registers, in_order = raster(parameters)
+    nodes = (parameters["Rows"] >> parameters["BlockLog2"]) * (parameters["Columns"] >> parameters["BlockLog2"])
+    registers += READS + "  reg captured = 1'b0;\n  always @(posedge clk) captured <= capture_read;\n"
     assume = (
         in_order,
-        f"~(table_write | capture_write | capture_read) | ({settled} & ~rst & ~table_read & read_left == 2'd0)",
+        f"~(table_write | capture_write | capture_read) | ({SETTLED} & ~rst & ~table_read & read_left == 2'd0)",
         "~table_read | ~rst & read_left == 2'd0",
         "~table_write | ~capture_write & ~capture_read",
         "~capture_write | ~capture_read | capture_write_node != capture_read_node",
@@ -379,7 +383,7 @@ def gain_map(parameters: Mapping[str, int]) -> Protocol:
         "out_place": word,
         "out_gains": word,
         "table_in_use": "live",
-        "table_read_gain": "live & read & read_left == 2'd0",
+        "table_read_gain": READ,
         "capture_read_gains": "captured",
     }
     return Protocol(LIVE + registers, assume, compare)
@@ -399,6 +403,37 @@ def reference_capture(parameters: Mapping[str, int]) -> Protocol:
     compare = dict.fromkeys(("busy", "done", "map_read", "map_write"), "live & ~rst")
     compare |= dict.fromkeys(("map_write_node", "map_write_gains"), "live & ~rst & map_write")
     return Protocol(LIVE + registers, (in_order,), compare | {"map_read_node": "live & ~rst & map_read"})
+
+
+def depth_frames(parameters: Mapping[str, int]) -> tuple[str, str]:
+    """Registers and an assumption: marks of depth in raster order, whole frames but for a reset."""
+    registers, _ = raster(parameters)
+    marks = "{in_last, in_frame_end, in_user} == {place[3], place[3] & place[2], place[1] & place[0]}"
+    return registers, f"~in_valid | rst | {marks}"
+
+
+def auto_zero(parameters: Mapping[str, int]) -> Protocol:
+    """Bus and capture one at a time, neither while a change-over is due, but for what the bus reads."""
+    registers, in_order = depth_frames(parameters)
+    nodes = (parameters["Rows"] >> parameters["BlockLog2"]) * (parameters["Columns"] >> parameters["BlockLog2"])
+    registers += READS
+    assume = (
+        in_order,
+        f"~(table_write | capture_write) | ({SETTLED} & ~rst & ~table_read & read_left == 2'd0)",
+        "~table_read | ~rst & read_left == 2'd0",
+        "~table_write | ~capture_write",
+        f"table_index < {nodes} & capture_write_node < {nodes}",
+    )
+    compare = {f"out_{name}": f"{MOVES} & out_valid" for name in ("user", "last", "frame_end", "data")}
+    compare |= {"out_valid": MOVES, **dict.fromkeys(("active", "saturation"), "live & ~rst")}
+    return Protocol(LIVE + registers, assume, compare | {"table_in_use": "live", "table_read_floor": READ})
+
+
+def floor_capture(parameters: Mapping[str, int]) -> Protocol:
+    registers, in_order = depth_frames(parameters)
+    compare = {"busy": "live & ~rst", "done": "live & ~rst", "map_write": "live"}
+    compare |= dict.fromkeys(("map_write_node", "map_write_floor"), "live & map_write")
+    return Protocol(LIVE + registers, (in_order,), compare)
 
 
 def frame_output(_: Mapping[str, int]) -> Protocol:
@@ -449,7 +484,8 @@ def axil_registers(_: Mapping[str, int]) -> Protocol:
     registers, assume, compare = axil_client()
     held = ("threshold", "timeout", "hold_contact", "table_select", "table_index", "table_high", "table_bank")
     held += ("off_threshold", "minimum_area", "debounce", "drop_frames", "dark_level", "capture_log2_frames")
-    compare |= dict.fromkeys((*held, "table_write", "table_read", "capture_request"), "live")
+    held += ("floor_log2_frames",)
+    compare |= dict.fromkeys((*held, "table_write", "table_read", "capture_request", "floor_request"), "live")
     return Protocol(LIVE + registers, assume, compare | {"table_low": "live & table_write"})
 
 

@@ -14,7 +14,7 @@ import shutil
 import sys
 import tempfile
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,14 +25,16 @@ from commands import simulator as simulation
 from commands.draw import draw_depth
 from models import latency, reference
 from models.accuracy import errors
+from models.auto_zero import exact_zero
 from models.calibration import Calibration, load
 from models.certificate import deepest
 from models.configuration import COLUMNS, GRADIENT_MODELS, Configuration
 from models.errors import InputError
+from models.floor_capture import LARGEST_LOG2, captured_floor
 from models.frames import Frames, load_frames
 from models.npy import is_file
 from models.round_saturate import Monitor
-from models.scenes import NOISE, SENSOR_WIDTH_MM, Press
+from models.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
 from models.spectral_divide import reciprocal_rom
 from models.tactile_depth import tactile_depth
 from models.thomas_table import thomas_table
@@ -61,6 +63,7 @@ class Request:
     frames: str
     press: Press
     reference: str | None
+    floor: str | None
     calibration: str
     gradient: str  # a model; "": the calibration's own
     repeat: int
@@ -79,7 +82,7 @@ def parse(arguments: list[str]) -> Request:
     InputError
     """
     accepted = (
-        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE "
+        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE FLOOR "
         "CALIBRATION GRADIENT REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
     )
     given: dict[str, str] = {}
@@ -139,6 +142,7 @@ def parse(arguments: list[str]) -> Request:
             number("NOISE", NOISE, 0, 255, float),
         ),
         reference=given.get("REFERENCE"),
+        floor=given.get("FLOOR"),
         calibration=given.get("CALIBRATION", "synthetic"),
         gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
@@ -203,11 +207,52 @@ def configure(request: Request, calibration: Calibration) -> Configuration:
         bits_per_channel=calibration.bits_per_channel,
         flat_field=calibration.reference is not None,
         gradient_model=model,
+        auto_zero=request.floor is not None,
     )
 
 
+def untouched(request: Request, frames: Frames) -> np.ndarray | None:
+    """Frames of `FLOOR`, a power of two of them, uint8 (n, rows, columns, 3); None without it.
+
+    Raises
+    ------
+    InputError
+    """
+    if request.floor is None:
+        return None
+    reference = request.reference if request.floor in SCENES else None
+    rest = load_frames(request.floor, frames.pixels.shape[1:3], reference, request.seed)
+    if rest.pixel_scale != frames.pixel_scale:
+        raise InputError(f"FLOOR={request.floor}: not of the size of {frames.name}: give frames of the same camera")
+    return rest.pixels[: 1 << min(LARGEST_LOG2, len(rest.pixels).bit_length() - 1)]
+
+
+def floor_of(rest: np.ndarray | None, calibration: Calibration, config: Configuration) -> np.ndarray | None:
+    """What a capture of those frames measures, codes (node rows, node columns)."""
+    if rest is None:
+        return None
+    return captured_floor(tactile_depth(rest, calibration, replace(config, auto_zero=False)), config)
+
+
+def exact_depth(
+    frames: np.ndarray, rest: np.ndarray | None, calibration: Calibration, config: Configuration
+) -> np.ndarray:
+    """Depth in double precision, grid pixels, rows from the top."""
+    depth = reference.depth_of(frames, calibration, config)
+    if rest is None:
+        return depth
+    down = -1 if config.solver == "tridiagonal" else 1  # blocks are counted as depth leaves
+    at_rest = reference.depth_of(rest, calibration, config)[..., ::down, :]
+    return exact_zero(depth[..., ::down, :], at_rest, config)[..., ::down, :]
+
+
 def simulate(
-    request: Request, config: Configuration, frames: Frames, calibration: Calibration, folder: Path
+    request: Request,
+    config: Configuration,
+    frames: Frames,
+    calibration: Calibration,
+    floor: np.ndarray | None,
+    folder: Path,
 ) -> bench.Played:
     """Run the bench in `folder`, with a bar that shows how far it is."""
     total = len(frames.pixels) * request.repeat
@@ -242,6 +287,7 @@ def simulate(
             registers={"THRESHOLD": round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)},
             seed=request.seed,
             waves=request.waves,
+            floor=floor,
         )
     finally:
         finished.set()
@@ -348,7 +394,10 @@ def run(request: Request, frames: Frames | None = None) -> int:
     config = configure(request, calibration)
     shape = f"{config.rows}x{config.columns}"
     widths = f"d{config.data_width}-c{config.coefficient_width}"
+    rest = untouched(request, frames)
+    floor = floor_of(rest, calibration, config)
     colours = f"-{config.gradient_model}" if config.flat_field else ""
+    colours += "-zero" if config.auto_zero else ""
     name = f"{request.solver}-{request.boundary}-{shape}-{widths}{colours}-{request.simulator}"
     out = request.out or simulation.ROOT / "build" / "sim" / name
     if out.exists() and not out.is_dir():
@@ -359,10 +408,10 @@ def run(request: Request, frames: Frames | None = None) -> int:
     except OSError as error:
         raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
     try:
-        played = simulate(request, config, frames, calibration, work)
+        played = simulate(request, config, frames, calibration, floor, work)
         monitor = Monitor()
-        codes = tactile_depth(frames.pixels, calibration, config, monitor)
-        reference_px = reference.depth_of(frames.pixels, calibration, config)
+        codes = tactile_depth(frames.pixels, calibration, config, monitor, floor=floor)
+        reference_px = exact_depth(frames.pixels, rest, calibration, config)
         seen = played.codes.reshape(request.repeat, *codes.shape)
         depth = seen.reshape(-1, *codes.shape[1:])
         bit_exact = bool((seen == codes).all())
@@ -386,6 +435,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
             "calibration": calibration.name,
             "gradient_model": config.gradient_model,
             "flat_field": config.flat_field,
+            "auto_zero": config.auto_zero,
             "source": frames.name,
             "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
             **measure(played),

@@ -43,7 +43,7 @@ TOP = "tactile_depth"
 OUT = simulation.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
 CONFIGURING = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REFERENCE"),
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REFERENCE", "FLOOR"),
     *("GRADIENT", "CALIBRATION", "CONFIG"),
 )
 RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
@@ -262,6 +262,7 @@ def described(config: Configuration) -> dict[str, Any]:
         "coeff_width": config.coefficient_width,
         "gradient_model": config.gradient_model,
         "flat_field": config.flat_field,
+        "auto_zero": config.auto_zero,
     }
 
 

@@ -15,6 +15,7 @@ module fv_axil_registers
   parameter int BitsPerChannel   = 4,
   parameter int CoefficientWords = 36,
   parameter int ReferenceWords   = 1024,
+  parameter int FloorWords       = 256,
   localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
   localparam int Tables = TableSelectSelectCount,
   localparam int SelectWidth = TableSelectSelectWidth,
@@ -52,6 +53,8 @@ module fv_axil_registers
   input logic [32*RecordWords-1:0] record,
   input logic                    capture_busy,
   input logic                    capture_done,
+  input logic                    floor_busy,
+  input logic                    floor_done,
   input logic                    frame_start,
   input logic [31:0]             table_read_high,
   input logic [31:0]             table_read_low,
@@ -67,8 +70,8 @@ module fv_axil_registers
   logic signed [31:0] threshold, off_threshold;
   logic [31:0] minimum_area;
   logic [7:0] debounce, dark_level;
-  logic [3:0] capture_log2_frames;
-  logic hold_contact, drop_frames, capture_request, table_write, table_read;
+  logic [3:0] capture_log2_frames, floor_log2_frames;
+  logic hold_contact, drop_frames, capture_request, floor_request, table_write, table_read;
   logic [SelectWidth-1:0] table_select;
   logic [IndexWidth-1:0] table_index;
   logic [31:0] table_high, table_low;
@@ -76,7 +79,7 @@ module fv_axil_registers
   axil_registers #(
     .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
     .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
-    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords)
+    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords), .FloorWords(FloorWords)
   ) dut (.*);
 
   logic started = 1'b0;
@@ -101,19 +104,21 @@ module fv_axil_registers
   logic [1:0] select;
   logic [Tables-1:0] requested, has;
   logic [Tables-1:0] bank = '0;
-  logic [3:0] waits, closed;  // to the bus: while waiting, the reference while it is captured too
+  logic [3:0] waits, closed;  // to the bus: while waiting, reference and floor while they are captured too
   logic [31:0] next_index;
   logic [31:0] index;
   always_comb begin
     size = select == TableSelectGradient ? 1 << IndexWidth : select == TableSelectCoefficients ? CoefficientWords
-        : select == TableSelectReference ? ReferenceWords : 0;
+        : select == TableSelectReference ? ReferenceWords : FloorWords;
     has = '0;
     has[TableCommitGradientBit] = 1'b1;
     has[TableCommitCoefficientsBit] = CoefficientWords != 0;
     has[TableCommitReferenceBit] = ReferenceWords != 0;
+    has[TableCommitFloorBit] = FloorWords != 0;
     waits = 4'(requested | ((bank ^ table_in_use) & has));
     closed = waits;
     if (capture_busy) closed[TableCommitReferenceBit] = 1'b1;
+    if (floor_busy) closed[TableCommitFloorBit] = 1'b1;
     next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
   end
 
@@ -130,11 +135,14 @@ module fv_axil_registers
         || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
         || offset == OffThresholdOffset || offset == MinimumAreaOffset || offset == DebounceOffset
         || (offset == CaptureOffset && (ReferenceWords != 0 || !(data[CaptureStartBit] && strobes[CaptureStartBit/8])))
+        || (offset == FloorCaptureOffset
+            && (FloorWords != 0 && !waits[TableCommitFloorBit] && !floor_done
+                || !(data[FloorCaptureStartBit] && strobes[FloorCaptureStartBit/8])))
         || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
   end
   logic writes_control, writes_status, writes_threshold, writes_timeout;
   logic writes_select, writes_index, writes_high, writes_low, writes_commit;
-  logic writes_dark, writes_capture, writes_off, writes_area, writes_debounce;
+  logic writes_dark, writes_capture, writes_floor, writes_off, writes_area, writes_debounce;
   assign writes_control = effective & (offset == ControlOffset);
   assign writes_status = effective & (offset == StatusOffset);
   assign writes_threshold = effective & (offset == ThresholdOffset);
@@ -146,6 +154,7 @@ module fv_axil_registers
   assign writes_commit = effective & (offset == TableCommitOffset);
   assign writes_dark = effective & (offset == DarkLevelOffset);
   assign writes_capture = effective & (offset == CaptureOffset) & ~refused;
+  assign writes_floor = effective & (offset == FloorCaptureOffset) & ~refused;
   assign writes_off = effective & (offset == OffThresholdOffset);
   assign writes_area = effective & (offset == MinimumAreaOffset);
   assign writes_debounce = effective & (offset == DebounceOffset);
@@ -160,7 +169,7 @@ module fv_axil_registers
   endfunction
 
   logic hold, drop;
-  logic [31:0] dim, averaged, off, area, frames_needed, dark, given_up, lost;
+  logic [31:0] dim, averaged, floor_averaged, off, area, frames_needed, dark, given_up, lost;
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
   assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
@@ -216,6 +225,10 @@ module fv_axil_registers
       word = averaged;
       word[CaptureBusyBit] = capture_busy;
     end
+    else if (read_offset == FloorCaptureOffset) begin
+      word = floor_averaged;
+      word[FloorCaptureBusyBit] = floor_busy;
+    end
     else if (read_offset == DarkPixelsOffset) word = dark;
     else if (read_offset == DepthDroppedOffset) word = given_up;
     else if (read_offset == RecordsLostOffset) word = lost;
@@ -266,6 +279,7 @@ module fv_axil_registers
     if (writes_control && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
     if (writes_dark) dim <= written(dim) & 32'hff;
     if (writes_capture) averaged <= written(averaged) & 32'hf;
+    if (writes_floor) floor_averaged <= written(floor_averaged) & 32'hf;
     if (writes_off) off <= written(off);
     if (writes_area) area <= written(area);
     if (writes_debounce) frames_needed <= written(frames_needed) & 32'hff;
@@ -281,6 +295,7 @@ module fv_axil_registers
       else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !closed[table_number])
         requested[table_number] <= 1'b1;
       if (capture_done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
+      if (floor_done && table_number == TableSelectFloor && has[table_number]) requested[table_number] <= 1'b1;
     end
     sticky <= (sticky & ~(writes_status ? data & mask : '0)) | happened;
     frames_in <= counted(clears ? '0 : frames_in, 32'(event_frame_in));
@@ -298,14 +313,14 @@ module fv_axil_registers
       off <= 32'h7fffffff;
       area <= 32'd1;
       frames_needed <= 32'd1;
-      {drop, dim, averaged, dark, given_up, lost} <= '0;
+      {drop, dim, averaged, floor_averaged, dark, given_up, lost} <= '0;
       requested <= '0;
       {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
     end
   end
 
   always_comb begin
-    never_in_reset: assert (!((table_write || table_read || capture_request) && rst));
+    never_in_reset: assert (!((table_write || table_read || capture_request || floor_request) && rst));
     if (started) begin
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
@@ -323,9 +338,12 @@ module fv_axil_registers
       outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
       contact_settings: assert ($unsigned(off_threshold) == off && minimum_area == area
           && 32'(debounce) == frames_needed);
-      stream_settings: assert (drop_frames == drop && 32'(dark_level) == dim && 32'(capture_log2_frames) == averaged);
+      stream_settings: assert (drop_frames == drop && 32'(dark_level) == dim && 32'(capture_log2_frames) == averaged
+          && 32'(floor_log2_frames) == floor_averaged);
       captures: assert (capture_request
           == (writes_capture && data[CaptureStartBit] && mask[CaptureStartBit] && !rst));
+      floor_captures: assert (floor_request
+          == (writes_floor && data[FloorCaptureStartBit] && mask[FloorCaptureStartBit] && !rst));
       // Tables.
       table_written: assert (table_write == (writes_low && !rst));
       table_asked: assert (table_read == (since == 3'd1 && index < size && !rst));
@@ -334,7 +352,8 @@ module fv_axil_registers
       never_both: assert (!(table_write && since != 3'd0));
       banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
       if (table_write) only_settled: assert (table_bank[select] == table_in_use[select]);
-      if (table_write) not_captured: assert (!(capture_busy && select == TableSelectReference));
+      if (table_write) not_captured: assert (!(capture_busy && select == TableSelectReference)
+          && !(floor_busy && select == TableSelectFloor));
       absent: assert ((table_bank & ~has) == '0);
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
@@ -342,9 +361,9 @@ module fv_axil_registers
           && sticky[StatusRowLongBit]);
       refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[0]);
       refused_outside: cover (effective && offset == TableLowOffset && index == 36 && size == 36 && refused);
-      captured: cover (frame_start && requested == 3'b100 && capture_busy);
+      captured: cover (frame_start && requested == 4'b1100 && capture_busy && !floor_busy);
       reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
-      changes_over: cover (frame_start && requested == 3'b011);
+      changes_over: cover (frame_start && requested == 4'b0011);
       last_entry: cover (table_read && !upper && index == 35 && size == 36);
       second_bin: cover (table_write && table_index == IndexWidth'(1));
       data_first: cover (has_data && !has_address && aw);

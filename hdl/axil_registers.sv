@@ -21,8 +21,10 @@
 //
 // Capture of the reference table: capture_request is high in the clock in which its write takes effect. From the
 // clock after it to that of capture_done, capture_busy shall be high: then the bus neither writes that table nor asks
-// for its change-over. capture_done asks for that, as TABLE_COMMIT does. record: word n of the contact events in
-// bits 32 n + 31 to 32 n; what is read is the word as it stands.
+// for its change-over. capture_done asks for that, as TABLE_COMMIT does. floor_*: the same for the floor, but
+// that a start is refused while its change-over is pending: it comes so much later than a frame's start, that a capture
+// would write the bank which is to be used. record: word n of the contact events in bits 32 n + 31 to 32 n; what is read
+// is the word as it stands.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers
@@ -36,12 +38,14 @@ module axil_registers
   parameter int BitsPerChannel   = 4,   // 0: no gradient table
   parameter int CoefficientWords = 0,   // entries of these tables, 0: none
   parameter int ReferenceWords   = 0,
+  parameter int FloorWords       = 0,
   localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
   localparam int Tables = TableSelectSelectCount,
   localparam int SelectWidth = TableSelectSelectWidth,
   localparam int GradientWords = BitsPerChannel == 0 ? 0 : 1 << (3 * BitsPerChannel),
-  localparam int OtherWords = CoefficientWords > ReferenceWords ? CoefficientWords : ReferenceWords,
-  localparam int IndexWidth = $clog2(GradientWords > OtherWords ? GradientWords : OtherWords)
+  localparam int SlopeWords = CoefficientWords > GradientWords ? CoefficientWords : GradientWords,
+  localparam int MapWords = ReferenceWords > FloorWords ? ReferenceWords : FloorWords,
+  localparam int IndexWidth = $clog2(SlopeWords > MapWords ? SlopeWords : MapWords)
 ) (
   input  logic                     clk,
   input  logic                     rst,
@@ -97,6 +101,10 @@ module axil_registers
   output logic [3:0]               capture_log2_frames,
   input  logic                     capture_busy,
   input  logic                     capture_done,
+  output logic                     floor_request,
+  output logic [3:0]               floor_log2_frames,
+  input  logic                     floor_busy,
+  input  logic                     floor_done,
 
   input  logic                     frame_start,  // the first pixel of a frame passes the head
   output logic                     table_write,
@@ -123,7 +131,8 @@ module axil_registers
   localparam logic [Tables-1:0] Present =
       (Tables'(GradientWords != 0) << TableCommitGradientBit)  // these are also the numbers in TABLE_SELECT
     | (Tables'(CoefficientWords != 0) << TableCommitCoefficientsBit)
-    | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit);
+    | (Tables'(ReferenceWords != 0) << TableCommitReferenceBit)
+    | (Tables'(FloorWords != 0) << TableCommitFloorBit);
 
   logic aw_held = 1'b0;  // a clock before the first reset writes no table, which holds its contents from power-up
   logic w_held = 1'b0;
@@ -138,7 +147,7 @@ module axil_registers
   logic write_refused;
   logic write_now;
   logic write_taken;
-  logic asks_capture;
+  logic asks_capture, asks_floor, floor_pending;
   logic [31:0] status_set;
   logic [31:0] status_cleared;
   logic counters_cleared;
@@ -192,6 +201,7 @@ module axil_registers
   assign write_ones = write_data & write_mask;
   assign write_now = aw_held && w_held && !s_axil_bvalid && reading == '0;
   assign write_taken = write_now && !write_refused;
+  assign asks_floor = write_ones[FloorCaptureStartBit];
   assign asks_capture = write_ones[CaptureStartBit];  // Icarus 11 takes no select of a constant bit inside always_comb
 
   always_comb begin
@@ -202,6 +212,7 @@ module axil_registers
       TableLowOffset:
         write_refused = !inside_table || write_strobe != 4'b1111 || closed_of[table_select];
       CaptureOffset: write_refused = asks_capture && ReferenceWords == 0;
+      FloorCaptureOffset: write_refused = asks_floor && (FloorWords == 0 || floor_pending || floor_done);
       default: write_refused = 1'b1;
     endcase
   end
@@ -231,6 +242,7 @@ module axil_registers
       TableSelectGradient: table_size = GradientWords;
       TableSelectCoefficients: table_size = CoefficientWords;
       TableSelectReference: table_size = ReferenceWords;
+      TableSelectFloor: table_size = FloorWords;
       default: table_size = 32'd0;
     endcase
   end
@@ -238,11 +250,15 @@ module axil_registers
   assign changes = frame_start && !rst;
   assign table_bank = bank ^ (requested & {Tables{changes}});
   assign pending = requested | ((bank ^ table_in_use) & Present);
-  assign captured = (Tables'(capture_done) << TableCommitReferenceBit) & Present;
-  assign closed = pending | (Tables'(capture_busy) << TableCommitReferenceBit);
+  assign floor_pending = pending[TableCommitFloorBit];
+  assign captured =
+      ((Tables'(capture_done) << TableCommitReferenceBit) | (Tables'(floor_done) << TableCommitFloorBit)) & Present;
+  assign closed =
+      pending | (Tables'(capture_busy) << TableCommitReferenceBit) | (Tables'(floor_busy) << TableCommitFloorBit);
   assign closed_of = (1 << SelectWidth)'(closed);
   assign commits = (write_taken && write_offset == TableCommitOffset) ? write_ones[Tables-1:0] : '0;
   assign capture_request = write_taken && write_offset == CaptureOffset && asks_capture && !rst;
+  assign floor_request = write_taken && write_offset == FloorCaptureOffset && asks_floor && !rst;
 
   always_ff @(posedge clk) begin
     // Write channels.
@@ -282,6 +298,9 @@ module axil_registers
         CaptureOffset:
           capture_log2_frames <=
               4'(merged(32'(capture_log2_frames) << CaptureLog2FramesLsb) >> CaptureLog2FramesLsb);
+        FloorCaptureOffset:
+          floor_log2_frames <=
+              4'(merged(32'(floor_log2_frames) << FloorCaptureLog2FramesLsb) >> FloorCaptureLog2FramesLsb);
         OffThresholdOffset: off_threshold <= $signed(merged(off_threshold));
         MinimumAreaOffset: minimum_area <= merged(minimum_area);
         DebounceOffset: debounce <= 8'(merged(32'(debounce)));
@@ -350,6 +369,9 @@ module axil_registers
         CaptureOffset:
           s_axil_rdata <=
               (32'(capture_log2_frames) << CaptureLog2FramesLsb) | (32'(capture_busy) << CaptureBusyBit);
+        FloorCaptureOffset:
+          s_axil_rdata <=
+              (32'(floor_log2_frames) << FloorCaptureLog2FramesLsb) | (32'(floor_busy) << FloorCaptureBusyBit);
         DarkPixelsOffset: s_axil_rdata <= dark_pixels;
         DepthDroppedOffset: s_axil_rdata <= depth_dropped;
         RecordsLostOffset: s_axil_rdata <= records_lost;
@@ -389,6 +411,7 @@ module axil_registers
       debounce <= 8'(DebounceReset);
       dark_level <= 8'd0;
       capture_log2_frames <= 4'd0;
+      floor_log2_frames <= 4'd0;
       timeout <= 32'd0;
       table_select <= '0;
       table_index <= '0;

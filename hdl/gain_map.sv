@@ -8,17 +8,19 @@
 // Stream in: places of pixels in raster order. Stream out: their gains {B, G, R}, unsigned. Latency: 9 cycles; a gap or
 // en low changes no gain. Gains are held in two banks. A frame uses the bank that table_bank names one enabled clock
 // after its first place came, or in reset; table_in_use says which. The other is written and read by the bus (a gain at
-// index 4 node + channel: red 0, green 1, blue 2; 3 is not written and reads 0) or by the capture (all gains of a node,
-// read one clock later). Nothing is written while a change-over is due (table_bank is not table_in_use). A table_read
-// stands on table_read_gain from 3 clocks later until the next, en or not; no write until then. What the bus reads
-// while the capture reads is left open. gain_0, 1 and 2.hex give both banks at power-up; a memory without contents
-// there must be written before the first frame. Bit-accurate model: models/gain_map.py.
+// index 4 node + channel: red 0, green 1, blue 2; a channel that is not there is not written and reads 0) or by the
+// capture (all gains of a node, read one clock later). Nothing is written while a change-over is due (table_bank is not
+// table_in_use). A table_read stands on table_read_gain from 3 clocks later until the next, en or not; no write until
+// then. What the bus reads while the capture reads is left open. <Name>_0, 1 and 2.hex give both banks at power-up; a
+// memory without contents there must be written before the first frame. Bit-accurate model: models/gain_map.py.
 
 module gain_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
   parameter int Width     = 24,
+  parameter int Channels  = 3,   // at most 3
+  parameter     Name      = "gain",
   localparam int NodeColumns = Columns / (1 << BlockLog2),
   localparam int NodeRows = Rows / (1 << BlockLog2),
   localparam int NodeWidth = $clog2(NodeRows * NodeColumns)
@@ -37,16 +39,16 @@ module gain_map #(
 
   input  logic                 capture_write,
   input  logic [NodeWidth-1:0] capture_write_node,
-  input  logic [3*Width-1:0]   capture_gains,
+  input  logic [Channels*Width-1:0] capture_gains,
   input  logic                 capture_read,
   input  logic [NodeWidth-1:0] capture_read_node,
-  output logic [3*Width-1:0]   capture_read_gains,
+  output logic [Channels*Width-1:0] capture_read_gains,
 
   input  logic                 in_valid,
   input  logic [3:0]           in_place,  // in the first row, first column, last row, last column
   output logic                 out_valid,
   output logic [3:0]           out_place,
-  output logic [3*Width-1:0]   out_gains
+  output logic [Channels*Width-1:0] out_gains
 );
 
   localparam int Latency = 9;
@@ -117,7 +119,7 @@ module gain_map #(
   logic bank, used, changes, late, fetch, fetched, fetched_bank;
   logic [1:0] fetched_channel;
   logic [NodeWidth+1:0] late_index, fetch_index;
-  logic [1:0][3*Width-1:0] words;
+  logic [1:0][Channels*Width-1:0] words;
   assign used = en & starts & place_q[0] ? table_bank : bank;
   assign changes = used != bank;
   assign fetch = (table_read & ~changes) | late;
@@ -127,16 +129,16 @@ module gain_map #(
   for (genvar b = 0; b < 2; b++) begin : g_bank
     logic pixel, free;
     logic [NodeWidth-1:0] read_address;
-    logic [3*Width-1:0] gains;
+    logic [Channels*Width-1:0] gains;
     assign pixel = reading & (used == 1'(b));
     assign free = bank != 1'(b);
     assign read_address = pixel ? read_node : capture_read ? capture_read_node : fetch_index[NodeWidth+1:2];
-    for (genvar c = 0; c < 3; c++) begin : g_channel
+    for (genvar c = 0; c < Channels; c++) begin : g_channel
       ram #(
         .Width(Width),
         .Depth(NodeRows * NodeColumns),
         .Style(1),
-        .File ({"gain_", 8'(48 + c), ".hex"})
+        .File ({Name, "_", 8'(48 + c), ".hex"})
       ) u_gains (
         .clk,
         .write_en     (free & (capture_write | (table_write & table_index[1:0] == 2'(c)))),
@@ -150,14 +152,14 @@ module gain_map #(
     assign words[b] = gains;
   end
 
-  logic [3*Width-1:0] used_gains;
-  logic [3*Width-1:0] fetched_gains;
+  logic [Channels*Width-1:0] used_gains;
+  logic [Channels*Width-1:0] fetched_gains;
   logic [3:0][Width-1:0] fetched_gain;  // of each channel
   assign fetched_gains = words[fetched_bank];
-  for (genvar c = 0; c < 3; c++) begin : g_fetched
+  for (genvar c = 0; c < Channels; c++) begin : g_fetched
     assign fetched_gain[c] = fetched_gains[c*Width+:Width];
   end
-  assign fetched_gain[3] = '0;
+  assign fetched_gain[3:Channels] = '0;
   assign used_gains = words[bank];
   assign capture_read_gains = bank ? words[0] : words[1];
 
@@ -219,12 +221,12 @@ module gain_map #(
 
   // Each channel: weigh a node and the one below it, then run along the row from node to node.
 
-  logic [3*SumWidth-1:0] sums;
+  logic [Channels*SumWidth-1:0] sums;
   logic start, node_begins, between;
   assign start = start_q[ToSum-1];
   assign node_begins = begins_q[ToSum-1];
   assign between = inner_q[ToSum-1];
-  for (genvar c = 0; c < 3; c++) begin : g_along
+  for (genvar c = 0; c < Channels; c++) begin : g_along
     logic [SumWidth-1:0] sum, far, near;
     assign sum = sums[c*SumWidth+:SumWidth];
     logic signed [Width+ShareBits+2:0] product;

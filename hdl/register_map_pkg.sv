@@ -46,6 +46,7 @@ package register_map_pkg;
   localparam int RecordVolumeLowOffset = 32'h90;
   localparam int RecordVolumeHighOffset = 32'h94;
   localparam int RecordCentroidOffset = 32'h98;
+  localparam int FloorCaptureOffset = 32'h9c;
 
   // Values after reset that are not zero.
   localparam int IdReset = 32'h54444550;
@@ -81,14 +82,19 @@ package register_map_pkg;
   localparam int TableCommitGradientBit = 0;
   localparam int TableCommitCoefficientsBit = 1;
   localparam int TableCommitReferenceBit = 2;
+  localparam int TableCommitFloorBit = 3;
   localparam int CaptureLog2FramesLsb = 0;
   localparam int CaptureStartBit = 8;
   localparam int CaptureBusyBit = 9;
+  localparam int FloorCaptureLog2FramesLsb = 0;
+  localparam int FloorCaptureStartBit = 8;
+  localparam int FloorCaptureBusyBit = 9;
 
   // Values of a field.
-  localparam int TableSelectSelectCount = 3;
+  localparam int TableSelectSelectCount = 4;
   localparam int TableSelectGradient = 0;
   localparam int TableSelectCoefficients = 1;
   localparam int TableSelectReference = 2;
+  localparam int TableSelectFloor = 3;
 
 endpackage

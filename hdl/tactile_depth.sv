@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactile_depth: RGB frames of a lit gel in, depth maps and contact out.
 //
-//   axis_skid -> frame_guard -> [flat_field] -> gradient -> divergence -> solver -> frame_output -> depth_gate
+//   axis_skid -> frame_guard -> [flat_field] -> gradient -> divergence -> solver -> frame_output -> [auto_zero]
 //                     |                                                                 |               |
-//                     +--------------------------- frame_tags --------------------------+   threshold_comparator
-//                     +- [reference_capture]                                                contact_events
-//   gradient: gradient_lookup or quadratic_gradient, from its parameter; with FlatField what stands in brackets.
+//                     +- [reference_capture]                        [floor_capture] ----+           depth_gate
+//                     +--------------------------- frame_tags --------------------------+               |
+//                                                                       threshold_comparator, contact_events
+//   gradient: gradient_lookup or quadratic_gradient, from its parameter. In brackets: with FlatField, with AutoZero.
 //
 // Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, one pixel per clock sustained.
 // Stream out: depth codes in raster order (tridiagonal: bottom row first), tuser with the first of a frame, tlast with
@@ -46,8 +47,10 @@ module tactile_depth
   parameter int FrameLatency     = 17221,  // last pixel out of the guard to first depth out of the solver
   parameter int FlatField        = 0,    // 1: colours relative to a reference frame
   parameter int Quadratic        = 0,    // gradient model: 0 table, 1 quadratics, which need FlatField
-  parameter int BlockLog2        = 3,    // from here: FlatField
-  parameter int GainWidth        = 24,
+  parameter int AutoZero         = 0,    // 1: depth less what it reads where nothing touches
+  parameter int BlockLog2        = 3,    // FlatField, AutoZero
+  parameter int FloorLog2        = 8,    // AutoZero
+  parameter int GainWidth        = 24,   // from here: FlatField
   parameter int GainFraction     = 27,
   parameter int CaptureLog2      = 8,
   parameter int ColourWidth      = 8,
@@ -136,24 +139,30 @@ module tactile_depth
   localparam int GradientWords = Quadratic != 0 ? 0 : 1 << (3 * BitsPerChannel);
   localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0;
   localparam int ReferenceWords = FlatField != 0 ? 4 * (Rows >> BlockLog2) * (Size >> BlockLog2) : 0;
+  localparam int FloorWords = AutoZero != 0 ? (Rows >> BlockLog2) * (Size >> BlockLog2) : 0;
+  localparam int MapWords = ReferenceWords > FloorWords ? ReferenceWords : FloorWords;
   localparam int SlopeWords = GradientWords > CoefficientWords ? GradientWords : CoefficientWords;
-  localparam int IndexWidth = $clog2(SlopeWords > ReferenceWords ? SlopeWords : ReferenceWords);
-  logic table_write, table_read, gradient_selected, coefficients_selected, reference_selected;
+  localparam int IndexWidth = $clog2(SlopeWords > MapWords ? SlopeWords : MapWords);
+  logic table_write, table_read, gradient_selected, coefficients_selected, reference_selected, floor_selected;
   logic [TableSelectSelectWidth-1:0] table_select;
   logic [IndexWidth-1:0] table_index;
-  logic [31:0] table_high, table_low, table_read_high, table_read_low, reference_word, slope_high, slope_low;
+  logic [31:0] table_high, table_low, table_read_high, table_read_low;
+  logic [31:0] reference_word, floor_word, slope_high, slope_low;
   logic [Tables-1:0] table_bank, table_in_use;
-  logic slope_bank, slope_in_use, reference_bank, reference_in_use;
+  logic slope_bank, slope_in_use, reference_bank, reference_in_use, floor_bank, floor_in_use;
   // Constants of the package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.
   assign slope_bank = Quadratic != 0 ? table_bank[TableSelectCoefficients] : table_bank[TableSelectGradient];
   assign reference_bank = table_bank[TableSelectReference];
+  assign floor_bank = table_bank[TableSelectFloor];
   assign table_in_use = (Tables'(reference_in_use) << TableSelectReference)
+      | (Tables'(floor_in_use) << TableSelectFloor)
       | (Tables'(slope_in_use) << (Quadratic != 0 ? TableSelectCoefficients : TableSelectGradient));
   assign gradient_selected = table_select == TableSelectSelectWidth'(TableSelectGradient);
   assign coefficients_selected = table_select == TableSelectSelectWidth'(TableSelectCoefficients);
   assign reference_selected = table_select == TableSelectSelectWidth'(TableSelectReference);
-  assign table_read_high = reference_selected ? 32'd0 : slope_high;
-  assign table_read_low = reference_selected ? reference_word : slope_low;
+  assign floor_selected = table_select == TableSelectSelectWidth'(TableSelectFloor);
+  assign table_read_high = reference_selected | floor_selected ? 32'd0 : slope_high;
+  assign table_read_low = reference_selected ? reference_word : floor_selected ? floor_word : slope_low;
 
   logic colour_valid, dark, capture_request, capture_busy, capture_done;
   logic [3:0] colour_place, capture_log2_frames;
@@ -283,29 +292,79 @@ module tactile_depth
     );
   end
 
-  // Frames. A tag is the mark of a broken frame and the clock that took the first pixel.
+  // Frames. A tag is the mark of a broken frame, the bank of the floor that it uses, and the clock that took the first
+  // pixel.
 
   logic [31:0] now, arrived, begun;
-  logic frame_due, tags_held, tag_bad, depth_active, solved_last, out_of_step;
+  logic frame_due, tags_held, tag_bad, tag_bank, output_active, output_end, out_of_step;
   logic [31:0] tag_begun;
-  frame_tags #(.Width(33), .Latency(FrameLatency), .Pixels(Rows * Size)) u_tags (
-    .clk, .rst, .en, .push(guarded_end), .tag({guarded_bad, begun}),
-    .due(frame_due), .due_tag({tag_bad, tag_begun}), .held(tags_held)
+  frame_tags #(.Width(34), .Latency(FrameLatency), .Pixels(Rows * Size)) u_tags (
+    .clk, .rst, .en, .push(guarded_end), .tag({guarded_bad, floor_bank, begun}),
+    .due(frame_due), .due_tag({tag_bad, tag_bank, tag_begun}), .held(tags_held)
   );
 
-  logic depth_valid, depth_last, depth_user;
-  logic [DataWidth-1:0] depth_data;
+  logic output_valid, output_last, output_user;
+  logic signed [DataWidth-1:0] output_data;
   frame_output #(.Width(DataWidth), .Rows(Rows), .Columns(Size)) u_output (
     .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_data(solved_data),
-    .in_due(frame_due), .in_bad(tag_bad), .active(depth_active), .frame_end(solved_last), .out_of_step,
-    .out_valid(depth_valid), .out_data(depth_data), .out_last(depth_last), .out_user(depth_user)
+    .in_due(frame_due), .in_bad(tag_bad), .active(output_active), .frame_end(output_end), .out_of_step,
+    .out_valid(output_valid), .out_data(output_data), .out_last(output_last), .out_user(output_user)
   );
+
+  // The floor. The bank goes with the frame: while it was in the solver others have begun.
+
+  logic depth_valid, depth_last, depth_user, depth_end, depth_active;
+  logic floor_request, floor_busy, floor_done, floor_saturation;
+  logic [3:0] floor_log2_frames;
+  logic [31:0] output_begun;
+  logic signed [DataWidth-1:0] depth_data;
+  if (AutoZero != 0) begin : g_auto_zero
+    localparam int NodeWidth = $clog2(FloorWords);
+    logic zero_active, bank_q, floor_write;
+    logic [NodeWidth-1:0] floor_write_node;
+    logic signed [DataWidth-1:0] floor_written, table_read_floor;
+    auto_zero #(.Rows(Rows), .Columns(Size), .BlockLog2(BlockLog2), .Width(DataWidth)) u_auto_zero (
+      .clk, .rst, .en,
+      .table_bank(rst ? floor_bank : bank_q), .table_in_use(floor_in_use),
+      .table_write(table_write & floor_selected), .table_read(table_read & floor_selected),
+      .table_index(table_index[NodeWidth-1:0]), .table_floor(table_low[DataWidth-1:0]), .table_read_floor,
+      .capture_write(floor_write), .capture_write_node(floor_write_node), .capture_floor(floor_written),
+      .in_valid(output_valid), .in_user(output_user), .in_last(output_last), .in_frame_end(output_end),
+      .in_data(output_data),
+      .out_valid(depth_valid), .out_user(depth_user), .out_last(depth_last), .out_frame_end(depth_end),
+      .out_data(depth_data), .active(zero_active), .saturation(floor_saturation)
+    );
+    floor_capture #(
+      .Rows(Rows), .Columns(Size), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(FloorLog2)
+    ) u_floor_capture (
+      .clk, .rst, .en, .request(floor_request), .log2_frames(floor_log2_frames), .busy(floor_busy), .done(floor_done),
+      .in_valid(output_valid), .in_user(output_user), .in_last(output_last), .in_frame_end(output_end),
+      .in_data(output_data),
+      .map_write(floor_write), .map_write_node(floor_write_node), .map_write_floor(floor_written)
+    );
+    assign floor_word = 32'(table_read_floor);
+    assign depth_active = output_active | zero_active;
+    always_ff @(posedge clk) begin
+      if (en && frame_due) bank_q <= tag_bank;
+      if (rst) bank_q <= floor_bank;
+      if (en && output_valid && output_user) output_begun <= tag_begun;
+    end
+  end else begin : g_as_solved
+    assign {depth_valid, depth_user, depth_last, depth_end} = {output_valid, output_user, output_last, output_end};
+    assign depth_data = output_data;
+    assign depth_active = output_active;
+    assign output_begun = tag_begun;
+    assign {floor_in_use, floor_busy, floor_done, floor_saturation} = '0;
+    assign floor_word = '0;
+    logic unused_floor;
+    assign unused_floor = ^{floor_request, floor_log2_frames, floor_selected, tag_bank};
+  end
 
   logic drop_frames, depth_dropped, leaving_last_of_frame, look_valid, look_user, look_last, look_frame_end;
   logic signed [DataWidth-1:0] leaving_data, look_data;
   depth_gate #(.Width(DataWidth)) u_gate (
     .clk, .rst, .drop_frames, .en,
-    .in_valid(depth_valid), .in_user(depth_user), .in_last(depth_last), .in_frame_end(solved_last),
+    .in_valid(depth_valid), .in_user(depth_user), .in_last(depth_last), .in_frame_end(depth_end),
     .in_data(depth_data), .event_dropped(depth_dropped),
     .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_user(m_axis_tuser), .m_last(m_axis_tlast),
     .m_frame_end(leaving_last_of_frame), .m_data(leaving_data),
@@ -343,7 +402,7 @@ module tactile_depth
     if (s_axis_tvalid && s_axis_tready && s_axis_tuser) arrived <= now;
     if (en && guarded_start) begun <= arrived;
     if (en && depth_valid && depth_user) begin
-      depth_begun <= tag_begun;
+      depth_begun <= output_begun;
       depth_awaited <= 1'b1;
     end else if (latency_valid) begin
       depth_awaited <= 1'b0;
@@ -359,7 +418,7 @@ module tactile_depth
   axil_registers #(
     .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
     .GradientFraction(GradientFraction), .BitsPerChannel(Quadratic != 0 ? 0 : BitsPerChannel),
-    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords)
+    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords), .FloorWords(FloorWords)
   ) u_registers (
     .clk, .rst,
     .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
@@ -371,10 +430,11 @@ module tactile_depth
     .event_frame_out(leaves & leaving_last_of_frame),
     .event_frame_dropped(row_short | row_long | start_missing | start_early | timed_out),
     .event_dark(dark), .event_depth_dropped(depth_dropped), .event_record_lost(record_lost),
-    .saturations(saturations + 8'(colour_saturations) + 8'(slope_saturations)),
+    .saturations(saturations + 8'(colour_saturations) + 8'(slope_saturations) + 8'(floor_saturation)),
     .first_depth_latency(now - depth_begun), .first_depth_latency_valid(latency_valid),
-    .busy, .contact, .touching, .record, .capture_busy, .capture_done,
-    .threshold, .timeout, .hold_contact, .dark_level, .capture_request, .capture_log2_frames, .drop_frames,
+    .busy, .contact, .touching, .record, .capture_busy, .capture_done, .floor_busy, .floor_done,
+    .threshold, .timeout, .hold_contact, .dark_level, .capture_request, .capture_log2_frames,
+    .floor_request, .floor_log2_frames, .drop_frames,
     .off_threshold, .minimum_area, .debounce,
     .frame_start(en & guarded_start), .table_write, .table_read, .table_select, .table_index, .table_high, .table_low,
     .table_read_high, .table_read_low, .table_bank, .table_in_use

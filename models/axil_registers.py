@@ -20,7 +20,8 @@ BY_OFFSET = {register.offset: register for register in REGISTERS.values()}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")
 STATUS = REGISTERS["STATUS"]
 CONTROL = REGISTERS["CONTROL"]
-CAPTURE = REGISTERS["CAPTURE"]
+CAPTURES = {"reference": REGISTERS["CAPTURE"], "floor": REGISTERS["FLOOR_CAPTURE"]}
+"""Of the tables that can be measured."""
 RECORD = tuple(name for name in REGISTERS if name.startswith("RECORD_"))  # by word
 STICKY_EVENTS = tuple(f.name for f in STATUS.fields if f.access == "w1c" and f.name != "saturation")
 EVENT_COUNTERS = {
@@ -33,7 +34,7 @@ EVENT_COUNTERS = {
 }
 SATURATIONS = "SATURATIONS"
 COUNTERS = (*EVENT_COUNTERS.values(), SATURATIONS)
-REFERENCE_BIT = REGISTERS["TABLE_COMMIT"].field("reference").mask
+COMMIT = REGISTERS["TABLE_COMMIT"]
 
 
 class Response(IntEnum):
@@ -55,12 +56,14 @@ class Build:
     bits_per_channel: int
     coefficient_words: int = 0
     reference_words: int = 0
+    floor_words: int = 0
 
     @property
     def table_sizes(self) -> dict[int, int]:
         """Entries of each table that TABLE_SELECT can name; 0: the build has none."""
         gradient_words = 1 << 3 * self.bits_per_channel if self.bits_per_channel else 0
-        sizes = {"gradient": gradient_words, "coefficients": self.coefficient_words, "reference": self.reference_words}
+        sizes = {"gradient": gradient_words, "coefficients": self.coefficient_words}
+        sizes |= {"reference": self.reference_words, "floor": self.floor_words}
         return {code: sizes[name] for name, code in TABLES.items()}
 
     @property
@@ -83,27 +86,28 @@ class Events:
         Reported by the frame whose first depth value leaves.
     frame_start : bool
         The first pixel of a frame is at the head of the pipeline.
-    capture_done : bool
-        The reference has been captured: its table asks to be changed over to.
+    captured : frozenset of str
+        Tables that have been measured and ask to be changed over to: `reference`, `floor`.
     """
 
     flags: frozenset[str] = frozenset()
     saturations: int = 0
     first_depth_latency: int | None = None
     frame_start: bool = False
-    capture_done: bool = False
+    captured: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
 class Live:
-    """Inputs that a read or a write of this clock sees; `in_use`: the bank of each table, bit by bit; `record`: its
-    words."""
+    """Inputs that a read or a write of this clock sees; `in_use`: the bank of each table, bit by bit; `capturing`: the
+    tables that are being measured; `ending`: those of them in the last clock of that; `record`: its words."""
 
     busy: bool = False
     contact: bool = False
     in_use: int = 0
     touching: bool = False
-    capture_busy: bool = False
+    capturing: frozenset[str] = frozenset()
+    ending: frozenset[str] = frozenset()
     record: tuple[int, ...] = (0,) * len(RECORD)
 
 
@@ -130,8 +134,8 @@ class AxilRegisters:
         Bit by bit, the bank that each table shall use, and the tables that change over with the next frame.
     table_writes : list of (table, index, high, low)
         Every entry written since the start.
-    captures : int
-        Captures of the reference asked for since the start.
+    captures : list of str
+        Tables whose measurement was asked for since the start, in order.
     entry : callable
         The words (high, low) of an entry that is read, by table and index.
     """
@@ -142,7 +146,7 @@ class AxilRegisters:
     bank: int = 0
     requested: int = 0
     table_writes: list[tuple[int, int, int, int]] = field(default_factory=list)
-    captures: int = 0
+    captures: list[str] = field(default_factory=list)
     _committed: int = 0
 
     def __post_init__(self) -> None:
@@ -181,7 +185,7 @@ class AxilRegisters:
 
     def closed(self, live: Live) -> int:
         """Tables that the bus neither writes nor commits now."""
-        return self.pending(live.in_use) | REFERENCE_BIT * live.capture_busy
+        return self.pending(live.in_use) | COMMIT.pack(**dict.fromkeys(live.capturing, 1))
 
     def bank_wanted(self, frame_start: bool) -> int:
         """The bank that each table shall use in a clock in which a frame starts, or does not."""
@@ -211,7 +215,7 @@ class AxilRegisters:
             return low, Response.OKAY
         shown = dict(zip(RECORD, live.record, strict=True)) | {
             "STATUS": STATUS.pack(busy=int(live.busy), contact=int(live.contact), touching=int(live.touching)),
-            "CAPTURE": CAPTURE.pack(busy=int(live.capture_busy)),
+            **{capture.name: capture.pack(busy=int(table in live.capturing)) for table, capture in CAPTURES.items()},
             "TABLE_COMMIT": self.pending(live.in_use),
             "TABLE_SIZE": self.table_size,
         }
@@ -226,15 +230,18 @@ class AxilRegisters:
         strobed = data & strobed_bits(strobe)
         merged = strobed | values[name] & ~strobed_bits(strobe)
         closed = self.closed(live)
-        if register is CAPTURE and strobed & CAPTURE.field("start").mask:
-            if not self.present & REFERENCE_BIT:
-                return Response.SLVERR
-            self.captures += 1
+        for table, capture in CAPTURES.items():
+            if register is capture and strobed & capture.field("start").mask:
+                bit = COMMIT.field(table).mask
+                due = table == "floor" and (self.pending(live.in_use) & bit or table in live.ending)
+                if not self.present & bit or due:
+                    return Response.SLVERR
+                self.captures.append(table)
         if name == "TABLE_LOW":
-            index, table = values["TABLE_INDEX"], self.table
-            if index >= self.table_size or strobe != (1 << BYTES) - 1 or closed >> table & 1:
+            index, number = values["TABLE_INDEX"], self.table
+            if index >= self.table_size or strobe != (1 << BYTES) - 1 or closed >> number & 1:
                 return Response.SLVERR
-            self.table_writes.append((table, index, values["TABLE_HIGH"], data))
+            self.table_writes.append((number, index, values["TABLE_HIGH"], data))
             self._next_entry()
         elif name == "TABLE_COMMIT":
             self._committed |= strobed & self.present & ~closed
@@ -254,7 +261,7 @@ class AxilRegisters:
             self.bank ^= self.requested
             self.requested = 0
         self.requested |= self._committed  # not by the frame that starts in this clock
-        self.requested |= REFERENCE_BIT * events.capture_done & self.present
+        self.requested |= COMMIT.pack(**dict.fromkeys(events.captured, 1)) & self.present
         self._committed = 0
         for name in STICKY_EVENTS:
             values["STATUS"] |= STATUS.pack(**{name: int(name in events.flags)})

@@ -106,6 +106,8 @@ class Configuration:
         Colours are taken relative to a reference frame.
     gradient_model : str
         `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
+    auto_zero : bool
+        What depth reads where nothing touches is subtracted.
     """
 
     columns: int = 128
@@ -119,6 +121,7 @@ class Configuration:
     bits_per_channel: int = 4
     flat_field: bool = False
     gradient_model: str = "lut"
+    auto_zero: bool = False
 
     def __post_init__(self) -> None:
         def within(name: str, value: int, accepted: tuple[int, int]) -> None:

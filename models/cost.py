@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from models.configuration import Configuration
-from models.latency import first_depth_latency, last_pixel_to_first_depth
+from models.latency import GAIN_MAP, first_depth_latency, last_pixel_to_first_depth
 from models.sdf_fft import stages
 from models.tactile_depth import top_parameters
 
@@ -104,7 +104,7 @@ def _pipeline(p: dict[str, int]) -> Parts:
         Memory("row buffers", data, 2 * size),
     ]
     solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
-    return multipliers + solver[0], memories + solver[1]
+    return _joined((multipliers, memories), solver, _floor(p))
 
 
 def _colours(p: dict[str, int]) -> Parts:
@@ -122,6 +122,16 @@ def _colours(p: dict[str, int]) -> Parts:
     else:
         memories += [Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"])] * 2
     return multipliers, memories
+
+
+def _floor(p: dict[str, int]) -> Parts:
+    """auto_zero.sv and floor_capture.sv: a node by its share of the rows; two banks of floors, sums, waiting depth."""
+    if not p["AutoZero"]:
+        return [], []
+    log2, data = p["BlockLog2"], p["DataWidth"]
+    nodes = (p["Rows"] >> log2) * (p["Size"] >> log2)
+    memories = [Memory("tables", data, nodes)] * 2 + [Memory("tables", data + 2 * log2 + p["FloorLog2"], nodes)]
+    return [Multiplier(data + 1, log2 + 3)], [*memories, Memory("delay lines", data, GAIN_MAP)]
 
 
 def _spectral(p: dict[str, int]) -> Parts:

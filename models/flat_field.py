@@ -88,10 +88,14 @@ def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
 
 def interpolated_gains(gains: np.ndarray, config: Configuration) -> np.ndarray:
     """The gain of every pixel, from that of the nodes: int64 (rows, columns, 3)."""
+    return round_half_even(interpolate_nodes(gains, config), 2 * config.reference_block_log2 + 2)
+
+
+def interpolate_nodes(nodes: np.ndarray, config: Configuration) -> np.ndarray:
+    """Words at every pixel, times 4 b**2: (rows, columns, n) of words (node rows, node columns, n)."""
     log2 = config.reference_block_log2
-    along_rows = _interpolate(gains, config.rows, log2)
-    both = _interpolate(along_rows.swapaxes(0, 1), config.columns, log2).swapaxes(0, 1)
-    return round_half_even(both, 2 * log2 + 2)
+    along_rows = _interpolate(nodes, config.rows, log2)
+    return _interpolate(along_rows.swapaxes(0, 1), config.columns, log2).swapaxes(0, 1)
 
 
 def _interpolate(nodes: np.ndarray, pixels: int, log2: int) -> np.ndarray:

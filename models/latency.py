@@ -19,6 +19,7 @@ DIVERGENCE = 2
 GRADIENT_LOOKUP = 4
 GAIN_MAP = 9
 FLAT_FIELD = GAIN_MAP + 3
+AUTO_ZERO = GAIN_MAP + 1
 QUADRATIC_GRADIENT = 11
 FRAME_GUARD = 1
 AXIS_SKID = 1
@@ -76,7 +77,8 @@ def frame_latency(config: Configuration) -> int:
 
 def last_pixel_to_first_depth(config: Configuration) -> int:
     """Of the whole pipeline, from the edge that takes the last pixel of a frame; the same whatever the gaps."""
-    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + AXIS_SKID
+    zero = AUTO_ZERO if config.auto_zero else 0
+    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero + AXIS_SKID
 
 
 def first_depth_latency(config: Configuration) -> int:

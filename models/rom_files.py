@@ -60,6 +60,11 @@ def write_gains(folder: Path, gains: np.ndarray, width: int = GAIN_WIDTH) -> Non
         write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
 
 
+def write_floor(folder: Path, floor: np.ndarray, width: int) -> None:
+    """Depth codes (node rows, node columns) as the memory of auto_zero.sv reads them: offset binary, a word a node."""
+    write_words(folder / "floor_0.hex", floor.ravel() + (1 << width - 1), width)
+
+
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
     """Words (2, 3, 6) as quadratic_gradient.sv reads them, each once for each bank: of each polynomial, and of all."""
     flat = [word for word in pack((words.reshape(-1),), width) for _ in range(2)]

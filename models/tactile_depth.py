@@ -9,15 +9,17 @@ from pathlib import Path
 import numpy as np
 
 from models import spectral_solver, tridiagonal_solver
+from models.auto_zero import auto_zero, no_floor
 from models.calibration import COEFFICIENTS, Calibration
 from models.configuration import POLYNOMIAL, Configuration
 from models.divergence import divergence
 from models.flat_field import deviations, flat_codes, flat_field_parameters, reference_gains
+from models.floor_capture import floor_capture_parameters
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import frame_latency
 from models.quadratic_gradient import gradient_parameters, polynomial_words, quadratic_gradient
 from models.reference_capture import reference_capture_parameters
-from models.rom_files import write_gains, write_gradient, write_quadratic, write_solver
+from models.rom_files import write_floor, write_gains, write_gradient, write_quadratic, write_solver
 from models.round_saturate import Monitor
 
 
@@ -28,6 +30,7 @@ def tactile_depth(
     monitor: Monitor | None = None,
     gains: np.ndarray | None = None,
     dark_level: int = 0,
+    floor: np.ndarray | None = None,
 ) -> np.ndarray:
     """Depth codes of frames, rows in the order of the stream: the tridiagonal solver puts the bottom row out first.
 
@@ -38,13 +41,24 @@ def tactile_depth(
         Those in use; by default of the calibration's reference.
     dark_level : int
         The register.
+    floor : int64 array (node rows, node columns)
+        That in use, of a configuration with `auto_zero`; by default nothing is subtracted.
 
     Returns
     -------
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
     slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level)
-    return solve(divergence(slopes, config.neumann), config, monitor)
+    return zeroed(solve(divergence(slopes, config.neumann), config, monitor), config, monitor, floor)
+
+
+def zeroed(
+    codes: np.ndarray, config: Configuration, monitor: Monitor | None = None, floor: np.ndarray | None = None
+) -> np.ndarray:
+    """Depth codes (..., rows, columns) less the floor, where the configuration has `auto_zero`."""
+    if not config.auto_zero:
+        return codes
+    return auto_zero(codes, no_floor(config) if floor is None else floor, config, monitor)
 
 
 def slope_codes(
@@ -91,6 +105,7 @@ def top_parameters(config: Configuration) -> dict[str, int]:
         "GradientFraction": config.gradient.fraction,
         "FrameLatency": frame_latency(config),
         **_colour_parameters(config),
+        **_floor_parameters(config),
     }
 
 
@@ -111,9 +126,18 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     return colour
 
 
-def write_roms(folder: Path, calibration: Calibration, config: Configuration) -> None:
-    """Every file that the RTL reads."""
+def _floor_parameters(config: Configuration) -> dict[str, int]:
+    if not config.auto_zero:
+        return {"AutoZero": 0}
+    capture = floor_capture_parameters(config)
+    return {"AutoZero": 1, "BlockLog2": capture["BlockLog2"], "FloorLog2": capture["MaxLog2"]}
+
+
+def write_roms(folder: Path, calibration: Calibration, config: Configuration, floor: np.ndarray | None = None) -> None:
+    """Every file that the RTL reads. `floor`: of `tactile_depth`."""
     write_solver(folder, config)
+    if config.auto_zero:
+        write_floor(folder, no_floor(config) if floor is None else floor, config.depth.width)
     if config.flat_field:
         write_gains(folder, reference_gains(calibration, config))
     if config.gradient_model == "quadratic":

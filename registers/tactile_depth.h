@@ -178,6 +178,10 @@ extern "C" {
 #define TACTILE_DEPTH__TABLE_COMMIT__REFERENCE_bp 2
 #define TACTILE_DEPTH__TABLE_COMMIT__REFERENCE_bw 1
 #define TACTILE_DEPTH__TABLE_COMMIT__REFERENCE_reset 0x0
+#define TACTILE_DEPTH__TABLE_COMMIT__FLOOR_bm 0x8
+#define TACTILE_DEPTH__TABLE_COMMIT__FLOOR_bp 3
+#define TACTILE_DEPTH__TABLE_COMMIT__FLOOR_bw 1
+#define TACTILE_DEPTH__TABLE_COMMIT__FLOOR_reset 0x0
 
 // reg - tactile_depth.TABLE_SIZE
 #define TACTILE_DEPTH__TABLE_SIZE__VALUE_bm 0xffffffff
@@ -322,6 +326,19 @@ extern "C" {
 #define TACTILE_DEPTH__RECORD_CENTROID__ROW_bp 16
 #define TACTILE_DEPTH__RECORD_CENTROID__ROW_bw 16
 
+// reg - tactile_depth.FLOOR_CAPTURE
+#define TACTILE_DEPTH__FLOOR_CAPTURE__LOG2_FRAMES_bm 0xf
+#define TACTILE_DEPTH__FLOOR_CAPTURE__LOG2_FRAMES_bp 0
+#define TACTILE_DEPTH__FLOOR_CAPTURE__LOG2_FRAMES_bw 4
+#define TACTILE_DEPTH__FLOOR_CAPTURE__LOG2_FRAMES_reset 0x0
+#define TACTILE_DEPTH__FLOOR_CAPTURE__START_bm 0x100
+#define TACTILE_DEPTH__FLOOR_CAPTURE__START_bp 8
+#define TACTILE_DEPTH__FLOOR_CAPTURE__START_bw 1
+#define TACTILE_DEPTH__FLOOR_CAPTURE__START_reset 0x0
+#define TACTILE_DEPTH__FLOOR_CAPTURE__BUSY_bm 0x200
+#define TACTILE_DEPTH__FLOOR_CAPTURE__BUSY_bp 9
+#define TACTILE_DEPTH__FLOOR_CAPTURE__BUSY_bw 1
+
 // addrmap - tactile_depth
 typedef struct __attribute__ ((__packed__)) {
     uint32_t ID;
@@ -363,10 +380,11 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t RECORD_VOLUME_LOW;
     uint32_t RECORD_VOLUME_HIGH;
     uint32_t RECORD_CENTROID;
+    uint32_t FLOOR_CAPTURE;
 } tactile_depth_t;
 
 
-static_assert(sizeof(tactile_depth_t) == 0x9c, "Packing error");
+static_assert(sizeof(tactile_depth_t) == 0xa0, "Packing error");
 
 #ifdef __cplusplus
 }

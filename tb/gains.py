@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bus and capture of gain_map, and of flat_field around it: both banks as they should stand, change-overs."""
+"""Bus and capture of gain_map, and of the cores around it: both banks as they should stand, change-overs."""
 
 import cocotb
 import numpy as np
@@ -28,15 +28,34 @@ def random_gains(config, chance):
 
 
 class Gains:
-    """Pins of the bus and of the capture; `banks` are the gains that each bank should hold."""
+    """Pins of the bus and of the capture; `banks` are the words (node rows, node columns, channels) that each bank
+    should hold."""
+
+    name = "gain"  # of a word, in the pins of the bus
+    capture_pin = "capture_gains"
+    width, per_node = GAIN_WIDTH, ENTRIES_PER_NODE
 
     def __init__(self, dut, config):
         self.dut, self.config = dut, config
-        self.banks = [unit_gains(config), unit_gains(config)]
+        self.banks = [self.at_power_up(), self.at_power_up()]
+        self.channels = self.banks[0].shape[-1]
         self.bank = 0  # what table_bank says
         self.due = False  # a change-over with the next frame
-        for pin in ("table_bank", "table_write", "table_read", "table_index", "capture_write", "capture_read"):
+        self.reads_captured = hasattr(dut, "capture_read")
+        for pin in ("table_bank", "table_write", "table_read", "table_index", "capture_write"):
             getattr(dut, pin).value = 0
+        if self.reads_captured:
+            dut.capture_read.value = 0
+
+    def at_power_up(self):
+        return unit_gains(self.config)
+
+    def random(self, chance):
+        return random_gains(self.config, chance)
+
+    def entries(self, words):
+        """What the bus writes: index to word."""
+        return table_entries(words)
 
     async def settle(self, written):
         """What a test before this one has `written` is written over, with the gains at power-up. On Verilator always:
@@ -44,7 +63,7 @@ class Gains:
         tested on Icarus, which begins with X, and by the top."""
         if written or cocotb.SIM_NAME.lower().startswith("verilator"):
             for _ in range(2):
-                await self.write(unit_gains(self.config))
+                await self.write(self.at_power_up())
                 self.change()
                 self.dut.rst.value = 1
                 await RisingEdge(self.dut.clk)
@@ -70,45 +89,49 @@ class Gains:
     async def capture(self, gains):
         """All nodes of the bank that is not in use, as reference_capture writes them; each is read a little later."""
         await self.changed()
-        words = [sum(word << GAIN_WIDTH * c for c, word in enumerate(node)) for node in gains.reshape(-1, 3).tolist()]
+        mask = (1 << self.width) - 1
+        nodes = gains.reshape(-1, self.channels).tolist()
+        words = [sum((word & mask) << self.width * c for c, word in enumerate(node)) for node in nodes]
         for clock in range(len(words) + 3):
             writes, reads = clock < len(words), 0 <= clock - 2 < len(words)
-            self.dut.capture_write.value, self.dut.capture_read.value = int(writes), int(reads)
+            self.dut.capture_write.value = int(writes)
             self.dut.capture_write_node.value = clock if writes else 0
-            self.dut.capture_gains.value = words[clock] if writes else 0
-            self.dut.capture_read_node.value = clock - 2 if reads else 0
+            getattr(self.dut, self.capture_pin).value = words[clock] if writes else 0
+            if self.reads_captured:
+                self.dut.capture_read.value = int(reads)
+                self.dut.capture_read_node.value = clock - 2 if reads else 0
             await RisingEdge(self.dut.clk)
-            if clock >= 3:
+            if self.reads_captured and clock >= 3:
                 assert int(self.dut.capture_read_gains.value) == words[clock - 3], f"node {clock - 3} as it is read"
         self.banks[self.bank ^ 1] = gains.copy()
 
     async def write(self, gains):
         """All entries of the bank that is not in use, in order, one a clock; the unused ones too."""
         await self.changed()
-        for index, word in table_entries(gains).items():
+        for index, word in self.entries(gains).items():
             await self.write_entry(index, word)
-            if index % ENTRIES_PER_NODE == ENTRIES_PER_NODE - 2:
+            if index % self.per_node == self.per_node - 2:
                 await self.write_entry(index + 1, LARGEST)
         assert np.array_equal(self.banks[self.bank ^ 1], gains)
 
     async def rewrite(self, chance, going_on):
         """The bank not in use, over and over; when it is complete it is asked for, and entries are read all along."""
-        size = ENTRIES_PER_NODE * self.banks[0][..., 0].size
+        size = self.per_node * self.banks[0][..., 0].size
         while going_on():
             if self.due or self.dut.table_in_use.value != self.bank:
                 await self.read(chance.randrange(size))
                 continue
-            await chance.choice((self.write, self.capture))(random_gains(self.config, chance))
+            await chance.choice((self.write, self.capture))(self.random(chance))
             for _ in range(4):
                 await self.read(chance.randrange(size))
             self.due = True
 
     async def write_entry(self, index, word):
-        for pin, value in (("write", 1), ("index", index), ("gain", word)):
+        for pin, value in (("write", 1), ("index", index), (self.name, word)):
             getattr(self.dut, f"table_{pin}").value = value
-        node, channel = divmod(index, ENTRIES_PER_NODE)
-        if channel < 3:
-            self.banks[self.bank ^ 1].reshape(-1, 3)[node, channel] = word
+        node, channel = divmod(index, self.per_node)
+        if channel < self.channels:
+            self.banks[self.bank ^ 1].reshape(-1, self.channels)[node, channel] = word
         await RisingEdge(self.dut.clk)
         self.dut.table_write.value = 0
 
@@ -122,7 +145,7 @@ class Gains:
         free = 1 - int(self.dut.table_in_use.value)  # as the edge of the read left it
         for _ in range(READ_CLOCKS - 1):
             await RisingEdge(self.dut.clk)
-        node, channel = divmod(index, ENTRIES_PER_NODE)
-        want = [*self.banks[free].reshape(-1, 3)[node].tolist(), 0][channel]
-        got = int(self.dut.table_read_gain.value)
+        node, channel = divmod(index, self.per_node)
+        want = [*self.banks[free].reshape(-1, self.channels)[node].tolist(), 0][channel] & (1 << self.width) - 1
+        got = int(getattr(self.dut, f"table_read_{self.name}").value)
         assert got == want, f"entry {index} of bank {free}: {got:#x}, not {want:#x}"

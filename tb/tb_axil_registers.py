@@ -16,10 +16,10 @@ from stream import REGRESS
 
 from models.axil_registers import (
     BYTES,
+    CAPTURES,
     COUNTERS,
     EVENT_COUNTERS,
     RECORD,
-    REFERENCE_BIT,
     STICKY_EVENTS,
     WORD,
     AxilRegisters,
@@ -36,13 +36,14 @@ LEVELS = ("busy", "contact", "touching")  # live bits of STATUS, and inputs
 INPUTS = (
     *(f"event_{flag}" for flag in FLAGS),
     *("saturations", "first_depth_latency", "first_depth_latency_valid", *LEVELS, "record", "frame_start"),
-    *("capture_busy", "capture_done"),
+    *("capture_busy", "capture_done", "floor_busy", "floor_done"),
     *("table_read_high", "table_read_low", "table_in_use"),
     *(f"s_axil_{pin}" for pin in ("awaddr", "awvalid", "wdata", "wstrb", "wvalid", "bready")),
     *(f"s_axil_{pin}" for pin in ("araddr", "arvalid", "rready")),
 )
 OFFSET = {register.name: register.offset for register in MAP}
-STATUS, CONTROL, CAPTURE = REGISTERS["STATUS"], REGISTERS["CONTROL"], REGISTERS["CAPTURE"]
+STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
+PINS = {"reference": "capture", "floor": "floor"}  # of what measures a table
 COUNTER_SIGNALS = {name: name.lower() for name in COUNTERS} | {"SATURATIONS": "saturations_count"}
 HELD = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE", "TIMEOUT", "DARK_LEVEL")  # as outputs
 RANDOM_CLOCKS = 10_000 if REGRESS else 3_000
@@ -61,7 +62,7 @@ class Checker:
     def __init__(self, dut) -> None:
         self.dut = dut
         names = ("Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel")
-        names += ("CoefficientWords", "ReferenceWords")
+        names += ("CoefficientWords", "ReferenceWords", "FloorWords")
         self.build = Build(*(int(getattr(dut, name).value) for name in names))
         self.model = AxilRegisters(self.build, entry)
         self.responses: dict[str, list[Response]] = {"read": [], "write": []}
@@ -115,7 +116,8 @@ class Checker:
             self.expect(name.lower(), values[name])
         for name in ("hold_contact", "drop_frames"):
             self.expect(name, CONTROL.unpack(values["CONTROL"])[name])
-        self.expect("capture_log2_frames", CAPTURE.unpack(values["CAPTURE"])["log2_frames"])
+        for table, register in CAPTURES.items():
+            self.expect(f"{PINS[table]}_log2_frames", register.unpack(values[register.name])["log2_frames"])
         self.expect("table_select", model.table)
         self.expect("table_index", values["TABLE_INDEX"])
         self.expect("table_high", values["TABLE_HIGH"])
@@ -123,8 +125,11 @@ class Checker:
         self.expect("table_bank", model.bank_wanted(starts and not resets))
 
         record = self.pin("record")
+        captured = frozenset(table for table, pin in PINS.items() if self.pin(f"{pin}_done"))
         live = Live(
-            **{name: bool(self.pin(name)) for name in (*LEVELS, "capture_busy")},
+            **{name: bool(self.pin(name)) for name in LEVELS},
+            capturing=frozenset(table for table, pin in PINS.items() if self.pin(f"{pin}_busy")),
+            ending=captured,
             in_use=self.pin("table_in_use"),
             record=tuple(record >> 32 * word & WORD for word in range(len(RECORD))),
         )
@@ -147,7 +152,7 @@ class Checker:
         elif self.fires("r"):
             self.read = None
         self.expect("table_read", table_read and not resets)
-        writes, captures = len(model.table_writes), model.captures
+        writes, captures = len(model.table_writes), len(model.captures)
         if self.fires("b"):
             self.address = self.data = self.written = None
         elif (
@@ -162,7 +167,8 @@ class Checker:
             self.address = self.bus("awaddr")
         if self.fires("w"):
             self.data = self.bus("wdata"), self.bus("wstrb")
-        self.expect("capture_request", model.captures - captures)
+        for table, pin in PINS.items():
+            self.expect(f"{pin}_request", model.captures[captures:] == [table])
         self.expect("table_write", len(model.table_writes) - writes)
         if len(model.table_writes) > writes:
             table, index, high, low = model.table_writes[-1]
@@ -178,7 +184,7 @@ class Checker:
                     self.pin("first_depth_latency") if self.pin("first_depth_latency_valid") else None
                 ),
                 frame_start=starts and not resets,
-                capture_done=bool(self.pin("capture_done")),
+                captured=captured,
             )
         )
         if resets:
@@ -341,7 +347,11 @@ async def access(dut, register) -> None:
     async with checked(dut) as checker:
         register, build = REGISTERS[register], checker.build
         everything = STATUS.mask("w1c")
-        reference = tables_present(build) & REFERENCE_BIT
+        refused = {  # by name: bits of a word that is refused
+            capture.name: capture.field("start").mask
+            for table, capture in CAPTURES.items()
+            if not build.table_sizes[TABLES[table]]
+        }
         held = register.mask("rw")
         if register.name == "TABLE_INDEX":
             held = (1 << build.index_width) - 1
@@ -358,7 +368,7 @@ async def access(dut, register) -> None:
         for word, strobe in [*words, *((rng.getrandbits(32), strobe) for strobe in range(1 << BYTES))]:
             old = await value(dut, register.name)
             strobed = strobed_bits(strobe)
-            if register is CAPTURE and word & strobed & CAPTURE.field("start").mask and not reference:
+            if word & strobed & refused.get(register.name, 0):
                 assert await write(dut, register.offset, word, strobe) == Response.SLVERR
                 assert await value(dut, register.name) == old
                 continue
@@ -561,10 +571,13 @@ async def table_entries(dut, table) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def no_table_beyond_the_last(dut) -> None:
-    """Values of TABLE_SELECT that name no table."""
+async def no_table_that_the_build_has_not(dut) -> None:
+    """Values of TABLE_SELECT that name none of the build's tables."""
     async with checked(dut) as checker:
-        for table in set(range(1 << REGISTERS["TABLE_SELECT"].field("select").width)) - set(TABLES.values()):
+        await ClockCycles(dut.clk, 3)
+        for table in range(1 << REGISTERS["TABLE_SELECT"].field("select").width):
+            if checker.build.table_sizes.get(table):
+                continue
             await choose(dut, table, 0)
             assert await value(dut, "TABLE_SIZE") == 0
             assert await write(dut, OFFSET["TABLE_LOW"], 5) == Response.SLVERR
@@ -760,19 +773,20 @@ async def each_address_reads_its_own(dut) -> None:
         for _ in range(4):
             for name in (*HELD, "TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "CONTROL"):
                 await write(dut, OFFSET[name], rng.getrandbits(32) & ~CONTROL.pack(clear_counters=1))
-            await write(dut, CAPTURE.offset, CAPTURE.pack(log2_frames=rng.getrandbits(4)))
+            for register in CAPTURES.values():
+                await write(dut, register.offset, register.pack(log2_frames=rng.getrandbits(4)))
             await pulse(dut, first_depth_latency=rng.getrandbits(32), first_depth_latency_valid=1)
             for name, signal in COUNTER_SIGNALS.items():
                 checker.model.values[name] = rng.getrandbits(32)
                 getattr(dut, signal).value = checker.model.values[name]
             await pulse(dut, **{f"event_{flag}": rng.getrandbits(1) for flag in STICKY_EVENTS}, saturations=1)
-            for name in (*LEVELS, "capture_busy"):
+            for name in (*LEVELS, "capture_busy", "floor_busy"):
                 getattr(dut, name).value = rng.getrandbits(1)
             dut.record.value = rng.getrandbits(32 * len(RECORD))
             await write(dut, OFFSET["TABLE_COMMIT"], WORD)  # from here on all that the build has are pending
             for address in range(0, 1 << ADDRESS_WIDTH, 4):
                 await read(dut, address)  # compared by the checker
-            for name in (*LEVELS, "capture_busy"):
+            for name in (*LEVELS, "capture_busy", "floor_busy"):
                 getattr(dut, name).value = 0
 
 
@@ -788,57 +802,63 @@ async def records(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def capture(dut) -> None:
+@cocotb.parametrize(name=list(PINS))
+async def capture(dut, name) -> None:
     """A start goes out once; while the capture is busy its table is closed, and its end asks for the change-over."""
     async with checked(dut) as checker:
-        model, table = checker.model, TABLES["reference"]
-        start = CAPTURE.pack(start=1, log2_frames=5)
+        model, table, register, pin = checker.model, TABLES[name], CAPTURES[name], PINS[name]
+        bit, busy, done = 1 << table, getattr(dut, f"{pin}_busy"), getattr(dut, f"{pin}_done")
+        start = register.pack(start=1, log2_frames=5)
         if not checker.build.table_sizes[table]:
-            assert await write(dut, CAPTURE.offset, start) == Response.SLVERR
-            assert await value(dut, "CAPTURE") == 0
-            assert await write(dut, CAPTURE.offset, start, strobe=0b1101) == Response.OKAY
-            assert await value(dut, "CAPTURE") == CAPTURE.pack(log2_frames=5)
-            await pulse(dut, capture_done=1)
+            assert await write(dut, register.offset, start) == Response.SLVERR
+            assert await value(dut, register.name) == 0
+            assert await write(dut, register.offset, start, strobe=0b1101) == Response.OKAY
+            assert await value(dut, register.name) == register.pack(log2_frames=5)
+            await pulse(dut, **{f"{pin}_done": 1})
             assert await value(dut, "TABLE_COMMIT") == 0
             assert not model.captures
             return
 
-        assert await write(dut, CAPTURE.offset, start) == Response.OKAY
-        assert (model.captures, await value(dut, "CAPTURE")) == (1, CAPTURE.pack(log2_frames=5))
-        assert await write(dut, CAPTURE.offset, WORD, strobe=0b1101) == Response.OKAY
-        assert await write(dut, CAPTURE.offset, WORD & ~CAPTURE.field("start").mask) == Response.OKAY
-        assert model.captures == 1
-        dut.capture_busy.value = 1
-        assert await value(dut, "CAPTURE") == CAPTURE.pack(log2_frames=15, busy=1)
-        assert await write(dut, CAPTURE.offset, start) == Response.OKAY  # afresh
-        assert model.captures == 2
+        assert await write(dut, register.offset, start) == Response.OKAY
+        assert (model.captures, await value(dut, register.name)) == ([name], register.pack(log2_frames=5))
+        assert await write(dut, register.offset, WORD, strobe=0b1101) == Response.OKAY
+        assert await write(dut, register.offset, WORD & ~register.field("start").mask) == Response.OKAY
+        assert model.captures == [name]
+        busy.value = 1
+        assert await value(dut, register.name) == register.pack(log2_frames=15, busy=1)
+        assert await write(dut, register.offset, start) == Response.OKAY  # afresh
+        assert model.captures == [name, name]
         for other, size in checker.build.table_sizes.items():
             await choose(dut, other, 0)
             refused = other == table or not size
             assert await write(dut, OFFSET["TABLE_LOW"], 1) == (Response.SLVERR if refused else Response.OKAY)
         await write(dut, OFFSET["TABLE_COMMIT"], WORD)
-        assert await value(dut, "TABLE_COMMIT") == tables_present(checker.build) & ~REFERENCE_BIT
+        assert await value(dut, "TABLE_COMMIT") == tables_present(checker.build) & ~bit
         bank = int(dut.table_bank.value)
         await pulse(dut, frame_start=1)
         await ClockCycles(dut.clk, 2)
-        assert (int(dut.table_bank.value) ^ bank) & REFERENCE_BIT == 0
+        assert (int(dut.table_bank.value) ^ bank) & bit == 0
         assert await value(dut, "TABLE_COMMIT") == 0
 
         # A frame that starts with the end of the capture still uses the table before.
         for together in (True, False):
             bank = int(dut.table_bank.value)
-            dut.capture_done.value, dut.frame_start.value = 1, together
+            done.value, dut.frame_start.value = 1, together
             await RisingEdge(dut.clk)
-            dut.capture_busy.value = dut.capture_done.value = dut.frame_start.value = 0
-            assert await value(dut, "TABLE_COMMIT") == REFERENCE_BIT
+            busy.value = done.value = dut.frame_start.value = 0
+            assert await value(dut, "TABLE_COMMIT") == bit
             assert int(dut.table_bank.value) == bank
-            await choose(dut, TABLES["gradient"], 0)
-            assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.OKAY
+            later = Response.SLVERR if name == "floor" else Response.OKAY  # its change-over comes behind the solver
+            assert await write(dut, register.offset, start) == later
+            for other, size in checker.build.table_sizes.items():
+                if size and other != table:
+                    await choose(dut, other, 0)
+                    assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.OKAY
             await choose(dut, table, 0)
             assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.SLVERR
             await pulse(dut, frame_start=1)
             await ClockCycles(dut.clk, 2)
-            assert int(dut.table_bank.value) == bank ^ REFERENCE_BIT
+            assert int(dut.table_bank.value) == bank ^ bit
             assert await value(dut, "TABLE_COMMIT") == 0
             assert await write(dut, OFFSET["TABLE_LOW"], 1) == Response.OKAY
 
@@ -912,4 +932,4 @@ async def random_traffic(dut, pressure) -> None:
             dut._log.info("%s: %s, %d table writes", kind, seen, len(checker.model.table_writes))
             assert min(seen.values()) > 10, f"the {kind}s were too much alike: {seen}"
         assert len(checker.model.table_writes) > 5
-        assert bool(checker.model.captures) == bool(tables_present(checker.build) & REFERENCE_BIT)
+        assert set(checker.model.captures) == {name for name in PINS if checker.build.table_sizes[TABLES[name]]}

@@ -5,6 +5,7 @@ Whatever a test sends, `Pipeline.check` then feeds the models with what the moni
 every code, side-band, latency, counter and status bit; `contact` is compared in every clock.
 """
 
+import math
 import os
 import random
 from itertools import pairwise, product, repeat
@@ -25,16 +26,18 @@ from models.contact_events import ContactEvents, Settings
 from models.contact_events import record as record_of
 from models.divergence import divergence
 from models.flat_field import captured_gains
+from models.floor_capture import captured_floor
 from models.frame_guard import FAULTS, frame_guard
 from models.gradient_lookup import gradient_codes, gradient_lookup
 from models.latency import first_depth_latency, last_pixel_to_first_depth
 from models.register_map import MAP, REGISTERS, TABLES
 from models.round_saturate import Monitor
-from models.tactile_depth import solve, tactile_depth, top_parameters
+from models.tactile_depth import slope_codes, solve, top_parameters, zeroed
 from models.threshold_comparator import ThresholdComparator
 
 OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL, COMMIT, CAPTURE = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT", "CAPTURE"))
+FLOOR_CAPTURE = REGISTERS["FLOOR_CAPTURE"]
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 GREEN, BLUE, RED = 0, 8, 16  # lowest bits of the colours in a word
 TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
@@ -57,6 +60,7 @@ class Pipeline:
     """The device, driven and watched at its pins."""
 
     gains = None  # of the reference in use, if it was captured: they survive as the table does
+    floor = None  # of depth, in the same way
     table = None  # slope codes that frames to come use: the table survives resets, so it survives a test
 
     def __init__(self, dut, offers="none", accepts="none", timeout=0):
@@ -89,6 +93,7 @@ class Pipeline:
         self.events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
         self.settings = []  # of contact events, as they stood with the first depth of each frame
         self.tables = None  # of each frame that comes, if they differ
+        self.floors = None  # the same
         self.expect_reset_values()
 
     async def start(self):
@@ -248,16 +253,24 @@ class Pipeline:
         """Depth codes (frames, rows, columns) and the number of values clipped, of frames in the order they came."""
         if not frames:
             return np.zeros((0, self.rows, self.columns), np.int64), 0
-        rgb = colours(frames).reshape(-1, self.rows, self.columns, 3)
         monitor = Monitor()
+        solved = self.solved(frames, monitor)
+        floors = [Pipeline.floor] * len(solved) if self.floors is None else self.floors
+        pairs = zip(solved, floors, strict=True)
+        codes = np.stack([zeroed(codes, self.config, monitor, floor) for codes, floor in pairs])
+        return codes, monitor.saturations.total()
+
+    def solved(self, frames, monitor=None):
+        """The codes before a floor is taken off."""
+        rgb = colours(frames).reshape(-1, self.rows, self.columns, 3)
         if self.config.flat_field:
             sensor = synthetic(self.config.bits_per_channel)
-            codes = tactile_depth(rgb, sensor, self.config, monitor, Pipeline.gains, self.dark_level)
-            return codes, monitor.saturations.total()
-        tables = [self.table] * len(rgb) if self.tables is None else self.tables
-        pairs = zip(rgb, tables, strict=True)
-        slopes = np.stack([gradient_lookup(frame, table, self.config.bits_per_channel) for frame, table in pairs])
-        return solve(divergence(slopes, self.config.neumann), self.config, monitor), monitor.saturations.total()
+            slopes = slope_codes(rgb, sensor, self.config, monitor, Pipeline.gains, self.dark_level)
+        else:
+            tables = [self.table] * len(rgb) if self.tables is None else self.tables
+            pairs = zip(rgb, tables, strict=True)
+            slopes = np.stack([gradient_lookup(frame, table, self.config.bits_per_channel) for frame, table in pairs])
+        return solve(divergence(slopes, self.config.neumann), self.config, monitor)
 
     async def send(self, *streams):
         await self.source.send([word for stream in streams for word in stream])
@@ -480,6 +493,91 @@ async def capture(dut):
     await pipeline.check()
     await pipeline.reset(2)
     await pipeline.send(pipeline.pressed())
+    await pipeline.check()
+
+
+@TEST
+async def floor_captured(dut):
+    """Of two frames, a broken one between them, while frames go on: those that begin before it is there have the floor
+    of before from first depth to last, those that begin later the new one; both are in the pipeline at once."""
+    pipeline = await started(dut, offers="random")
+    start = FLOOR_CAPTURE.pack(start=1, log2_frames=1)
+    if not pipeline.config.auto_zero:
+        assert await pipeline.write("FLOOR_CAPTURE", start) == Response.SLVERR
+        return
+    new = []  # of each frame, whether it has the new floor
+
+    async def follow():
+        pending = False
+        while True:
+            await RisingEdge(dut.clk)
+            if dut.u_registers.frame_start.value:
+                new.append(pending or any(new))
+                pending = False
+            pending |= bool(dut.floor_done.value)
+
+    following = cocotb.start_soon(follow())
+    assert await pipeline.write("FLOOR_CAPTURE", start) == Response.OKAY
+    frames = [pipeline.pressed(slope) for slope in (0.25, 0.125, -0.25)]
+    late = 3 + first_depth_latency(pipeline.config) // pipeline.pixels
+    await pipeline.send(frames[0], broken(pipeline.frame(), "row_short", 1, pipeline.columns), *frames[1:])
+    await pipeline.send(*(pipeline.pressed(pipeline.random.uniform(-0.3, 0.3)) for _ in range(late)))
+    await pipeline.idle()
+    following.cancel()
+    assert not FLOOR_CAPTURE.unpack(await pipeline.read("FLOOR_CAPTURE"))["busy"]
+    assert not await pipeline.read("TABLE_COMMIT")
+    words = [[word.data for word in frame] for frame in frames[:2]]
+    floor = captured_floor(pipeline.solved(words), pipeline.config)
+    pipeline.floors = [floor if later else Pipeline.floor for later in new]
+    await pipeline.check()
+    assert 3 < sum(not later for later in new) < len(new), "a poor test: no frame has one of the floors"
+    pipeline.floors, Pipeline.floor = None, floor
+    await pipeline.send(frames[0], frames[1])
+    await pipeline.check()
+    # One capture after another, the second as soon as it is let in.
+    for frame in frames[1:]:
+        while await pipeline.write("FLOOR_CAPTURE", FLOOR_CAPTURE.pack(start=1)) != Response.OKAY:
+            pass
+        await pipeline.send(frame)
+        while FLOOR_CAPTURE.unpack(await pipeline.read("FLOOR_CAPTURE"))["busy"]:
+            pass
+        assert await pipeline.write("FLOOR_CAPTURE", start) == Response.SLVERR, "before the change-over"
+        await pipeline.check()
+        await pipeline.send(frame)
+        Pipeline.floor = captured_floor(pipeline.solved([[word.data for word in frame]]), pipeline.config)
+        await pipeline.check()
+    await pipeline.reset(2)
+    await pipeline.send(frames[2])
+    await pipeline.check()
+
+
+@TEST
+async def floor_written(dut):
+    """Over the bus, read back; used from the next frame on; depth that leaves its range is clipped. In the end none."""
+    pipeline = await started(dut)
+    if not pipeline.config.auto_zero:
+        return
+    limit = 1 << pipeline.config.data_width - 1
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    await pipeline.write("TABLE_SELECT", TABLES["floor"])
+    nodes = math.prod(pipeline.config.reference_nodes)
+    assert await pipeline.read("TABLE_SIZE") == nodes
+    some, most = rng.integers(-limit // 8, limit // 8, nodes), rng.choice([-limit, limit - 1], nodes)
+    for floor in (most, some, 0 * some):
+        for index, code in enumerate(floor.tolist()):
+            await pipeline.write("TABLE_INDEX", index)
+            assert await pipeline.write("TABLE_LOW", code) == Response.OKAY
+        await pipeline.write("TABLE_INDEX", 0)
+        read = [(await pipeline.read("TABLE_LOW") ^ 1 << 31) - (1 << 31) for _ in range(nodes)]
+        assert read == floor.tolist()
+        assert await pipeline.read("TABLE_HIGH") == 0
+        assert await pipeline.write("TABLE_COMMIT", COMMIT.pack(floor=1)) == Response.OKAY
+        Pipeline.floor = floor.reshape(pipeline.config.reference_nodes)
+        await pipeline.send(pipeline.pressed(), pipeline.frame())
+        await pipeline.check()
+        assert "saturation" in pipeline.sticky
+    await pipeline.reset(1)
+    await pipeline.send(pipeline.pressed(0.25))
     await pipeline.check()
 
 
@@ -979,12 +1077,13 @@ async def registers_written_in_every_phase(dut, accepts):
         "TABLE_INDEX": lambda: rng.getrandbits(32),
         "TABLE_HIGH": lambda: rng.getrandbits(32),
         "TABLE_LOW": lambda: rng.getrandbits(32),  # of the table that no frame uses
-        "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1),  # the build has neither
+        "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1, floor=1),  # the build has none of these
         "DARK_LEVEL": lambda: rng.getrandbits(8),  # the build has no flat-fielding
         "CAPTURE": lambda: CAPTURE.pack(start=1),  # nor a reference to capture
+        "FLOOR_CAPTURE": lambda: FLOOR_CAPTURE.pack(start=1),  # nor a floor
         "GRID": lambda: rng.getrandbits(32),
     }
-    refused = {"GRID", "CAPTURE"}
+    refused = {"GRID", "CAPTURE", "FLOOR_CAPTURE"}
     missing = {name: set(range(pipeline.pixels)) for name in values}
 
     async def feed():

@@ -28,10 +28,11 @@ EXTREMES = {
     "BitsPerChannel": 1,
     "CoefficientWords": 36,
     "ReferenceWords": 5000,
+    "FloorWords": 1250,
 }
 
 
-QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0}
+QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0, "FloorWords": 300}
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ CASES = [
     {"columns": 32, "data_width": 30, "coefficient_width": 20, "neumann": True},
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "bits_per_channel": 2, "data_width": 20},
     {"columns": 64, "rows": 24, "solver": "tridiagonal", "neumann": True, "coefficient_width": 14},
+    {"columns": 32, "rows": 24, "solver": "tridiagonal", "neumann": True, "auto_zero": True},
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
 ]
 

@@ -26,6 +26,8 @@ INVALID = {
     "gradient_lookup": ["BitsPerChannel=0", "BitsPerChannel=9"],
     "flat_field": ["Offset=1"],
     "gain_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
+    "auto_zero": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
+    "floor_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=9"],
     "reference_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=11", "GainFraction=10"],
     "spectral_divide": ["Size=12", "Size=1"],
     "thomas_table": ["Size=12", "Rows=1"],

@@ -10,8 +10,10 @@ from skimage import io
 from stream import REGRESS
 
 from commands import sim
+from models.auto_zero import auto_zero
 from models.calibration import load
 from models.configuration import COLUMNS, Configuration
+from models.floor_capture import captured_floor
 from models.latency import first_depth_latency, last_pixel_to_first_depth
 
 PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
@@ -178,6 +180,22 @@ def test_pictures_with_a_reference(tmp_path):
     assert report["pixel_pitch_mm"] == pytest.approx(48 / 32 * load("gelsight-mini").pixel_pitch_mm)
 
 
+@pytest.mark.parametrize("solver", sim.SOLVERS)
+def test_a_floor_is_subtracted(tmp_path, solver):
+    """The mean depth of two frames without contact, in the RTL and in double precision."""
+    rest = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
+    every = _npy(tmp_path / "every.npy", np.concatenate((rest, rest[:1, ::-1])))
+    chosen = ["N=16", "BOUNDARY=neumann", f"SOLVER={solver}", f"FRAMES={every}", "SIM=icarus"]
+    report = run(tmp_path, *chosen, f"FLOOR={_npy(tmp_path / 'rest.npy', rest)}")
+    assert report["auto_zero"]
+    down = -1 if solver == "tridiagonal" else 1  # blocks are counted as depth leaves
+    zeroed = np.load(tmp_path / "out" / "depth.npy")[:, ::down]
+    run(tmp_path, *chosen)
+    solved = np.load(tmp_path / "out" / "depth.npy")[:, ::down].astype(np.int64)
+    config = Configuration(columns=16, solver=solver, neumann=True, auto_zero=True)
+    assert np.array_equal(zeroed, auto_zero(solved, captured_floor(solved[:2], config), config))
+
+
 def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path):
     given = _config(
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
@@ -257,6 +275,8 @@ BAD_INPUT = {
     "configuration in a configuration": lambda t: _config(t / "c.json", '{"CONFIG": "c.json"}'),
     "a list in a configuration": lambda t: _config(t / "c.json", '{"DATA_WIDTH": [24]}'),
     "reference with a scene": lambda t: "REFERENCE=background.png",
+    "no floor": lambda t: f"FLOOR={t / 'rest.png'}",
+    "floor of another camera": lambda t: f"FLOOR={_npy(t / 'rest.npy', np.zeros((1, 32, 32, 3), np.uint8))}",
 }
 
 

@@ -19,7 +19,7 @@ FORMATS = (
     "configuration|back_to_back|contact.*=none|every_fault|saturation|"
     "gaps_and_stalls/offers=random/accepts=(one_in_4|random)"
 )
-FLAT = f"{FORMATS}|capture|dark_pixels|depth_frames|resets.*=2.*full"
+FLAT = f"{FORMATS}|capture|floor|dark_pixels|depth_frames|resets.*=2.*full"
 # On the first of each solver everything, but of the pairs of gaps and stalls each with one solver, every gap and every
 # stall with both. `make regress` runs all.
 PAIRS = {
@@ -61,11 +61,13 @@ TRIDIAGONAL = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
         (TRIDIAGONAL | {"bits_per_channel": 2}, ""),
         (TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
         (TRIDIAGONAL | {"flat_field": True, "gradient_model": "quadratic"}, FLAT),
-        ({"columns": 16, "flat_field": True, "neumann": True}, FLAT),
+        ({"columns": 16, "flat_field": True, "neumann": True, "auto_zero": True}, FLAT),
+        (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "auto_zero": True}, FLAT),
     ],
     ids=[
         *("16-24", "16-27-neumann", "32-12", "tridiagonal-8x16", "tridiagonal-21x16-neumann"),
         *("tridiagonal-8x16-quadratic", "16-flat-neumann"),
+        "tridiagonal-8x16-zero",
     ],
 )
 def test_rtl(run_tb, simulator, choices, tests):

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames of depth as auto_zero and floor_capture take them: words with the marks of frames and rows."""
+
+import numpy as np
+from stream import StreamDriver, send_apart
+
+FIELDS = ["user", "last", "frame_end", "data"]
+
+
+def depth_words(frame):
+    """Depths (rows, columns) as tuples in the order of FIELDS."""
+    rows, columns = frame.shape
+    end = rows * columns - 1
+    data = frame.reshape(-1).tolist()
+    return [(at == 0, at % columns == columns - 1, at == end, depth) for at, depth in enumerate(data)]
+
+
+def random_depths(shape, width, chance):
+    """Anything, the limits alone, all of one, or small, by chance; the mean of small ones is often a tie."""
+    generator = np.random.default_rng(chance.getrandbits(32))
+    low, high = -(1 << width - 1), (1 << width - 1) - 1
+    match chance.randrange(5):
+        case 0:
+            return np.full(shape, chance.choice((low, high)))
+        case 1:
+            return generator.choice([*3 * [low, high], low + 1, high - 1, -1, 0], shape)
+        case 2:
+            return generator.integers(-3, 3, shape, endpoint=True)
+    return generator.integers(low, high, shape, endpoint=True)
+
+
+class DepthDriver(StreamDriver):
+    """Between words, marks and data are anything."""
+
+    def __init__(self, dut, bench, gap):
+        self.bench, self.gap = bench, gap
+        super().__init__(dut, "in", "valid", FIELDS)
+
+    def idle(self):
+        super().idle()
+        for field in FIELDS:
+            pin = getattr(self.bus, field)
+            pin.value = self.bench.random.getrandbits(len(pin))
+
+    async def words(self, words):
+        """A frame, or part of one."""
+        if self.gap:
+            await send_apart(self.bench, self, words, self.gap)
+        elif words:
+            await self.send(words)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""auto_zero: RTL against the model; what the model does."""
+
+import json
+
+import numpy as np
+import pytest
+from stream import REGRESS, places
+
+from models.auto_zero import auto_zero, auto_zero_parameters, exact_zero, interpolated_floor, no_floor
+from models.configuration import Configuration
+from models.floor_capture import captured_floor
+from models.rom_files import write_floor
+from models.round_saturate import Monitor
+
+SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
+
+
+@pytest.mark.structures(
+    "columns rows width",
+    both=[(16, 8, 12), *([(128, 128, 24)] if REGRESS else [])],
+    icarus=[(16, 16, 24), (32, 21, 16), (128, 8, 32)],
+)
+def test_rtl(run_tb, columns, rows, width):
+    choices = {"columns": columns, "rows": rows, "data_width": width, "solver": "tridiagonal"}
+    config = Configuration(**choices)
+    floor = places(np.prod(config.reference_nodes), width)  # that of the testbench
+    run_tb(
+        "auto_zero",
+        SOURCES,
+        auto_zero_parameters(config),
+        roms=lambda folder: write_floor(folder, floor, width),
+        environment={"CONFIGURATION": json.dumps(choices)},
+    )
+
+
+CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")
+HIGHEST = (1 << CONFIG.depth.width - 1) - 1
+
+
+def codes(count=2, limit=HIGHEST):
+    return np.random.default_rng(1).integers(-limit - 1, limit, (count, 21, 32), endpoint=True)
+
+
+def test_no_floor_changes_nothing():
+    monitor = Monitor()
+    np.testing.assert_array_equal(auto_zero(codes(), no_floor(CONFIG), CONFIG, monitor), codes())
+    assert not monitor.saturations
+
+
+@pytest.mark.parametrize("level", [-1000, -1, 1, 77777])
+def test_a_flat_floor_is_subtracted_everywhere(level):
+    floor = np.full(CONFIG.reference_nodes, level)
+    assert np.all(interpolated_floor(floor, CONFIG) == level)
+    low = codes(limit=HIGHEST // 2)
+    np.testing.assert_array_equal(auto_zero(low, floor, CONFIG), low - level)
+
+
+def test_what_is_clipped_is_counted():
+    monitor = Monitor()
+    floor = np.full(CONFIG.reference_nodes, -2)
+    depths = np.zeros((21, 32), np.int64)
+    depths[3, 4:9] = HIGHEST - np.arange(5)
+    zeroed = auto_zero(depths, floor, CONFIG, monitor)
+    assert zeroed[3, 4:9].tolist() == [HIGHEST, HIGHEST, HIGHEST, HIGHEST - 1, HIGHEST - 2]
+    assert monitor.saturations == {"auto_zero": 2}
+    auto_zero(np.full((21, 32), -HIGHEST - 1), np.full(CONFIG.reference_nodes, 1), CONFIG, monitor)
+    assert monitor.saturations == {"auto_zero": 2 + 21 * 32}
+
+
+def test_exact_zero_is_the_same_but_for_rounding():
+    untouched, depths = codes(4, 5000), codes(3, 100000)
+    zeroed = auto_zero(depths, captured_floor(untouched, CONFIG), CONFIG)
+    exact = exact_zero(depths.astype(float), untouched.astype(float), CONFIG)
+    assert 0 < np.abs(zeroed - exact).max() <= 1
+
+
+def test_a_floor_that_is_a_plane_is_taken_off_between_the_centres_of_blocks():
+    """A cut row of blocks has no node: there, and outside the outermost centres, the floor stands still."""
+    row, column = np.mgrid[:21, :32]
+    plane = 400 * row - 600 * column + 5000
+    zeroed = auto_zero(plane, captured_floor(plane[None], CONFIG), CONFIG)
+    assert not zeroed[1:19, 1:31].any()
+    assert zeroed[20].any()
