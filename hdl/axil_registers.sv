@@ -21,10 +21,10 @@
 //
 // Capture of the reference table: capture_request is high in the clock in which its write takes effect. From the
 // clock after it to that of capture_done, capture_busy shall be high: then the bus neither writes that table nor asks
-// for its change-over. capture_done asks for that, as TABLE_COMMIT does. floor_*: the same for the floor, but
-// that a start is refused while its change-over is pending: it comes so much later than a frame's start, that a capture
-// would write the bank which is to be used. record: word n of the contact events in bits 32 n + 31 to 32 n; what is read
-// is the word as it stands.
+// for its change-over. capture_done asks for that, as TABLE_COMMIT does. floor_*: the same for the floor, but that a
+// start is refused while its change-over is pending: it comes so much later than a frame's start, that a capture would
+// write the bank which is to be used. record: word n of the contact events in bits 32 n + 31 to 32 n; what is read is
+// the word as it stands.
 // Behavioural model: models/axil_registers.py.
 
 module axil_registers

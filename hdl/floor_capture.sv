@@ -125,7 +125,7 @@ module floor_capture #(
       left <= left_next;
     end
     if (starts) fresh <= begins;
-    if (ends) left <= left - (MaxLog2 + 1)'(1);  // of a frame that follows before done nothing is written
+    if (ends) left <= left - (MaxLog2 + 1)'(1);  // below none: what follows before done is written nowhere
     done <= closed;
     if (closed) state <= Idle;
     if (request) state <= Armed;
