@@ -555,66 +555,75 @@ class Idling(Gates):
 
 EXACT = re.compile(r"any_(\w+|in_place\[\d+\])")  # inputs that are not left unknown: others are data
 
+Kind = tuple[int, int]  # literals: a node can be 1, it can be 0
+
 
 class Shadow(Gates):
     """Where a mutant's difference can go, whatever the data are.
 
-    Of each node of the core it is known whether it can be 1, whether it can be 0, and whether a mutant may have another
-    value there. Inputs of one bit and places of pixels are what they are, all others, and what is not initialised,
-    unknown: so few states are left that all can be visited (`never`). A difference passes a gate whose
-    other side may be 1; so more is reached than in truth, and where nothing that is looked at is reached there is no
-    difference. (Three values: R. E. Bryant, "A switch-level model", 1984; differences that are followed through gates:
-    M. Tiwari et al., "Complete information flow tracking from the gates up", ASPLOS 2009.)
+    Of each node it is known whether it can be 1 and whether it can be 0, in the core and in the mutant, and whether the
+    two may differ there. Inputs of one bit and places of pixels are what they are, all others, and what is not
+    initialised, unknown: so few states are left that all can be visited (`never`). A difference passes a gate whose
+    other side may be 1, unless the gate is known to be the same in both; so more is reached than in truth, and where
+    nothing that is looked at is reached there is no difference. (Three values: R. E. Bryant, "A switch-level model",
+    1984; differences that are followed through gates: M. Tiwari et al., "Complete information flow tracking from the
+    gates up", ASPLOS 2009.)
     """
 
     def __init__(self, source: Graph, number: int, readers: Readers):
         exact = [literal for name, literal in source.inputs.items() if EXACT.fullmatch(name)]
         self.inputs = len(exact)
         started = 2 * (1 + self.inputs)
-        super().__init__(2 + self.inputs + 3 * len(source.latches))
-        one, zero, differs = {0: 0}, {0: 1}, {0: 0}  # of nodes
+        super().__init__(2 + self.inputs + 5 * len(source.latches))
+        core: dict[int, Kind] = {}  # of nodes: whether they can be 1, and 0
+        mutant: dict[int, Kind] = {}
+        differs: dict[int, int] = {}
 
-        def give(literal: int, can_be_one: int, can_be_zero: int, can_differ: int) -> None:
-            one[literal], zero[literal], differs[literal] = can_be_one, can_be_zero, can_differ
+        def give(literal: int, here: Kind, there: Kind, apart: int) -> None:
+            core[literal], mutant[literal], differs[literal] = here, there, apart
 
         for literal in source.inputs.values():
-            give(literal, 1, 1, 0)
+            give(literal, (1, 1), (1, 1), 0)
+        give(0, (0, 1), (0, 1), 0)
+        for literal, bit in readers.selector.items():
+            set_there = number >> bit & 1
+            give(literal, (0, 1), (set_there, 1 - set_there), set_there)
         for place, literal in enumerate(exact, 1):
             value = 2 * place
             if literal == source.inputs.get(RESET):  # the first clock is one of reset
                 value = self.either((value, started ^ 1))
-            give(literal, value, value ^ 1, 0)
-        # In the core and in the mutant, of what hangs on the selector alone.
-        chosen = {0: (0, 0)} | {literal: (0, number >> bit & 1) for literal, bit in readers.selector.items()}
-        for literal, (here, there) in chosen.items():
-            give(literal, here, 1 - here, here ^ there)
+            give(literal, (value, value ^ 1), (value, value ^ 1), 0)
         # AIGER's latches start at 0, so that what a latch of the core can be is kept inverted where it can be that.
-        kept = []
+        inverted = []
         for place, (latch, _, start) in enumerate(source.latches):
-            first = started + 2 + 6 * place
-            kept.append((first, int(start != 0), int(start != 1)))
-            give(latch, first ^ kept[-1][1], first + 2 ^ kept[-1][2], first + 4)
-        for out, *sides in source.ands:
-            held = [chosen.get(side & ~1) for side in sides]
-            known = [k and (k[0] ^ side & 1, k[1] ^ side & 1) for k, side in zip(held, sides, strict=True)]
-            if (0, 0) in known or all(known):
-                here, there = (min(pair) for pair in zip(*(k for k in known if k), strict=True))
-                chosen[out] = here, there
-                give(out, here, 1 - here, here ^ there)
-                continue
-            ones = [(zero if side & 1 else one)[side & ~1] for side in sides]
-            zeros = [(one if side & 1 else zero)[side & ~1] for side in sides]
-            apart = [differs[side & ~1] for side in sides]
-            opens = [max(k) if k else self.either((o, d)) for k, o, d in zip(known, ones, apart, strict=True)]
-            passes = self.either((self.both(apart[0], opens[1]), self.both(apart[1], opens[0])))
-            give(out, self.both(*ones), self.either(zeros), passes)
-        self.latches = [1]  # of `started`, then of what a latch can be and whether it differs
-        for (_, to, _), (_, not_one, not_zero) in zip(source.latches, kept, strict=True):
-            can_be_one, can_be_zero = (zero, one) if to & 1 else (one, zero)
-            self.latches += [can_be_one[to & ~1] ^ not_one, can_be_zero[to & ~1] ^ not_zero, differs[to & ~1]]
+            one, zero, one_there, zero_there, apart = range(started + 2 + 10 * place, started + 12 + 10 * place, 2)
+            inverted.append((int(start != 0), int(start != 1)))
+            at_one, at_zero = inverted[-1]
+            give(latch, (one ^ at_one, zero ^ at_zero), (one_there ^ at_one, zero_there ^ at_zero), apart)
+
+        def side(kinds: Mapping[int, Kind], literal: int) -> Kind:
+            can_be_one, can_be_zero = kinds[literal & ~1]
+            return (can_be_zero, can_be_one) if literal & 1 else (can_be_one, can_be_zero)
+
+        for out, a, b in source.ands:
+            kinds = []
+            for table in (core, mutant):
+                (a_one, a_zero), (b_one, b_zero) = side(table, a), side(table, b)
+                kinds.append((self.both(a_one, b_one), self.either((a_zero, b_zero))))
+            opens = [self.either((side(core, x)[0], side(mutant, x)[0])) for x in (a, b)]
+            passes = self.either((self.both(differs[a & ~1], opens[1]), self.both(differs[b & ~1], opens[0])))
+            (one, zero), (one_there, zero_there) = kinds
+            alike = self.either((self.both(one ^ 1, one_there ^ 1), self.both(zero ^ 1, zero_there ^ 1)))
+            give(out, *kinds, self.both(passes, alike ^ 1))
+        self.latches = [1]  # of `started`, then of what a latch can be in both copies, and whether it differs
+        for (_, to, _), at in zip(source.latches, inverted, strict=True):
+            self.latches += [
+                can ^ kept for table in (core, mutant) for can, kept in zip(side(table, to), at, strict=True)
+            ]
+            self.latches.append(differs[to & ~1])
         wrong = []
         for looked_at, to in readers.outputs:
-            seen = self.either(((zero if looked_at & 1 else one)[looked_at & ~1], differs[looked_at & ~1]))
+            seen = self.either((side(core, looked_at)[0], differs[looked_at & ~1]))
             wrong.append(self.both(seen, differs[to & ~1]))
         self.bad = self.either(wrong)
 
