@@ -47,6 +47,7 @@ module auto_zero #(
 );
 
   localparam int MapLatency = 9;
+  localparam int Latency = MapLatency + 1;
   localparam logic [Width-1:0] Zero = {1'b1, {(Width - 1) {1'b0}}};  // in offset binary
 
   logic row_ended, floor_valid;
@@ -89,7 +90,7 @@ module auto_zero #(
       out_last <= floor_place[3];
       out_data <= rounded;
       if (in_valid) begun <= ~in_frame_end;
-      if (in_valid && in_frame_end) leaving <= 4'd10;
+      if (in_valid && in_frame_end) leaving <= 4'($unsigned(Latency));
       else if (leaving != '0) leaving <= leaving - 4'd1;
     end
     saturation <= en & floor_valid & clipped;

@@ -51,11 +51,9 @@ module floor_capture #(
   logic [1:0] state;
   logic [3:0] log2, log2_next;
   logic [MaxLog2:0] left, left_next;  // frames to come after this one
-  logic take, begins, starts, ends;
+  logic take, begins;
   assign take = en & in_valid;
   assign begins = take & in_user & state == Armed;
-  assign starts = begins | (take & in_user & state == Summing);
-  assign ends = take & in_frame_end & state == Summing;
   assign log2_next = log2_frames > 4'($unsigned(MaxLog2)) ? 4'(MaxLog2) : log2_frames;
   assign left_next = begins ? ((MaxLog2 + 1)'(1) << log2_next) - (MaxLog2 + 1)'(1) : left;
   assign busy = state != Idle | done;
@@ -93,7 +91,7 @@ module floor_capture #(
   assign unused_sign = mean[Width];
 
   always_ff @(posedge clk) begin
-    summing_q <= take & (state == Summing | starts);
+    summing_q <= take & (state == Summing | begins);
     if (take) begin
       row_ended <= in_last;
       column <= in_user ? '0 : column + ColumnWidth'(1);
@@ -124,8 +122,9 @@ module floor_capture #(
       log2 <= log2_next;
       left <= left_next;
     end
-    if (starts) fresh <= begins;
-    if (ends) left <= left - (MaxLog2 + 1)'(1);  // below none: what follows before done is written nowhere
+    if (take && in_user) fresh <= begins;
+    // Below none: what follows before done is written nowhere.
+    if (take && in_frame_end) left <= left - (MaxLog2 + 1)'(1);
     done <= closed;
     if (closed) state <= Idle;
     if (request) state <= Armed;

@@ -140,7 +140,7 @@ class Gains:
         self.dut.table_read.value, self.dut.table_index.value = 1, index
         await RisingEdge(self.dut.clk)
         self.dut.table_read.value = 0
-        self.dut.table_index.value = index ^ 5
+        self.dut.table_index.value = (index ^ 5) & (1 << len(self.dut.table_index)) - 1
         await RisingEdge(self.dut.clk)
         free = 1 - int(self.dut.table_in_use.value)  # as the edge of the read left it
         for _ in range(READ_CLOCKS - 1):

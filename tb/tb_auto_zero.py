@@ -6,9 +6,9 @@ from collections import deque
 import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
-from depth_frames import DepthDriver, depth_words, random_depths
+from depth_frames import DepthDriver, Grid, depth_words, random_depths
 from gains import Gains
-from stream import Bench, configuration, places
+from stream import Bench, places
 
 from models.auto_zero import auto_zero, interpolated_floor
 from models.latency import AUTO_ZERO
@@ -50,7 +50,7 @@ class Zero:
 
     def __init__(self, dut, gap, pause):
         self.dut, self.gap = dut, gap
-        self.config = configuration()
+        self.config = Grid.of(dut)
         self.shape = (self.config.rows, self.config.columns)
         self.width = self.config.depth.width
         self.frames = max(3, WORDS // (self.config.rows * self.config.columns))

@@ -6,8 +6,8 @@ import itertools
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
-from depth_frames import DepthDriver, depth_words, random_depths
-from stream import REGRESS, Bench, configuration, parameters
+from depth_frames import DepthDriver, Grid, depth_words, random_depths
+from stream import REGRESS, Bench, parameters
 
 from models.floor_capture import CLOCKS, captured_floor
 
@@ -19,7 +19,7 @@ class Capture:
 
     def __init__(self, dut, gap, pause):
         self.dut = dut
-        self.config = configuration()
+        self.config = Grid.of(dut)
         (self.largest,) = parameters(dut, "MaxLog2")
         self.shape = (self.config.rows, self.config.columns)
         self.size = self.config.rows * self.config.columns

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """auto_zero: RTL against the model; what the model does."""
 
-import json
-
 import numpy as np
 import pytest
 from stream import REGRESS, places
 
-from models.auto_zero import auto_zero, auto_zero_parameters, exact_zero, interpolated_floor, no_floor
+from models.auto_zero import auto_zero, exact_zero, interpolated_floor, no_floor
 from models.configuration import Configuration
 from models.floor_capture import captured_floor
 from models.rom_files import write_floor
@@ -17,20 +15,17 @@ SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_satura
 
 
 @pytest.mark.structures(
-    "columns rows width",
-    both=[(16, 8, 12), *([(128, 128, 24)] if REGRESS else [])],
-    icarus=[(16, 16, 24), (32, 21, 16), (128, 8, 32)],
+    "columns rows block_log2 width",
+    both=[(4, 5, 1, 4), (16, 8, 1, 24), *([(128, 128, 3, 24)] if REGRESS else [])],
+    icarus=[(4, 2, 1, 5), (16, 16, 1, 12), (16, 9, 2, 24), (32, 21, 1, 16), (128, 8, 3, 32)],
 )
-def test_rtl(run_tb, columns, rows, width):
-    choices = {"columns": columns, "rows": rows, "data_width": width, "solver": "tridiagonal"}
-    config = Configuration(**choices)
-    floor = places(np.prod(config.reference_nodes), width)  # that of the testbench
+def test_rtl(run_tb, columns, rows, block_log2, width):
+    floor = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
     run_tb(
         "auto_zero",
         SOURCES,
-        auto_zero_parameters(config),
+        {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width},
         roms=lambda folder: write_floor(folder, floor, width),
-        environment={"CONFIGURATION": json.dumps(choices)},
     )
 
 

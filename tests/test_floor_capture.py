@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """floor_capture: RTL against the model, and the model against exact fractions."""
 
-import json
 from fractions import Fraction
 
 import numpy as np
@@ -9,28 +8,24 @@ import pytest
 from stream import REGRESS
 
 from models.configuration import Configuration
-from models.floor_capture import LARGEST_LOG2, captured_floor, floor_capture_parameters
+from models.floor_capture import LARGEST_LOG2, captured_floor
 
 SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
 
 
 @pytest.mark.structures(
-    "columns rows width largest",
-    both=[(16, 8, 24, LARGEST_LOG2)],
+    "columns rows block_log2 width largest",
+    both=[(16, 8, 1, 24, LARGEST_LOG2)],
     icarus=[
-        (16, 8, 12, 2),
-        (32, 21, 12, 1),
-        *([(16, 16, 24, 3), (128, 8, 24, 4), (128, 20, 16, 3), (16, 9, 32, 0)] if REGRESS else []),
+        (4, 5, 1, 4, 2),
+        (4, 2, 1, 6, 1),
+        (32, 21, 1, 12, 1),
+        *([(16, 16, 2, 24, 3), (128, 8, 3, 24, 4), (128, 20, 3, 16, 3), (16, 9, 1, 32, 0)] if REGRESS else []),
     ],
 )
-def test_rtl(run_tb, columns, rows, width, largest):
-    choices = {"columns": columns, "rows": rows, "data_width": width, "solver": "tridiagonal"}
-    run_tb(
-        "floor_capture",
-        SOURCES,
-        floor_capture_parameters(Configuration(**choices)) | {"MaxLog2": largest},
-        environment={"CONFIGURATION": json.dumps(choices)},
-    )
+def test_rtl(run_tb, columns, rows, block_log2, width, largest):
+    parameters = {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "MaxLog2": largest}
+    run_tb("floor_capture", SOURCES, parameters)
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])
