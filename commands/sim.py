@@ -251,8 +251,8 @@ def simulate(
     config: Configuration,
     frames: Frames,
     calibration: Calibration,
-    floor: np.ndarray | None,
     folder: Path,
+    floor: np.ndarray | None = None,
 ) -> bench.Played:
     """Run the bench in `folder`, with a bar that shows how far it is."""
     total = len(frames.pixels) * request.repeat
@@ -408,7 +408,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
     except OSError as error:
         raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
     try:
-        played = simulate(request, config, frames, calibration, floor, work)
+        played = simulate(request, config, frames, calibration, work, floor)
         monitor = Monitor()
         codes = tactile_depth(frames.pixels, calibration, config, monitor, floor=floor)
         reference_px = exact_depth(frames.pixels, rest, calibration, config)

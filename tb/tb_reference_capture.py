@@ -13,6 +13,7 @@ from models.configuration import GAIN_FRACTION, GAIN_WIDTH
 from models.reference_capture import reference_capture, reference_capture_clocks
 
 PIXELS = 4096  # that a test sends, about
+SUM_CLOCKS = 5  # from a pixel to its sum in the memory
 FIELDS = ["pixel", "place", "bad"]
 
 
@@ -37,6 +38,8 @@ class Capture:
         self.taken = []  # frames since the request: pixels, bad, log2_frames
         self.frame = None  # that is being sent: pixels, bad
         self.flipped = None  # what a test put into the memory before the last frame
+        self.sums = []  # to be written for the frames so far: (node, what is added, nothing before it)
+        self.passing = 0  # clocks in which sums of before a request may still be written
         dut.request.value, dut.log2_frames.value = 0, 0
 
     async def start(self):
@@ -51,6 +54,7 @@ class Capture:
             if dut.rst.value:
                 self.busy = self.inside = False
                 self.due = None
+                self.sums = []
                 continue
             self.serve()
             done = clock == self.due
@@ -66,6 +70,7 @@ class Capture:
                 if place & 3 == 3:
                     self.inside = self.busy and self.due is None
                     if self.inside:
+                        self.sums += self.row_sums(self.frame[0], not self.taken or self.taken[-1][1])
                         self.taken.append((*self.frame, int(dut.log2_frames.value)))
                 if place & 12 == 12 and self.inside:
                     found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)
@@ -75,7 +80,7 @@ class Capture:
                             self.gains = self.gains_behind_flips(self.taken[-1][0])
             if dut.request.value:
                 self.busy, self.due, self.inside = True, None, False
-                self.taken = []
+                self.taken, self.sums, self.passing = [], [], SUM_CLOCKS
 
     def serve(self):
         dut = self.dut
@@ -84,6 +89,17 @@ class Capture:
             node = int(dut.map_write_node.value)
             assert not (read and int(dut.map_read_node.value) == node), f"node {node} is read while it is written"
             assert self.busy, "a write after done"
+            if self.passing:
+                pass
+            elif self.sums:
+                wanted, added, first = self.sums.pop(0)
+                before = [0 if first else self.memory[node] >> GAIN_WIDTH * c for c in range(3)]
+                sums = [held + more & (1 << GAIN_WIDTH) - 1 for held, more in zip(before, added, strict=True)]
+                word = sum(word << GAIN_WIDTH * c for c, word in enumerate(sums))
+                assert (node, int(dut.map_write_gains.value)) == (wanted, word), "a sum"
+            else:
+                assert self.due is not None, "a write of nothing"
+        self.passing = max(0, self.passing - 1)
         if read:
             word = self.memory[int(dut.map_read_node.value)]
             assert word is not None, "a node is read before it was written"
@@ -102,6 +118,18 @@ class Capture:
             case 2:
                 return np.broadcast_to(self.generator.integers(0, 256, 3, dtype=np.uint8), shape)
         return self.generator.integers(0, 256, shape, dtype=np.uint8)
+
+    def row_sums(self, frame, first):
+        """What is written for a frame, in order: node, the colours of a block's row, whether they begin a sum."""
+        block = 1 << self.config.reference_block_log2
+        rows, columns = self.config.reference_nodes
+        whole = frame[: rows * block, : columns * block].astype(np.int64)
+        sums = whole.reshape(rows * block, columns, block, 3).sum(axis=2)
+        return [
+            (row // block * columns + column, sums[row, column].tolist(), first and row % block == 0)
+            for row in range(rows * block)
+            for column in range(columns)
+        ]
 
     def gains_behind_flips(self, frame):
         """Of sums that are what the memory was made to hold and those of the last frame, modulo their word."""

@@ -247,7 +247,8 @@ def defaults(path):
 
 SPECTRAL, TRIDIAGONAL = Configuration(), Configuration(solver="tridiagonal")
 FLAT = [top_parameters(Configuration(flat_field=True, gradient_model=model)) for model in ("quadratic", "lut")]
-BOTH = {**FLAT[0], **FLAT[1], **top_parameters(TRIDIAGONAL), **top_parameters(SPECTRAL)}
+ZERO = top_parameters(Configuration(auto_zero=True))
+BOTH = {**FLAT[0], **FLAT[1], **ZERO, **top_parameters(TRIDIAGONAL), **top_parameters(SPECTRAL)}
 
 
 @pytest.mark.parametrize(
