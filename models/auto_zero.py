@@ -45,7 +45,7 @@ def auto_zero(
 
 def exact_zero(depth: np.ndarray, untouched: np.ndarray, config: Configuration) -> np.ndarray:
     """The same in floating point, unrounded: depth (..., rows, columns) less the floor that `untouched` (..., rows,
-    columns) shows, in the order of pictures or of the stream."""
+    columns) shows; rows in the order of the stream, as blocks are counted."""
     log2 = config.reference_block_log2
     return depth - interpolate_nodes(block_sums(untouched, config).mean(axis=0)[..., None], config)[..., 0] / (
         1 << 4 * log2 + 2
