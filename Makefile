@@ -9,24 +9,15 @@ TOOLS := $(VENV)/verification
 BASELINES := $(VENV)/baselines
 HARDWARE := $(VENV)/hardware
 
-SIM_VARIABLES := N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT \
-  REPEAT SEED GAPS STALLS WAVES CONFIG OUT
-REFLEX_VARIABLES := N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM VIDEO OUT
-TUNE_VARIABLES := TOLERANCE MAX_LATENCY_US CLOCK_MHZ MAX_DSP MAX_MEMORY_KBIT N ROWS COLS SOLVER BOUNDARY SIM DEPTH_RANGE \
-  FRAMES PRESS AT NOISE REFERENCE CALIBRATION GRADIENT SEED OUT
-SYNTH_VARIABLES := TARGET GRIDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE REFERENCE GRADIENT \
-  CALIBRATION CONFIG OUT
-FPGA_VARIABLES := TARGET SEEDS N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES REFERENCE \
-  CALIBRATION GRADIENT CONFIG OUT
-ASIC_VARIABLES := LIB NODE_NM CLOCK_MHZ TIMED N ROWS COLS SOLVER BOUNDARY DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE \
-  REFERENCE CALIBRATION GRADIENT SEED CONFIG OUT
+# What was given on the command line, as the command reads it: it says which names it accepts.
+GIVEN = $(foreach v,$(filter-out PYTHON -%,$(.VARIABLES)),$(if $(filter command,$(firstword $(origin $v))),'$v=$($v)'))
 
 .PHONY: sim test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines asic fpga synth netlists setup clean
 .DEFAULT_GOAL := sim
 
 # Streams frames through the RTL, checks every code, prints a table, draws.
 sim: $(STAMP)
-	@$(PY) -m commands.sim $(foreach v,$(SIM_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.sim $(GIVEN)
 
 # The whole suite: lint, models, every core on every simulator.
 test: $(HARDWARE) lint
@@ -35,7 +26,7 @@ test: $(HARDWARE) lint
 # What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
 regress: $(TOOLS)
 	@sh commands/icarus.sh
-	@PARTS='$(PARTS)' JOBS='$(JOBS)' $(PY) -m commands.regress
+	@$(PY) -m commands.regress $(GIVEN)
 
 # Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
 lint: $(TOOLS)
@@ -44,11 +35,11 @@ lint: $(TOOLS)
 
 # Accuracy against latency, multipliers and memory, by the models, into a CSV; goes on where it was interrupted.
 sweep: $(if $(DASK_SCHEDULER),$(TOOLS),$(STAMP))
-	@$(PY) -m commands.sweep $(foreach v,OUT DASK_SCHEDULER,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.sweep $(GIVEN)
 
 # The cheapest configuration that meets TOLERANCE (% of peak RMS) on FRAMES, proven in RTL; a file for make sim CONFIG=.
 tune: $(STAMP)
-	@$(PY) -m commands.tune $(foreach v,$(TUNE_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.tune $(GIVEN)
 
 # The suite on Verilator with every line, branch, term and toggle of hdl/ counted, and the fault list's bins.
 coverage: $(TOOLS)
@@ -57,67 +48,67 @@ coverage: $(TOOLS)
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
 	@sh commands/icarus.sh
-	@UPSETS='$(UPSETS)' SEED='$(SEED)' $(PY) -m commands.upsets
+	@$(PY) -m commands.upsets $(GIVEN)
 
 # The largest value that each node can be asked to hold, and the frames that ask for it, run in model and RTL; RTL=0: model.
 certify: $(STAMP)
-	@$(PY) -m commands.certify $(foreach v,$(SIM_VARIABLES) RTL,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.certify $(GIVEN)
 
 # What happens at the edges, one row each: error, saturations, whether the status bit told; SHORT=1 without the long runs.
 extremes: $(STAMP)
-	@$(PY) -m commands.extremes $(foreach v,N SIM SHORT OUT,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.extremes $(GIVEN)
 
 # Two Verilog front ends read every core as the same circuit: a few minutes.
 frontends: $(TOOLS)
 	@$(PY) -m commands.frontends
 
-# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER=all
+# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER REPLAY
 fuzz: $(TOOLS)
-	@$(PY) -m commands.fuzz $(foreach v,MINUTES SEED READER,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.fuzz $(GIVEN)
 
 # Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
 formal: $(TOOLS)
-	@$(PY) -m commands.formal $(if $(CORE),--core '$(CORE)')
+	@$(PY) -m commands.formal $(GIVEN)
 
 # Mutants of every core through its own testbench; survivors settled by proof. CORE, MUTANTS, SEED, JOBS, SECONDS.
 mutate: $(TOOLS)
 	@sh commands/icarus.sh
-	@$(PY) -m commands.mutate $(foreach v,CORE MUTANTS SEED JOBS SECONDS,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.mutate $(GIVEN)
 
 # Contact to command and to motion, with the RTL in the loop, against a host: N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM
 # OUT, and VIDEO=trial.gif.
 reflex: $(STAMP)
-	@$(PY) -m commands.reflex $(foreach v,$(REFLEX_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.reflex $(GIVEN)
 
 # The solve in software, one frame at a time, against the pipeline's clocks: GRIDS=64,128 RUNS CLOCK_MHZ OUT. Under 10 minutes.
 baselines: $(BASELINES)
-	@$(PY) -m commands.baselines $(foreach v,GRIDS RUNS CLOCK_MHZ OUT,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.baselines $(GIVEN)
 
 # One HTML page with figures: runs a thousand frames through the RTL, the sweep and the extremes; OUT.
 # What make reflex and make baselines left in build/ it takes; else it runs them, the latter with what is installed.
 report: $(STAMP)
-	@$(PY) -m commands.report $(if $(OUT),'OUT=$(OUT)')
+	@$(PY) -m commands.report $(GIVEN)
 
 # From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS CIRCLES=found OUT
 calibrate: $(STAMP)
-	@$(PY) -m commands.calibrate $(foreach v,PRESSES GRADIENT PITCH BITS CIRCLES OUT,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.calibrate $(GIVEN)
 
 # Area, slack and power in standard cells, from any Liberty file (LIB, NODE_NM): docs/hardware.md. CLOCK_MHZ, TIMED.
 asic: $(HARDWARE)
-	@$(PY) -m commands.asic $(foreach v,$(ASIC_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.asic $(GIVEN)
 
 # On a board: synthesis, place, route, bitstream, the clock it reaches and what it takes. TARGET=ulx3s SEEDS=1,2,3 OUT
 fpga: $(HARDWARE)
-	@$(PY) -m commands.fpga $(foreach v,$(FPGA_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.fpga $(GIVEN)
 
 # What a configuration takes of an FPGA, by Yosys: TARGET=xczu7ev, the variables of make sim, or GRIDS=64,128 for a table.
 synth: $(TOOLS)
-	@$(PY) -m commands.synth $(foreach v,$(SYNTH_VARIABLES),$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.synth $(GIVEN)
 
 # Every core after synthesis through its own testbench, and the whole at 32 x 32: CORE=name,.. SEED=1
 netlists: $(TOOLS)
 	@sh commands/icarus.sh
-	@$(PY) -m commands.netlists $(foreach v,CORE SEED,$(if $($(v)),'$(v)=$($(v))'))
+	@$(PY) -m commands.netlists $(GIVEN)
 
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
 registers: $(TOOLS)

@@ -24,10 +24,12 @@ import shutil
 import sys
 import tempfile
 import time
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +38,7 @@ import numpy as np
 import scipy.fft
 from tqdm import tqdm
 
-from commands import markdown
+from commands import markdown, variables
 from commands import simulator as simulation
 from commands.machine import machine
 from commands.tune import CLOCK_MHZ
@@ -399,23 +401,8 @@ def parse(arguments: Sequence[str]) -> Request:
     ------
     InputError
     """
-    given = dict.fromkeys(("GRIDS", "RUNS", "CLOCK_MHZ", "OUT"), "")
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if not equals or key not in given:
-            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(given)}")
-        given[key] = value
-
-    def number(key: str, default: float, low: float, high: float, kind: type = int) -> Any:
-        try:
-            value = kind(given[key] or default)
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high:
-            what = "a whole number" if kind is int else "a number"
-            raise InputError(f"{key}={given[key]}: accepted is {what} from {low:,g} to {high:,g}")
-        return value
-
+    given = defaultdict(str, variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT")))
+    number = partial(variables.number, given)
     low, high = COLUMNS["spectral"]
     try:
         grids = tuple(int(part) for part in given["GRIDS"].split(",")) if given["GRIDS"] else GRIDS

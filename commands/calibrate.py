@@ -28,7 +28,7 @@ import csv
 import math
 import os
 import sys
-from collections.abc import Callable
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement
 from pathlib import Path
@@ -42,7 +42,7 @@ from skimage.measure import CircleModel, ransac
 from skimage.transform import hough_circle
 from tqdm import tqdm
 
-from commands import draw
+from commands import draw, variables
 from commands import simulator as simulation
 from models import reference
 from models.calibration import BITS_PER_CHANNEL, MODELS, Calibration
@@ -677,26 +677,11 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    given = dict.fromkeys(("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "HELD_OUT", "OUT"), "")
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if not equals or key not in given:
-            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(given)}")
-        given[key] = value
+    accepted = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "HELD_OUT", "OUT")
+    given = defaultdict(str, variables.given(arguments, accepted))
     models = {"": MODELS, "both": MODELS, **{model: (model,) for model in MODELS}}
     if given["GRADIENT"] not in models:
         raise InputError(f"GRADIENT={given['GRADIENT']}: accepted are {', '.join(filter(None, models))}")
-
-    def number(key: str, kind: Callable[[str], float], low: float, high: float) -> float | None:
-        if not given[key]:
-            return None
-        try:
-            value = kind(given[key])
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high:
-            raise InputError(f"{key}={given[key]}: accepted are {low:g} to {high:g}")
-        return value
 
     if given["CIRCLES"] not in ("", "table", "found"):
         raise InputError(
@@ -706,15 +691,14 @@ def parse(arguments: list[str]) -> Request:
         raise InputError(
             f"HELD_OUT={given['HELD_OUT']}: accepted are second and each: whole presses left out of the fit"
         )
-    bits = number("BITS", int, *BITS_PER_CHANNEL)
     out = Path(given["OUT"]) if given["OUT"] else None
     if out is not None and out.suffix != ".npz":
         raise InputError(f"OUT={out}: give the name of an .npz file")
     return Request(
         Path(given["PRESSES"]) if given["PRESSES"] else None,
         models[given["GRADIENT"]],
-        number("PITCH", float, 1e-6, 1e3),
-        BITS if bits is None else int(bits),
+        variables.number(given, "PITCH", None, 1e-6, 1e3, float),
+        variables.number(given, "BITS", BITS, *BITS_PER_CHANNEL),
         given["CIRCLES"] == "found",
         given["HELD_OUT"] == "each",
         out,

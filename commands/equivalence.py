@@ -62,12 +62,14 @@ class Protocol:
     `registers` is SystemVerilog before the rest: declarations with initial values and always blocks. `assume`
     are expressions that hold in every clock, of inputs and those registers; with a reset and zeros elsewhere they must.
     `compare` gives for an output the expression under which it is looked at, always where it is not named. The core's
-    ports have their names, outputs being those of the core without a mutant.
+    ports have their names, outputs being those of the core without a mutant. `decides` are inputs of more than one bit
+    that are no data.
     """
 
     registers: str = ""
     assume: Sequence[str] = ()
     compare: Mapping[str, str] = field(default_factory=dict)
+    decides: Sequence[str] = ("in_place",)
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,7 @@ class Graph:
     latches: list[tuple[int, int, int]]  # literal, next, start: 0, 1, or the literal itself for anything
     outputs: dict[str, int]
     ands: list[tuple[int, int, int]]
+    decides: frozenset[int]  # literals of inputs that are no data
 
 
 def across(bits: int) -> str:
@@ -124,12 +127,15 @@ def graph(core: str, folder: Path, protocol: Protocol) -> Graph:
         found = re.fullmatch(r"([io])(\d+) (\S+)", line)
         if found:
             names[found[1], int(found[2])] = found[3]
+    # Those without a name are undefined values, such as words beyond the end of a memory: anything, in both copies.
+    inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)}
+    decides = re.compile(rf"any_(\w+|({'|'.join(protocol.decides)})\[\d+\])")
     return Graph(
-        # Those without a name are undefined values, such as words beyond the end of a memory: anything, in both copies.
-        {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)},
+        inputs_by_name,
         [(row[0], row[1], row[2] if len(row) > 2 else 0) for row in rows],
         {names["o", n]: literal for n, literal in enumerate(out_literals)},
         sorted((g for g in gates), key=lambda g: g[0]),
+        frozenset(literal for name, literal in inputs_by_name.items() if decides.fullmatch(name)),
     )
 
 
@@ -553,8 +559,6 @@ class Idling(Gates):
         return "UNSATISFIABLE" in abc("read_aiger idling.aig; dc2; iprove", folder, seconds)
 
 
-EXACT = re.compile(r"any_(\w+|in_place\[\d+\])")  # inputs that are not left unknown: others are data
-
 Kind = tuple[int, int]  # literals: a node can be 1, it can be 0
 
 
@@ -562,7 +566,7 @@ class Shadow(Gates):
     """Where a mutant's difference can go, whatever the data are.
 
     Of each node it is known whether it can be 1 and whether it can be 0, in the core and in the mutant, and whether the
-    two may differ there. Inputs of one bit and places of pixels are what they are, all others, and what is not
+    two may differ there. Inputs of one bit, and what else decides, are what they are, all others, and what is not
     initialised, unknown: so few states are left that all can be visited (`never`). A difference passes a gate whose
     other side may be 1, unless the gate is known to be the same in both; so more is reached than in truth, and where
     nothing that is looked at is reached there is no difference. (Three values: R. E. Bryant, "A switch-level model",
@@ -571,7 +575,7 @@ class Shadow(Gates):
     """
 
     def __init__(self, source: Graph, number: int, readers: Readers):
-        exact = [literal for name, literal in source.inputs.items() if EXACT.fullmatch(name)]
+        exact = sorted(source.decides)
         self.inputs = len(exact)
         started = 2 * (1 + self.inputs)
         super().__init__(2 + self.inputs + 5 * len(source.latches))
@@ -648,7 +652,7 @@ class Shadow(Gates):
         return small.is_file() and unreachable(small, 6 * seconds)
 
 
-MOST_EXACT = 9  # bits of inputs that are not left unknown
+MOST_EXACT = 11  # bits of inputs that are not left unknown
 MOST_STATES = 2_000_000
 CHUNK = 1 << 28  # bytes for all nodes of the states looked at together
 

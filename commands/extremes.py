@@ -12,6 +12,7 @@ import csv
 import json
 import os
 import sys
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -21,7 +22,7 @@ from scipy.fft import dst, idst
 from tqdm import tqdm
 
 from commands import certify as certificate
-from commands import sim
+from commands import sim, variables
 from commands import simulator as simulation
 from models import reference, spectral_solver
 from models.calibration import load
@@ -536,13 +537,8 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
 
 
 def main() -> None:
-    given = dict.fromkeys(("N", "SIM", "SHORT", "OUT"), "")
     try:
-        for argument in sys.argv[1:]:
-            key, _, value = argument.partition("=")
-            if key not in given:
-                raise InputError(f"{argument}: unknown variable: accepted are {', '.join(given)}")
-            given[key] = value
+        given = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
         if given["SHORT"] not in ("", "0", "1"):
             raise InputError(f"SHORT={given['SHORT']}: accepted are 0 and 1")
         request = sim.parse([f"N={given['N'] or 64}", f"SIM={given['SIM']}"])

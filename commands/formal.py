@@ -7,7 +7,6 @@ statement of the bench, so that no proof holds for want of anything to check. An
 
 from __future__ import annotations
 
-import argparse
 import importlib.util
 import os
 import random
@@ -24,10 +23,12 @@ from pathlib import Path
 
 import numpy as np
 
+from commands import variables
 from commands.simulator import ROOT, sources
 from models import contact_events
 from models.calibration import load
 from models.configuration import Configuration
+from models.errors import InputError
 from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
 from models.rom_files import write_floor, write_gains, write_quadratic, write_words
 from models.tactile_depth import top_parameters, write_roms
@@ -316,14 +317,15 @@ PROOFS: tuple[Proof, ...] = (
             "gain_map",
             claim,
             "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
-            {"Along": along, "Columns": 4},
+            {"Along": along, "Columns": 4, "Channels": channels},
             depth=45,
             roms=gain_rom(4),
             free=("sums",) if along else (),
         )
-        for along, claim in (
-            (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
-            (1, "along a row: gains interpolated between any such sums, rounded to even; latency 9"),
+        for along, channels, claim in (
+            (0, 3, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
+            (0, 1, "the same of one channel alone"),
+            (1, 3, "along a row: gains interpolated between any such sums, rounded to even; latency 9"),
         )
     ),
     *(
@@ -709,7 +711,7 @@ def selected(core: str | None) -> list[Proof | Structure]:
     known = sorted({proof.core for proof in every})
     if core and core not in known:
         reason = f": {WITHOUT_CONTROL[core]}" if core in WITHOUT_CONTROL else f": there are {', '.join(known)}"
-        sys.exit(f"make formal: no proof of CORE={core}{reason}")
+        raise InputError(f"CORE={core} has no proof{reason}")
     return [proof for proof in every if core in (None, "", proof.core)]
 
 
@@ -788,14 +790,14 @@ def document() -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--core", help="prove this core alone")
-    parser.add_argument("--document", action="store_true", help=f"write {DOCUMENT.relative_to(ROOT)}, prove nothing")
-    arguments = parser.parse_args()
-    if arguments.document:
+    if sys.argv[1:] == ["--document"]:
         DOCUMENT.write_text(document())
         return
-    proofs = selected(arguments.core)
+    try:
+        proofs = selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE"))
+    except InputError as error:
+        print(f"make formal: {error}", file=sys.stderr)
+        sys.exit(2)
     begun = time.monotonic()
     outcomes = run_all(proofs)
     print("\n" + table(proofs, outcomes))

@@ -26,7 +26,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands import ecp5, sim, synthesis, yosys
+from commands import ecp5, sim, synthesis, variables, yosys
 from commands.simulator import ROOT
 from models.calibration import Calibration, load
 from models.configuration import Configuration
@@ -79,13 +79,7 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    given: dict[str, str] = {}
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if not equals or key not in ("TARGET", "SEEDS", *CHOICES):
-            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(('TARGET', 'SEEDS', *CHOICES))}")
-        if value:
-            given[key] = value
+    given = variables.given(arguments, ("TARGET", "SEEDS", *CHOICES))
     target = given.pop("TARGET", "")
     if target not in BOARDS:
         raise InputError(f"TARGET={target} is unknown: accepted are {', '.join(BOARDS)}")

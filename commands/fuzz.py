@@ -6,7 +6,7 @@ that checksums and archives let them through, and wrong anywhere inside; every s
 On each of them a reader gives a valid result or an InputError of one line, within `SECONDS_A_RUN` and `MEMORY_MB`.
 
 MINUTES (10) is the time for all readers together, SEED (1) where the fuzzer begins, READER one of them alone. Failing
-inputs are kept in build/fuzz/<reader>; `python -m commands.fuzz REPLAY=<reader> <file>` runs one again.
+inputs are kept in build/fuzz/<reader>; `make fuzz READER=<reader> REPLAY=<file>` runs one again.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import atheris
 import numpy as np
@@ -39,6 +38,7 @@ from tqdm import tqdm
 
 from commands import calibrate, sim
 from commands import simulator as simulation
+from commands import variables as make_variables
 from commands.calibrate import read_presses
 from commands.sim import Request, parse
 from models import calibration as calibrations
@@ -461,18 +461,22 @@ def run(reader: str, seconds: int, seed: int) -> tuple[int, list[str]]:
 
 
 def main() -> None:
-    given: dict[str, Any] = {"MINUTES": "10", "SEED": "1", "READER": "", "FUZZ": "", "REPLAY": ""}
-    for word in sys.argv[1:]:
-        key, _, value = word.partition("=")
-        if key in given and value:
-            given[key] = value
-    if given["FUZZ"]:
+    try:
+        given = make_variables.given(sys.argv[1:], ("MINUTES", "SEED", "READER", "REPLAY", "FUZZ"))
+        readers = [given["READER"]] if "READER" in given else list(READERS)
+        minutes = make_variables.number(given, "MINUTES", 10.0, 0.01, 10_000, float)
+        seed = make_variables.number(given, "SEED", 1, 0, 10**9)
+        if not READERS.keys() >= set(readers):
+            raise InputError(f"READER={given['READER']} is unknown: accepted are {', '.join(READERS)}")
+    except InputError as error:
+        print(f"make fuzz: {error}", file=sys.stderr)
+        sys.exit(2)
+    if "FUZZ" in given:
         fuzz(*json.loads(given["FUZZ"]))
-    if given["REPLAY"]:
-        problem = attempt(given["REPLAY"], Path(sys.argv[-1]).read_bytes(), Path(tempfile.mkdtemp(prefix="fuzz-")))
+    if "REPLAY" in given:
+        file = Path(given["REPLAY"])
+        problem = attempt(readers[0], file.read_bytes(), Path(tempfile.mkdtemp(prefix="fuzz-")))
         sys.exit(problem or 0)
-    readers = [given["READER"]] if given["READER"] else list(READERS)
-    minutes, seed = float(given["MINUTES"]), int(given["SEED"])
     seconds = max(1, round(60 * minutes * min(WORKERS, len(readers)) / len(readers)))
     begin, failed, total = time.monotonic(), [], 0
     with (

@@ -25,7 +25,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from commands import equivalence, mutants, protocols
+from commands import equivalence, mutants, protocols, variables
 from commands import simulator as simulation
 from commands.equivalence import EQUIVALENT, Protocol, Spans, settle
 from models.errors import InputError
@@ -75,7 +75,7 @@ CORES = {
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
     "quadratic_gradient": Core(protocols.quadratic_gradient, (1,)),
     "gain_map": Core(protocols.gain_map),
-    "flat_field": Core(protocols.flat_field, (0, 1)),
+    "flat_field": Core(protocols.flat_field, (0, 2)),
     "auto_zero": Core(protocols.auto_zero),
     "reference_capture": Core(protocols.reference_capture, (1,)),
     "floor_capture": Core(protocols.floor_capture, (1,)),
@@ -252,13 +252,10 @@ def parse(arguments: list[str]) -> dict[str, str]:
         "JOBS": str(os.cpu_count() or 1),
         "SECONDS": "60",
     }
-    for argument in arguments:
-        name, _, value = argument.partition("=")
-        if name not in choices:
-            raise InputError(f"{name} is unknown: accepted are {', '.join(choices)}")
+    choices |= variables.given(arguments, choices)
+    for name, value in choices.items():
         if name != "CORE" and not value.isdecimal():
-            raise InputError(f"{argument}: give a number")
-        choices[name] = value
+            raise InputError(f"{name}={value}: accepted is a whole number")
     return choices
 
 

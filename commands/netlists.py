@@ -20,7 +20,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from commands import mutants, mutate
+from commands import mutants, mutate, variables
 from commands import simulator as simulation
 from models.calibration import synthetic
 from models.configuration import COLUMNS, Configuration
@@ -186,11 +186,7 @@ def parse(arguments: list[str]) -> tuple[list[str], int]:
     InputError
     """
     given = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if not equals or name not in given:
-            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(given)}")
-        given[name] = value or given[name]
+    given |= variables.given(arguments, given)
     names = given["CORE"].split(",")
     for name in names:
         if name not in mutate.CORES:

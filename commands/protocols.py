@@ -402,7 +402,8 @@ def reference_capture(parameters: Mapping[str, int]) -> Protocol:
     registers, in_order = raster(parameters)
     compare = dict.fromkeys(("busy", "done", "map_read", "map_write"), "live & ~rst")
     compare |= dict.fromkeys(("map_write_node", "map_write_gains"), "live & ~rst & map_write")
-    return Protocol(LIVE + registers, (in_order,), compare | {"map_read_node": "live & ~rst & map_read"})
+    compare |= {"map_read_node": "live & ~rst & map_read"}
+    return Protocol(LIVE + registers, (in_order,), compare, decides=("in_place", "log2_frames"))
 
 
 def depth_frames(parameters: Mapping[str, int]) -> tuple[str, str]:
@@ -433,7 +434,7 @@ def floor_capture(parameters: Mapping[str, int]) -> Protocol:
     registers, in_order = depth_frames(parameters)
     compare = {"busy": "live & ~rst", "done": "live & ~rst", "map_write": "live"}
     compare |= dict.fromkeys(("map_write_node", "map_write_floor"), "live & map_write")
-    return Protocol(LIVE + registers, (in_order,), compare)
+    return Protocol(LIVE + registers, (in_order,), compare, decides=("log2_frames",))
 
 
 def frame_output(_: Mapping[str, int]) -> Protocol:

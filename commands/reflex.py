@@ -23,6 +23,7 @@ import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,7 @@ import numpy as np
 from scipy.stats import mannwhitneyu
 from tqdm import tqdm
 
-from commands import bench, markdown, reflex_pictures
+from commands import bench, markdown, reflex_pictures, variables
 from commands import simulator as simulation
 from commands.machine import machine
 from commands.sim import CONTACT_THRESHOLD
@@ -174,24 +175,8 @@ def parse(arguments: Sequence[str]) -> Request:
     InputError
     """
     accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "VIDEO", "OUT")
-    given: dict[str, str] = {}
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if not equals or key not in accepted:
-            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(accepted)}")
-        if value:
-            given[key] = value
-
-    def number(key: str, default: float, low: float, high: float, kind: type = int) -> Any:
-        try:
-            value = kind(given.get(key, default))
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high:
-            what = "a whole number" if kind is int else "a number"
-            raise InputError(f"{key}={given[key]}: accepted is {what} from {low:,g} to {high:,g}")
-        return value
-
+    given = variables.given(arguments, accepted)
+    number = partial(variables.number, given)
     request = Request(
         size=number("N", 128, *COLUMNS["spectral"]),
         clock_mhz=number("CLOCK_MHZ", CLOCK_MHZ, 0.5, 400, float),

@@ -25,10 +25,11 @@ from typing import Any
 
 import numpy as np
 
-from commands import bench
+from commands import bench, variables
 from commands import simulator as simulation
 from models.calibration import synthetic
 from models.configuration import Configuration
+from models.errors import InputError
 from models.round_saturate import Monitor
 from models.scenes import SCENES, render
 from models.tactile_depth import tactile_depth
@@ -322,12 +323,17 @@ def matrix(part: Part) -> str:
 
 
 def main() -> None:
-    wanted = os.environ.get("PARTS") or ",".join(PARTS)
-    jobs = int(os.environ.get("JOBS") or 2)
+    try:
+        given = variables.given(sys.argv[1:], ("PARTS", "JOBS"))
+        names = given.get("PARTS", ",".join(PARTS)).split(",")
+        jobs = variables.number(given, "JOBS", 2, 1, 1000)
+        if not PARTS.keys() >= set(names):
+            raise InputError(f"PARTS={given['PARTS']}: accepted are {', '.join(PARTS)}")
+    except InputError as error:
+        print(f"make regress: {error}", file=sys.stderr)
+        sys.exit(2)
     parts = []
-    for name in wanted.split(","):
-        if name not in PARTS:
-            sys.exit(f"make regress: PARTS={wanted}: accepted are {', '.join(PARTS)}")
+    for name in names:
         part = Part(name)
         began = time.monotonic()
         PARTS[name](part, Progress(name), jobs)

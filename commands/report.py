@@ -22,7 +22,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands import baselines, extremes, reflex, sim, sweep, synth
+from commands import baselines, extremes, reflex, sim, sweep, synth, variables
 from commands.tune import CLOCK_MHZ
 from models import reference
 from models.calibration import synthetic
@@ -548,13 +548,8 @@ def build(folder: Path) -> Path:
 
 
 def main() -> None:
-    folder = DEFAULT_OUT
     try:
-        for argument in sys.argv[1:]:
-            name, equals, value = argument.partition("=")
-            if name != "OUT" or not equals:
-                raise InputError(f"{argument}: unknown variable: accepted is OUT")
-            folder = Path(value) if value else folder
+        folder = Path(variables.given(sys.argv[1:], ("OUT",)).get("OUT", DEFAULT_OUT))
         print(f"report: {os.path.relpath(build(folder))}")
     except InputError as error:
         print(f"make report: {error}", file=sys.stderr)

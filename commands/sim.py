@@ -15,12 +15,13 @@ import sys
 import tempfile
 import threading
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
-from commands import bench
+from commands import bench, variables
 from commands import simulator as simulation
 from commands.draw import draw_depth
 from models import latency, reference
@@ -85,28 +86,11 @@ def parse(arguments: list[str]) -> Request:
         "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE FLOOR "
         "CALIBRATION GRADIENT REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
     )
-    given: dict[str, str] = {}
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if not equals or key not in accepted.split():
-            raise InputError(f"{argument}: unknown variable: accepted are {accepted.replace(' ', ', ')}")
-        if value:
-            given[key] = value
+    given = variables.given(arguments, accepted.split())
     if "CONFIG" in given:
         given = from_file(Path(given.pop("CONFIG")), given, accepted.replace("CONFIG ", "").split()) | given
 
-    def number(key: str, default: float, low: float, high: float, kind: type = int) -> float:
-        if key not in given:
-            return default
-        try:
-            value = kind(given[key])
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high:
-            what = "a whole number" if kind is int else "a number"
-            to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
-            raise InputError(f"{key}={given[key]}: accepted is {what}{to}")
-        return value
+    number = partial(variables.number, given)
 
     def choice(key: str, accepted: tuple[str, ...]) -> str:
         value = given.get(key, accepted[0])

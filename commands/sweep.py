@@ -24,6 +24,7 @@ from typing import Any, BinaryIO
 import joblib
 from tqdm import tqdm
 
+from commands import variables
 from models import accuracy
 from models.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from models.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
@@ -296,15 +297,10 @@ def summary(rows: list[Row]) -> str:
 
 
 def main() -> None:
-    given = dict.fromkeys(ACCEPTED, "")
     try:
-        for argument in sys.argv[1:]:
-            name, equals, value = argument.partition("=")
-            if not equals or name not in ACCEPTED:
-                raise InputError(f"{argument}: unknown variable: accepted are {', '.join(ACCEPTED)}")
-            given[name] = value
-        folder = Path(given["OUT"]) if given["OUT"] else DEFAULT_OUT
-        rows = sweep(plan(), folder, given["DASK_SCHEDULER"] or None)
+        given = variables.given(sys.argv[1:], ACCEPTED)
+        folder = Path(given.get("OUT", DEFAULT_OUT))
+        rows = sweep(plan(), folder, given.get("DASK_SCHEDULER"))
     except InputError as error:
         print(f"make sweep: {error}", file=sys.stderr)
         sys.exit(2)

@@ -31,7 +31,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands import sim, synthesis, yosys
+from commands import sim, synthesis, variables, yosys
 from commands import simulator as simulation
 from models.calibration import Calibration, load
 from models.configuration import COLUMNS, Configuration
@@ -215,26 +215,16 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
     ------
     InputError
     """
-    own: dict[str, str] = {}
-    others = []
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if equals and key in ("TARGET", "GRIDS"):
-            own[key] = value
-        elif equals and key in (*CONFIGURING, "OUT"):
-            others.append(argument)
-        else:
-            accepted = ", ".join(("TARGET", "GRIDS", *CONFIGURING, "OUT"))
-            raise InputError(f"{argument}: unknown variable: accepted are {accepted}")
-    name = own.get("TARGET") or next(iter(TARGETS))
+    given = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, "OUT"))
+    name = given.pop("TARGET", next(iter(TARGETS)))
     if name not in TARGETS:
         raise InputError(f"TARGET={name} is unknown: accepted is {', '.join(TARGETS)}")
-    grids = own.get("GRIDS") or ""
+    grids = given.pop("GRIDS", "")
     try:
         sizes = [int(size) for size in grids.split(",")] if grids else []
     except ValueError as error:
         raise InputError(f"GRIDS={grids}: accepted are whole numbers with commas, as 64,128,256") from error
-    return TARGETS[name], name, sizes, sim.parse(others)
+    return TARGETS[name], name, sizes, sim.parse([f"{key}={value}" for key, value in given.items()])
 
 
 def configured(request: sim.Request) -> tuple[Configuration, Calibration]:

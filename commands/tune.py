@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands import sim
+from commands import sim, variables
 from commands import simulator as simulation
 from models import reference
 from models.accuracy import SMALLEST_PEAK_PX, depth_px, errors
@@ -227,14 +227,9 @@ def parse(arguments: list[str]) -> tuple[sim.Request, Limits, list[str]]:
     ------
     InputError
     """
-    own: dict[str, str] = {}
-    passed: dict[str, str] = {"FRAMES": DEFAULT_FRAMES}
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if not equals or key not in OWN + OF_SIM:
-            raise InputError(f"{argument}: unknown variable: accepted are {', '.join(OWN + OF_SIM)}")
-        if value:
-            (own if key in OWN else passed)[key] = value
+    given = variables.given(arguments, OWN + OF_SIM)
+    own = {key: value for key, value in given.items() if key in OWN}
+    passed = {"FRAMES": DEFAULT_FRAMES} | {key: value for key, value in given.items() if key not in OWN}
 
     def above_zero(key: str, default: float) -> float:
         try:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
@@ -12,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from commands import simulator as simulation
+from commands import variables
 from models.calibration import synthetic
 from models.configuration import Configuration
+from models.errors import InputError
 from models.tactile_depth import top_parameters, write_roms
 
 CASES: dict[str, dict[str, Any]] = {
@@ -67,7 +68,13 @@ def table(results: list[dict[str, Any]]) -> str:
 
 
 def main() -> None:
-    upsets, seed = int(os.environ.get("UPSETS") or 60), int(os.environ.get("SEED") or 1)
+    try:
+        given = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
+        upsets = variables.number(given, "UPSETS", 60, 1, 100_000)
+        seed = variables.number(given, "SEED", 1, 0, 10**9)
+    except InputError as error:
+        print(f"make upsets: {error}", file=sys.stderr)
+        sys.exit(2)
     folders = {case: simulation.ROOT / "build" / "upsets" / case for case in CASES}
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)

@@ -4,7 +4,7 @@
 // that of the bank not in use. In two parts: down a column (Along 0), the weighted sum of two nodes of the row that the
 // pixel is in, of the right bank; along a row (Along 1), gains between any two such sums.
 //
-// One channel is looked at: all three are one generate. Assumed: places in raster order; nothing is written, nor read by
+// One channel is looked at: all are one generate. Assumed: places in raster order; nothing is written, nor read by
 // the capture, while a change-over is due; bus and capture one at a time.
 
 module fv_gain_map #(
@@ -13,7 +13,8 @@ module fv_gain_map #(
   parameter int BlockLog2 = 1,
   parameter int Along     = 0,
   parameter int Width     = 1,
-  parameter int Channel   = 1,
+  parameter int Channels  = 3,
+  localparam int Channel = Channels / 2,
   localparam int Block = 1 << BlockLog2,
   localparam int NodeColumns = Columns / Block,
   localparam int NodeRows = Rows / Block,
@@ -30,7 +31,7 @@ module fv_gain_map #(
   input logic [Width-1:0]     table_gain,
   input logic                 capture_write,
   input logic [NodeWidth-1:0] capture_write_node,
-  input logic [3*Width-1:0]   capture_gains,
+  input logic [Channels*Width-1:0] capture_gains,
   input logic                 capture_read,
   input logic [NodeWidth-1:0] capture_read_node,
   input logic                 in_valid,
@@ -42,8 +43,8 @@ module fv_gain_map #(
   logic table_in_use, out_valid;
   logic [3:0] out_place;
   logic [Width-1:0] table_read_gain;
-  logic [3*Width-1:0] capture_read_gains, out_gains;
-  gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width)) dut (
+  logic [Channels*Width-1:0] capture_read_gains, out_gains;
+  gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width), .Channels(Channels)) dut (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
     .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,
     .capture_read_gains, .in_valid, .in_place, .out_valid, .out_place, .out_gains
@@ -109,8 +110,8 @@ module fv_gain_map #(
     if (started && !rst && bank != used && en) changed <= 1'b1;
     read_left <= table_read ? 2'd2 : read_left - 2'(read_left != 0);
     if (table_read) begin  // of the bank that is not in use behind this clock; the other channels: unknown
-      read_known <= table_index[1:0] == 2'(Channel) || table_index[1:0] == 2'd3;
-      read_gain <= table_index[1:0] == 2'd3 ? '0
+      read_known <= table_index[1:0] == 2'(Channel) || 32'(table_index[1:0]) >= Channels;
+      read_gain <= 32'(table_index[1:0]) >= Channels ? '0
           : (en ? used : bank) ? words_0[table_index[NodeWidth+1:2]] : words_1[table_index[NodeWidth+1:2]];
     end
     if (rst) begin
@@ -218,10 +219,10 @@ module fv_gain_map #(
     end
   end
 
-  bind fv_gain_map.dut.g_bank[0].g_channel[1].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
+  bind fv_gain_map.dut.g_bank[0].g_channel[Channel].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
-  bind fv_gain_map.dut.g_bank[1].g_channel[1].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
+  bind fv_gain_map.dut.g_bank[1].g_channel[Channel].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
 

@@ -110,7 +110,7 @@ module gain_map #(
 
   logic [ShareBits-1:0] share;
   logic [ShareBits:0] weight, weight_q;
-  assign share = above | below ? '0 : {row_phase, 1'b1};
+  assign share = {row_phase, 1'b1};  // of the node below: above the first and below the last both are one
   assign weight = upper ? {1'b0, share} : {1'b1, {ShareBits{1'b0}}} - {1'b0, share};
 
   // The banks. The last node of a frame is used up in the clock that changes over, and that has en, so the bank left is
@@ -165,7 +165,7 @@ module gain_map #(
 
   // Stages behind the read.
 
-  logic read_q, upper_q, segment_read_q, read_q2, first_q2, segment_read_q2, node_done, segment_done;
+  logic upper_q, segment_read_q, first_q2, segment_read_q2, node_done, segment_done;
   logic [ToSum-1:0] begins_q, inner_q, start_q;
 
   always_ff @(posedge clk) begin
@@ -182,13 +182,11 @@ module gain_map #(
       next_q <= node + NodeColumnWidth'(1);
       next_q2 <= next_q;
       weight_q <= weight;
-      read_q <= reading;
       upper_q <= upper;
       segment_read_q <= segment_q2;
-      read_q2 <= read_q;
       first_q2 <= ~upper_q;
       segment_read_q2 <= segment_read_q;
-      node_done <= read_q2 & ~first_q2;
+      node_done <= ~first_q2;
       segment_done <= segment_read_q2;
       begins_q <= {begins_q[ToSum-2:0], begins};
       inner_q <= {inner_q[ToSum-2:0], inner};
@@ -204,10 +202,10 @@ module gain_map #(
     if (rst) begin
       valid_q <= '0;
       starts_q <= 1'b0;
+      upper_q <= 1'b0;
+      first_q2 <= 1'b1;
       segment_q <= 1'b0;
       segment_q2 <= 1'b0;
-      read_q <= 1'b0;
-      read_q2 <= 1'b0;
       segment_read_q <= 1'b0;
       segment_read_q2 <= 1'b0;
       node_done <= 1'b0;

@@ -1,33 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames of depth as auto_zero and floor_capture take them: words with the marks of frames and rows."""
 
-from dataclasses import dataclass
-
 import numpy as np
-from stream import StreamDriver, parameters, send_apart
-
-from models.configuration import Format
+from stream import StreamDriver, send_apart
 
 FIELDS = ["user", "last", "frame_end", "data"]
-
-
-@dataclass(frozen=True)
-class Grid:
-    """What the models need of a configuration, which cannot be as small."""
-
-    rows: int
-    columns: int
-    reference_block_log2: int
-    depth: Format
-
-    @classmethod
-    def of(cls, dut):
-        rows, columns, block_log2, width = parameters(dut, "Rows", "Columns", "BlockLog2", "Width")
-        return cls(rows, columns, block_log2, Format(width, 0))
-
-    @property
-    def reference_nodes(self):
-        return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
 
 def depth_words(frame):

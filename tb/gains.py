@@ -1,30 +1,57 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bus and capture of gain_map, and of the cores around it: both banks as they should stand, change-overs."""
 
+from dataclasses import dataclass
+
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
+from stream import parameters, places
 
-from models.configuration import GAIN_WIDTH
+from models.configuration import GAIN_WIDTH, Format
 from models.flat_field import unit_gains
 from models.gain_map import ENTRIES_PER_NODE, table_entries
 
 READ_CLOCKS = 3  # from table_read to the gain
-LARGEST = (1 << GAIN_WIDTH) - 1
 
 
-def random_gains(config, chance):
+def first_gains(rows, columns, channels, width):
+    """At power-up: every word another, (node rows, node columns, channels)."""
+    return places(rows * columns * channels, width).reshape(rows, columns, channels) & (1 << width) - 1
+
+
+def random_gains(config, chance, channels=3, width=GAIN_WIDTH):
     """Of the nodes: anything, the limits alone, or like those of a sensor, by chance."""
     generator = np.random.default_rng(chance.getrandbits(32))
-    shape = (*config.reference_nodes, 3)
+    shape = (*config.reference_nodes, channels)
+    largest = (1 << width) - 1
     match chance.randrange(4):
         case 0:
-            return generator.integers(0, LARGEST, shape, endpoint=True)
+            return generator.integers(0, largest, shape, endpoint=True)
         case 1:
-            return generator.choice([0, 1, LARGEST - 1, LARGEST], shape)
+            return generator.choice([0, 1, largest - 1, largest], shape)
         case 2:
-            return generator.choice([0, LARGEST], shape)
-    return generator.integers(1 << 19, 1 << 22, shape)
+            return generator.choice([0, largest], shape)
+    return generator.integers(largest >> 5, largest >> 2, shape, endpoint=True)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """What the models need of a configuration, which cannot be as small."""
+
+    rows: int
+    columns: int
+    reference_block_log2: int
+    depth: Format  # of the words of the nodes
+
+    @classmethod
+    def of(cls, dut, width="Width"):
+        rows, columns, block_log2, width = parameters(dut, "Rows", "Columns", "BlockLog2", width)
+        return cls(rows, columns, block_log2, Format(width, 0))
+
+    @property
+    def reference_nodes(self):
+        return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
 
 class Gains:
@@ -110,8 +137,9 @@ class Gains:
         await self.changed()
         for index, word in self.entries(gains).items():
             await self.write_entry(index, word)
-            if index % self.per_node == self.per_node - 2:
-                await self.write_entry(index + 1, LARGEST)
+            if index % self.per_node == self.channels - 1:
+                for unused in range(index + 1, index + 1 + self.per_node - self.channels):
+                    await self.write_entry(unused, (1 << self.width) - 1)
         assert np.array_equal(self.banks[self.bank ^ 1], gains)
 
     async def rewrite(self, chance, going_on):
@@ -146,6 +174,7 @@ class Gains:
         for _ in range(READ_CLOCKS - 1):
             await RisingEdge(self.dut.clk)
         node, channel = divmod(index, self.per_node)
-        want = [*self.banks[free].reshape(-1, self.channels)[node].tolist(), 0][channel] & (1 << self.width) - 1
+        want = self.banks[free].reshape(-1, self.channels)[node, channel] if channel < self.channels else 0
+        want &= (1 << self.width) - 1
         got = int(getattr(self.dut, f"table_read_{self.name}").value)
         assert got == want, f"entry {index} of bank {free}: {got:#x}, not {want:#x}"

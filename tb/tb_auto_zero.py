@@ -6,8 +6,8 @@ from collections import deque
 import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
-from depth_frames import DepthDriver, Grid, depth_words, random_depths
-from gains import Gains
+from depth_frames import DepthDriver, depth_words, random_depths
+from gains import Gains, Grid
 from stream import Bench, places
 
 from models.auto_zero import auto_zero, interpolated_floor

@@ -4,8 +4,8 @@
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
-from gains import Gains, random_gains
-from stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, raster, send_apart
+from gains import Gains, Grid, random_gains
+from stream import Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
 
 from models.flat_field import dark_pixels, deviations, flat_codes
 from models.latency import FLAT_FIELD
@@ -37,7 +37,7 @@ class Field:
 
     def __init__(self, dut, gap, pause):
         self.dut, self.gap = dut, gap
-        self.config = configuration()
+        self.config = Grid.of(dut, "GainWidth")
         self.quadratic = bool(parameters(dut, "Offset")[0])
         self.model = deviations if self.quadratic else flat_codes
         self.places = raster(self.config.rows, self.config.columns)

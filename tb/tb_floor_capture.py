@@ -6,7 +6,8 @@ import itertools
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
-from depth_frames import DepthDriver, Grid, depth_words, random_depths
+from depth_frames import DepthDriver, depth_words, random_depths
+from gains import Grid
 from stream import REGRESS, Bench, parameters
 
 from models.floor_capture import CLOCKS, captured_floor

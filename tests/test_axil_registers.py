@@ -2,6 +2,7 @@
 """hdl/axil_registers.sv against models/axil_registers.py."""
 
 import pytest
+from stream import REGRESS
 
 from models.configuration import Configuration
 
@@ -33,12 +34,13 @@ EXTREMES = {
 
 
 QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0, "FloorWords": 300}
+BUILDS = {"128": built(Configuration(columns=128)), "extremes": EXTREMES, "without-gradient-table": QUADRATIC}
 
 
-@pytest.mark.parametrize(
-    "parameters",
-    [built(Configuration(columns=128)), EXTREMES, QUADRATIC],
-    ids=["128", "extremes", "without-gradient-table"],
+@pytest.mark.structures(
+    "build",
+    both=[("128",), *([("extremes",), ("without-gradient-table",)] if REGRESS else [])],
+    icarus=[] if REGRESS else [("extremes",), ("without-gradient-table",)],
 )
-def test_axil_registers(run_tb, parameters):
-    run_tb("axil_registers", SOURCES, parameters=parameters)
+def test_axil_registers(run_tb, build):
+    run_tb("axil_registers", SOURCES, parameters=BUILDS[build])

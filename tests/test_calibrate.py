@@ -318,7 +318,7 @@ def test_no_press_is_both_fitted_and_held_out(presses):
 @pytest.mark.parametrize(
     ("variables", "said"),
     [
-        (["BITS=7"], "BITS=7: accepted are 1 to 6"),
+        (["BITS=7"], "BITS=7: accepted is a whole number from 1 to 6"),
         (["BITS=x"], "BITS=x"),
         (["PITCH=0"], "PITCH=0"),
         (["PITCH=nan"], "PITCH=nan"),

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """flat_field: RTL against the model; what the model's parameters mean."""
 
-import json
-
 import numpy as np
 import pytest
+from gains import Grid
 from stream import REGRESS
 
-from models.configuration import DEVIATION, GAIN_FRACTION, Configuration
+from models.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration, Format
 from models.flat_field import (
     captured_gains,
     deviations,
@@ -22,19 +21,17 @@ SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_satur
 
 
 @pytest.mark.structures(
-    "columns rows quadratic",
-    both=[(16, 8, False), (16, 8, True), *([(128, 128, True)] if REGRESS else [])],
-    icarus=[(16, 16, True), (32, 21, False), (128, 8, False)],
+    "columns rows block_log2 quadratic",
+    both=[(8, 11, 2, False), (16, 8, 1, True), *([(128, 128, 3, True)] if REGRESS else [])],
+    icarus=[(8, 11, 2, True), (32, 21, 1, False), (128, 8, 3, False)],
 )
-def test_rtl(run_tb, columns, rows, quadratic):
-    choices = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
-    config = Configuration(**choices)
+def test_rtl(run_tb, columns, rows, block_log2, quadratic):
+    config = Grid(rows, columns, block_log2, Format(GAIN_WIDTH, 0))
     run_tb(
         "flat_field",
         SOURCES,
         flat_field_parameters(config, quadratic),
         roms=lambda folder: write_gains(folder, unit_gains(config)),
-        environment={"CONFIGURATION": json.dumps(choices)},
     )
 
 

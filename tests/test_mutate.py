@@ -75,7 +75,8 @@ def contrary(mutant):
     }
     inputs = {"any_en": en, "any_rst": rst, "any_x": x, f"{SELECTOR}[0]": selector}
     latches = [(latch, to, latch) for latch, to in following.items()]
-    return Graph(inputs, latches, outputs, [(2 * (12 + index), a, b) for index, (a, b) in enumerate(gates.ands)])
+    ands = [(2 * (12 + index), a, b) for index, (a, b) in enumerate(gates.ands)]
+    return Graph(inputs, latches, outputs, ands, frozenset())
 
 
 @pytest.mark.parametrize(("mutant", "proven"), [("equal", True), ("loose", False), ("patient", False)])
@@ -100,5 +101,6 @@ def test_where_a_difference_can_go(tmp_path, stays, proven):
         [(latch, to, latch) for latch, to in following.items()],
         {"out[0]": word, "looked_at_out": gates.both(valid, rst ^ 1), HOLDS: 1},
         [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
+        frozenset((take, rst)),
     )
     assert Shadow(graph, 1, Readers(graph)).never(tmp_path, "shadow.aig", 5) == proven

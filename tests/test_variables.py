@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is given to `make` reaches the command, and one that is not accepted is refused in one line."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from commands import variables
+from models.errors import InputError
+
+ROOT = Path(variables.__file__).parents[1]
+WITHOUT = {"test", "lint", "coverage", "frontends", "registers", "setup", "clean"}  # targets without variables
+
+
+def targets():
+    line = next(line for line in (ROOT / "Makefile").read_text().splitlines() if line.startswith(".PHONY:"))
+    return sorted(set(line.split()[1:]) - WITHOUT)
+
+
+@pytest.mark.parametrize("target", targets())
+def test_make_hands_on_all_that_it_is_given(target):
+    words = ["FLOOR=flat", "ANY=a b", "OUT="]
+    outside = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    result = subprocess.run(
+        ["make", "--dry-run", target, *words, "PYTHON=python3"],
+        cwd=ROOT,
+        env=outside | {"N": "128"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    last = result.stdout.splitlines()[-1]
+    assert f"-m commands.{target} " in last
+    assert sorted(last.split(f"commands.{target}")[1].split("'")[1::2]) == sorted(words)
+
+
+def test_given():
+    assert variables.given(["N=64", "OUT=", "AT=a=b"], ("N", "OUT", "AT")) == {"N": "64", "AT": "a=b"}
+    for word in ("M=64", "N"):
+        with pytest.raises(InputError, match=f"^{word}: unknown variable: accepted is N$"):
+            variables.given([word], ("N",))
+
+
+def test_number():
+    assert variables.number({}, "N", 7, 1, 9) == 7
+    assert variables.number({"N": "2.5"}, "N", 7, 1, 9, float) == 2.5
+    for word in ("2.5", "x", "0", "10"):
+        with pytest.raises(InputError, match=f"^N={word}: accepted is a whole number from 1 to 9$"):
+            variables.number({"N": word}, "N", 7, 1, 9)
