@@ -62,14 +62,16 @@ class Protocol:
     `registers` is SystemVerilog before the rest: declarations with initial values and always blocks. `assume`
     are expressions that hold in every clock, of inputs and those registers; with a reset and zeros elsewhere they must.
     `compare` gives for an output the expression under which it is looked at, always where it is not named. The core's
-    ports have their names, outputs being those of the core without a mutant. `decides` are inputs of more than one bit
+    ports have their names, outputs being those of the core without a mutant. `given` are the expressions
+    that inputs have, of inputs that may be anything, themselves among them; `decides` are inputs of more than one bit
     that are no data.
     """
 
     registers: str = ""
     assume: Sequence[str] = ()
     compare: Mapping[str, str] = field(default_factory=dict)
-    decides: Sequence[str] = ("in_place",)
+    given: Mapping[str, str] = field(default_factory=dict)
+    decides: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -105,9 +107,11 @@ def environment(core: str, folder: Path, protocol: Protocol) -> str:
     holds = " & ".join(f"({expression})" for expression in protocol.assume) or ALWAYS
     holds = names.sub(r"any_\1", holds)
     lines = [f"module environment ({', '.join(declared)});"]
-    for name, bits in inputs.items():
-        lines += [f"  wire [{bits - 1}:0] {name} = {HOLDS} ? any_{name} : {bits}'d{int(name == 'rst')};"]
+    lines += [f"  wire [{bits - 1}:0] {name};" for name, bits in inputs.items()]
     lines += [instance(core, folder), protocol.registers, f"  assign {HOLDS} = {holds};"]
+    for name, bits in inputs.items():
+        value = names.sub(r"any_\1", protocol.given.get(name, name))
+        lines += [f"  assign {name} = {HOLDS} ? ({value}) : {bits}'d{int(name == 'rst')};"]
     lines += [f"  assign looked_at_{name} = {protocol.compare.get(name, ALWAYS)};" for name in outputs]
     return "\n".join([*lines, "endmodule\n"])
 
@@ -129,13 +133,17 @@ def graph(core: str, folder: Path, protocol: Protocol) -> Graph:
             names[found[1], int(found[2])] = found[3]
     # Those without a name are undefined values, such as words beyond the end of a memory: anything, in both copies.
     inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)}
-    decides = re.compile(rf"any_(\w+|({'|'.join(protocol.decides)})\[\d+\])")
+
+    def decides(bit: str) -> bool:
+        name = bit.split("[")[0].removeprefix("any_")
+        return name in protocol.decides or (bit == f"any_{name}" and name not in protocol.given)
+
     return Graph(
         inputs_by_name,
         [(row[0], row[1], row[2] if len(row) > 2 else 0) for row in rows],
         {names["o", n]: literal for n, literal in enumerate(out_literals)},
         sorted((g for g in gates), key=lambda g: g[0]),
-        frozenset(literal for name, literal in inputs_by_name.items() if decides.fullmatch(name)),
+        frozenset(literal for name, literal in inputs_by_name.items() if decides(name)),
     )
 
 
@@ -567,7 +575,7 @@ class Shadow(Gates):
 
     Of each node it is known whether it can be 1 and whether it can be 0, in the core and in the mutant, and whether the
     two may differ there. Inputs of one bit, and what else decides, are what they are, all others, and what is not
-    initialised, unknown: so few states are left that all can be visited (`never`). A difference passes a gate whose
+    initialised, unknown: what is left is simple, and has few states (`never`). A difference passes a gate whose
     other side may be 1, unless the gate is known to be the same in both; so more is reached than in truth, and where
     nothing that is looked at is reached there is no difference. (Three values: R. E. Bryant, "A switch-level model",
     1984; differences that are followed through gates: M. Tiwari et al., "Complete information flow tracking from the
@@ -609,16 +617,23 @@ class Shadow(Gates):
             can_be_one, can_be_zero = kinds[literal & ~1]
             return (can_be_zero, can_be_one) if literal & 1 else (can_be_one, can_be_zero)
 
+        holds = source.outputs[HOLDS]
         for out, a, b in source.ands:
             kinds = []
             for table in (core, mutant):
                 (a_one, a_zero), (b_one, b_zero) = side(table, a), side(table, b)
-                kinds.append((self.both(a_one, b_one), self.either((a_zero, b_zero))))
+                kinds.append([self.both(a_one, b_one), self.either((a_zero, b_zero))])
             opens = [self.either((side(core, x)[0], side(mutant, x)[0])) for x in (a, b)]
             passes = self.either((self.both(differs[a & ~1], opens[1]), self.both(differs[b & ~1], opens[0])))
             (one, zero), (one_there, zero_there) = kinds
             alike = self.either((self.both(one ^ 1, one_there ^ 1), self.both(zero ^ 1, zero_there ^ 1)))
-            give(out, *kinds, self.both(passes, alike ^ 1))
+            apart = self.both(passes, alike ^ 1)
+            if out == holds & ~1:
+                # Where data decide that, it holds: a clock in which it does not is one of reset, which comes as well.
+                broken = 1 - (holds & 1)  # what of a kind says that it does not hold
+                for kind in kinds:
+                    kind[broken] = self.both(kind[broken], self.both(kind[1 - broken], apart ^ 1) ^ 1)
+            give(out, tuple(kinds[0]), tuple(kinds[1]), apart)
         self.latches = [1]  # of `started`, then of what a latch can be in both copies, and whether it differs
         for (_, to, _), at in zip(source.latches, inverted, strict=True):
             self.latches += [
@@ -642,14 +657,18 @@ class Shadow(Gates):
         path.write_bytes((head + "".join(f"{to}\n" for to in [*self.latches, self.bad])).encode() + bytes(coded))
 
     def never(self, folder: Path, name: str, seconds: int) -> bool:
-        """Whether no difference is ever seen: abc makes the graph small, then all its states are visited."""
-        if self.bad < 2 or self.inputs > MOST_EXACT:
+        """Whether no difference is ever seen: abc makes the graph small, then looks for a proof and for the contrary;
+        where it finds neither, all states are visited."""
+        if self.bad < 2:
             return self.bad == 0
         self.write(folder / name)
         small = folder / f"small-{name}"
         small.unlink(missing_ok=True)
-        abc(f"read_aiger {name}; scleanup; scorr; dc2; write_aiger {small.name}", folder, 6 * seconds + 20)
-        return small.is_file() and unreachable(small, 6 * seconds)
+        make = f"read_aiger {name}; scleanup; scorr; dc2; write_aiger {small.name}; pdr -T {2 * seconds}"
+        said = abc(make, folder, 6 * seconds + 20)
+        if "Property proved" in said or "was asserted" in said:
+            return "Property proved" in said
+        return small.is_file() and self.inputs <= MOST_EXACT and unreachable(small, 6 * seconds)
 
 
 MOST_EXACT = 11  # bits of inputs that are not left unknown

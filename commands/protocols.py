@@ -7,6 +7,7 @@ They allow at least what the testbenches do, and no more than the headers of hdl
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from commands.equivalence import Protocol
 
@@ -176,7 +177,7 @@ def gradient_lookup(_: Mapping[str, int]) -> Protocol:
     word, read = "live & ~rst & en & out_valid", "live & reads"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
     compare |= {"table_read_gx": read, "table_read_gy": read, "table_in_use": "live"}
-    return Protocol(LIVE + registers, assume, compare)
+    return Protocol(LIVE + registers, assume, compare, decides=("in_place",))
 
 
 def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
@@ -214,7 +215,8 @@ def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
     )
     word = f"{MOVES} & out_valid"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": MOVES, "table_in_use": "live"}
-    return Protocol(LIVE + registers, assume, compare | {"saturations": "live & ~rst", "table_read_word": "read"})
+    compare |= {"saturations": "live & ~rst", "table_read_word": "read"}
+    return Protocol(LIVE + registers, assume, compare, decides=("in_place",))
 
 
 def bursts(size: int, rows: int | None, out_size: int | None = None, word: str = "") -> Protocol:
@@ -325,8 +327,13 @@ def divergence(parameters: Mapping[str, int]) -> Protocol:
     )
 
 
-def raster(parameters: Mapping[str, int]) -> tuple[str, str]:
-    """Registers and an assumption: places of pixels in raster order, whole frames but for a reset."""
+def marked(**marks: str) -> dict[str, str]:
+    """With every word its marks, anything between them."""
+    return {name: f"in_valid & ~rst ? {mark} : {name}" for name, mark in marks.items()}
+
+
+def raster(parameters: Mapping[str, int]) -> tuple[str, dict[str, str]]:
+    """Registers and what is given: places of pixels in raster order, whole frames but for a reset."""
     rows, columns = parameters["Rows"], parameters["Columns"]
     registers = f"""
   reg [15:0] in_row = 16'd0, in_column = 16'd0;
@@ -343,7 +350,7 @@ def raster(parameters: Mapping[str, int]) -> tuple[str, str]:
     end
   end
 """
-    return registers, "~in_valid | rst | in_place == place"
+    return registers, marked(in_place="place")
 
 
 # Of the bus of gain_map.
@@ -366,11 +373,10 @@ READS = """
 
 def gain_map(parameters: Mapping[str, int]) -> Protocol:
     """Bus and capture one at a time, neither while a change-over is due, but for what the bus reads."""
-    registers, in_order = raster(parameters)
+    registers, given = raster(parameters)
     nodes = (parameters["Rows"] >> parameters["BlockLog2"]) * (parameters["Columns"] >> parameters["BlockLog2"])
     registers += READS + "  reg captured = 1'b0;\n  always @(posedge clk) captured <= capture_read;\n"
     assume = (
-        in_order,
         f"~(table_write | capture_write | capture_read) | ({SETTLED} & ~rst & ~table_read & read_left == 2'd0)",
         "~table_read | ~rst & read_left == 2'd0",
         "~table_write | ~capture_write & ~capture_read",
@@ -386,7 +392,7 @@ def gain_map(parameters: Mapping[str, int]) -> Protocol:
         "table_read_gain": READ,
         "capture_read_gains": "captured",
     }
-    return Protocol(LIVE + registers, assume, compare)
+    return Protocol(LIVE + registers, assume, compare, given)
 
 
 def flat_field(parameters: Mapping[str, int]) -> Protocol:
@@ -394,32 +400,31 @@ def flat_field(parameters: Mapping[str, int]) -> Protocol:
     compare = dict(inside.compare)
     del compare["out_gains"]
     compare |= {f"out_{colour}": compare["out_place"] for colour in ("red", "green", "blue")}
-    return Protocol(inside.registers, inside.assume, compare | dict.fromkeys(("dark", "saturations"), "live & ~rst"))
+    compare |= dict.fromkeys(("dark", "saturations"), "live & ~rst")
+    return replace(inside, compare=compare)
 
 
 def reference_capture(parameters: Mapping[str, int]) -> Protocol:
     """Whatever the memory answers."""
-    registers, in_order = raster(parameters)
+    registers, given = raster(parameters)
     compare = dict.fromkeys(("busy", "done", "map_read", "map_write"), "live & ~rst")
     compare |= dict.fromkeys(("map_write_node", "map_write_gains"), "live & ~rst & map_write")
     compare |= {"map_read_node": "live & ~rst & map_read"}
-    return Protocol(LIVE + registers, (in_order,), compare, decides=("in_place", "log2_frames"))
+    return Protocol(LIVE + registers, (), compare, given, decides=("log2_frames",))
 
 
-def depth_frames(parameters: Mapping[str, int]) -> tuple[str, str]:
-    """Registers and an assumption: marks of depth in raster order, whole frames but for a reset."""
+def depth_frames(parameters: Mapping[str, int]) -> tuple[str, dict[str, str]]:
+    """Registers and what is given: marks of depth in raster order, whole frames but for a reset."""
     registers, _ = raster(parameters)
-    marks = "{in_last, in_frame_end, in_user} == {place[3], place[3] & place[2], place[1] & place[0]}"
-    return registers, f"~in_valid | rst | {marks}"
+    return registers, marked(in_last="place[3]", in_frame_end="place[3] & place[2]", in_user="place[1] & place[0]")
 
 
 def auto_zero(parameters: Mapping[str, int]) -> Protocol:
     """Bus and capture one at a time, neither while a change-over is due, but for what the bus reads."""
-    registers, in_order = depth_frames(parameters)
+    registers, given = depth_frames(parameters)
     nodes = (parameters["Rows"] >> parameters["BlockLog2"]) * (parameters["Columns"] >> parameters["BlockLog2"])
     registers += READS
     assume = (
-        in_order,
         f"~(table_write | capture_write) | ({SETTLED} & ~rst & ~table_read & read_left == 2'd0)",
         "~table_read | ~rst & read_left == 2'd0",
         "~table_write | ~capture_write",
@@ -427,14 +432,14 @@ def auto_zero(parameters: Mapping[str, int]) -> Protocol:
     )
     compare = {f"out_{name}": f"{MOVES} & out_valid" for name in ("user", "last", "frame_end", "data")}
     compare |= {"out_valid": MOVES, **dict.fromkeys(("active", "saturation"), "live & ~rst")}
-    return Protocol(LIVE + registers, assume, compare | {"table_in_use": "live", "table_read_floor": READ})
+    return Protocol(LIVE + registers, assume, compare | {"table_in_use": "live", "table_read_floor": READ}, given)
 
 
 def floor_capture(parameters: Mapping[str, int]) -> Protocol:
-    registers, in_order = depth_frames(parameters)
+    registers, given = depth_frames(parameters)
     compare = {"busy": "live & ~rst", "done": "live & ~rst", "map_write": "live"}
     compare |= dict.fromkeys(("map_write_node", "map_write_floor"), "live & map_write")
-    return Protocol(LIVE + registers, (in_order,), compare, decides=("log2_frames",))
+    return Protocol(LIVE + registers, (), compare, given, decides=("log2_frames",))
 
 
 def frame_output(_: Mapping[str, int]) -> Protocol:

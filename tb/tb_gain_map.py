@@ -103,6 +103,23 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def named_inside_a_frame(dut, pause):
+    """Another bank is that of the next frame, wherever in a frame it is named."""
+    device = Map(dut, 0.0, pause)
+    await device.start()
+    columns = device.config.columns
+    for count in range(3, len(device.places), len(device.places) if device.large else columns + 1):
+        await device.gains.write(device.gains.random(device.bench.random))
+        device.expected.append(interpolated_gains(device.gains.begin_frame(), device.config))
+        await send_apart(device.bench, device.driver, [(place,) for place in device.places[:count]], 0.0)
+        device.gains.change()
+        await send_apart(device.bench, device.driver, [(place,) for place in device.places[count:]], 0.0)
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
 async def captured(dut):
     """All nodes at once, into both banks; the bus reads the same; entries left over from before stay."""
     device = Map(dut, 0.0, 0.0)
