@@ -46,12 +46,33 @@ memory_map
 setundef -undriven -anyseq
 opt -fast
 dffunmap
+techmap -map first_wins.v
 techmap
 opt -fast
 dfflegalize -cell $_DFF_P_ 01
 setundef -undriven -anyseq
 aigmap
 opt_clean
+"""
+# Of a multiplexer's selects a mutant may have two high: as in what Yosys writes for simulators, the lowest wins.
+FIRST_WINS = """(* techmap_celltype = "$pmux" *)
+module first_wins (A, B, S, Y);
+  parameter WIDTH = 1;
+  parameter S_WIDTH = 1;
+  input [WIDTH-1:0] A;
+  input [WIDTH*S_WIDTH-1:0] B;
+  input [S_WIDTH-1:0] S;
+  output [WIDTH-1:0] Y;
+  wire [WIDTH*(S_WIDTH+1)-1:0] chain;
+  assign chain[WIDTH*S_WIDTH +: WIDTH] = A;
+  assign Y = chain[0 +: WIDTH];
+  genvar i;
+  generate
+    for (i = 0; i < S_WIDTH; i = i + 1) begin : g
+      assign chain[WIDTH*i +: WIDTH] = S[i] ? B[WIDTH*i +: WIDTH] : chain[WIDTH*(i+1) +: WIDTH];
+    end
+  endgenerate
+endmodule
 """
 
 
@@ -119,6 +140,7 @@ def environment(core: str, folder: Path, protocol: Protocol) -> str:
 def graph(core: str, folder: Path, protocol: Protocol) -> Graph:
     """Of the netlist with all mutants and its environment. Memories become registers."""
     (folder / "environment.v").write_text(environment(core, folder, protocol))
+    (folder / "first_wins.v").write_text(FIRST_WINS)
     yosys(f"{TO_GRAPH}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
     lines = iter((folder / "graph.aag").read_text().splitlines())
     _, _, inputs, latches, outputs, ands = next(lines).split()

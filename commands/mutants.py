@@ -142,8 +142,7 @@ def base(core: str, structure: Structure, outside: Sequence[str] = ()) -> str:
     `outside`: registers that become ports of the netlist, to be where a testbench can write them.
     """
     return (
-        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\n"
-        "techmap -map +/pmux2mux.v\nopt_clean -purge\n"
+        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\nopt_clean -purge\n"
         f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\nwrite_json ports.json\n"
     )
 

@@ -17,7 +17,7 @@ from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions,
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from second_client import SecondMaster, SecondSink, SecondSource
-from stream import CLOCK_NS, configuration
+from stream import CLOCK_NS, MANY, configuration
 from tb_axil_registers import master_of, response_of
 
 from models.axil_registers import WORD, Response
@@ -924,6 +924,22 @@ async def gradient_table_rewritten_while_frames_stream(dut, offers, accepts):
     await pipeline.commit(power_up)
     await pipeline.send(pipeline.frame())
     await pipeline.check()
+
+
+@TEST
+async def many_frames(dut):
+    """Ties of every rounding and clips of all that can: any slopes, small ones and steep ones."""
+    pipeline = await started(dut)
+    power_up = Pipeline.table
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    limit = 1 << pipeline.config.gradient.width - 1
+    tables = [rng.integers(-most, most, power_up.shape) for most in (limit >> 7, limit >> 3, limit)] + [power_up]
+    for table in [None] if pipeline.config.flat_field else tables:
+        if table is not None:
+            await pipeline.write_table(table)
+            await pipeline.commit(table)
+        await pipeline.send(*(pipeline.frame() for _ in range(1 if table is power_up else MANY)))
+        await pipeline.check()
 
 
 @TEST
