@@ -121,16 +121,29 @@ def described(line: str) -> str:
     return f"{option['-mode']} {option['-port']}[{option['-portbit']}]{wire}{place}"
 
 
-def counts(line: str, cells: Mapping) -> bool:
+def initialised(names: Mapping) -> set[int]:
+    """Bits that begin with a value of their own. `names`: of the nets, in Yosys' JSON."""
+    return {
+        bit
+        for net in names.values()
+        for bit, value in zip(net["bits"], reversed(net["attributes"].get("init", "")), strict=False)
+        if value in "01"
+    }
+
+
+def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
     """Whether a mutant says something about the tests.
 
     A register without a clock does not, nor a constant in place of itself. Constant pins of a memory say what kind
-    it is.
+    it is. Behind a register with an initial value Yosys would put the mutant in the register's place, and lose the
+    value: the pins that it drives are mutated too.
     """
     words = line.split()
     mode, name, port, bit = (words[words.index(option) + 1] for option in ("-mode", "-cell", "-port", "-portbit"))
     cell = cells[name.removeprefix("\\")]
     driver = cell["connections"][port][int(bit)]
+    if port == "Q" and driver in initial:
+        return False
     if port.endswith("CLK") or (cell["type"] == "$mem_v2" and isinstance(driver, str)):
         return False
     return driver != mode.removeprefix("const")
@@ -160,9 +173,10 @@ def make(
     control = f"-ctrl {SELECTOR} {width} 1"
     listing = f"mutate -list {2 * count} -seed {seed} {control} -o all.txt\n"
     yosys(base(core, structure, outside) + listing, folder, "list")
-    cells = json.loads((folder / "ports.json").read_text())["modules"][core]["cells"]
+    module = json.loads((folder / "ports.json").read_text())["modules"][core]
     every = (folder / "all.txt").read_text().splitlines()
-    lines = [line for line in every if counts(line, cells)][:count]
+    initial = initialised(module["netnames"])
+    lines = [line for line in every if counts(line, module["cells"], initial)][:count]
     (folder / "mutants.txt").write_text("\n".join(lines) + "\n")
     yosys(
         f"read_rtlil base.il\nscript mutants.txt\nrename {core} {core}_netlist\nopt_clean\nwrite_rtlil mutants.il\n"

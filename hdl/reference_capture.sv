@@ -99,13 +99,14 @@ module reference_capture #(
   logic [1:0] phase;
   logic [NodeWidth-1:0] divide_node;
   logic [3*Width-1:0] word;
-  logic [Width-1:0] divisor, remainder, gain, whole;
+  logic [Width-1:0] divisor, remainder, gain;
+  logic [Whole+MaxLog2:0] whole;
   logic [Width:0] twice;
   logic [Bits-1:0] quotient;
   logic overflow, bit_set, reading, node_ends, divided;
   logic write_back = 1'b0;
   assign divisor = word[Width-1:0];
-  assign whole = Width'(1) << (StepWidth'(log2) + StepWidth'(Whole));
+  assign whole = (Whole + MaxLog2 + 1)'(1) << (StepWidth'(log2) + StepWidth'(Whole));
   // With a divisor over `whole` the quotient stays so far below 2^Bits that rounding does not carry out.
   assign twice = {remainder, 1'b0};
   assign bit_set = twice >= {1'b0, divisor};
@@ -149,8 +150,8 @@ module reference_capture #(
         step <= '0;
       end
       if (step == '0) begin
-        remainder <= whole;
-        overflow <= whole >= divisor;
+        remainder <= Width'(whole);
+        overflow <= Width'(whole) >= divisor;
       end else begin
         remainder <= Width'(bit_set ? twice - {1'b0, divisor} : twice);
         quotient <= {quotient[Bits-2:0], bit_set};

@@ -34,6 +34,7 @@ class Capture:
         self.memory: list[int | None] = [None] * nodes
         self.busy = self.inside = False
         self.due, self.gains = None, None  # the clock of done, and what is then in the memory
+        self.divided = 0  # nodes whose gain was written
         self.captures = 0
         self.taken = []  # frames since the request: pixels, bad, log2_frames
         self.frame = None  # that is being sent: pixels, bad
@@ -75,7 +76,7 @@ class Capture:
                 if place & 12 == 12 and self.inside:
                     found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)
                     if found:
-                        self.due, self.gains = clock + self.clocks, found[1]
+                        self.due, self.gains, self.divided = clock + self.clocks, found[1], 0
                         if self.flipped is not None:
                             self.gains = self.gains_behind_flips(self.taken[-1][0])
             if dut.request.value:
@@ -99,6 +100,8 @@ class Capture:
                 assert (node, int(dut.map_write_gains.value)) == (wanted, word), "a sum"
             else:
                 assert self.due is not None, "a write of nothing"
+                assert node == self.divided, f"gain of node {node}, not {self.divided}"
+                self.divided += 1
         self.passing = max(0, self.passing - 1)
         if read:
             word = self.memory[int(dut.map_read_node.value)]
@@ -108,14 +111,17 @@ class Capture:
             self.memory[node] = int(dut.map_write_gains.value)
 
     def pixels(self):
-        """uint8 (rows, columns, 3): anything, black, white, nearly black."""
+        """uint8 (rows, columns, 3): anything, black, white, nearly black, gains about to saturate."""
         shape = (self.config.rows, self.config.columns, 3)
-        match self.chance.randrange(5):
+        match self.chance.randrange(6):
             case 0:
                 return np.full(shape, self.chance.choice((0, 255)), np.uint8)
             case 1:
                 return (self.generator.random(shape) < 0.1).astype(np.uint8)
             case 2:
+                darkest = 1 << GAIN_FRACTION - GAIN_WIDTH  # the mean at which a gain just saturates
+                return (darkest + self.generator.choice([-1, 0, 0, 0, 0, 0, 0, 1], shape)).astype(np.uint8)
+            case 3:
                 return np.broadcast_to(self.generator.integers(0, 256, 3, dtype=np.uint8), shape)
         return self.generator.integers(0, 256, shape, dtype=np.uint8)
 
