@@ -435,6 +435,26 @@ async def address_and_data_in_either_order(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(ahead=["aw", "w"])
+async def the_next_waits_for_this(dut, ahead) -> None:
+    """An address, or a word, that is offered while the one before it waits for its other half stays out."""
+    async with checked(dut):
+        writes = [("TIMEOUT", 0x1234), ("MINIMUM_AREA", 0xABCDEF01)]
+        addresses = [{"channel": "aw", "awaddr": OFFSET[name]} for name, _ in writes]
+        words = [{"channel": "w", "wdata": word, "wstrb": 0xF} for _, word in writes]
+        first, second = (addresses, words) if ahead == "aw" else (words, addresses)
+        await present(dut, **first[0])
+        following = cocotb.start_soon(present(dut, **first[1]))
+        await ClockCycles(dut.clk, 4)
+        for half in second:
+            await present(dut, **half)
+            assert await take(dut, "b") == Response.OKAY
+        await following
+        for name, word in writes:
+            assert await value(dut, name) == word, name
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
 async def responses_wait(dut) -> None:
     """A response stays, unchanged, until it is taken, and holds off the next transaction of its kind only."""
     async with checked(dut):
@@ -681,9 +701,9 @@ async def commits(dut, lag) -> None:
 async def sticky_bits(dut) -> None:
     """Each event sets its own bit, a written 1 clears that bit alone, the live bits follow their inputs."""
     async with checked(dut):
-        sources = {flag: {f"event_{flag}": 1} for flag in STICKY_EVENTS}
-        sources["saturation"] = {"saturations": 128}
-        for name, inputs in sources.items():
+        sources = [(flag, {f"event_{flag}": 1}) for flag in STICKY_EVENTS]
+        sources += [("saturation", {"saturations": 1 << bit}) for bit in range(8)]
+        for name, inputs in sources:
             await pulse(dut, **inputs)
             assert await value(dut, "STATUS") == STATUS.pack(**{name: 1}), name
             await write(dut, STATUS.offset, WORD & ~STATUS.field(name).mask)
