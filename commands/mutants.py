@@ -96,10 +96,10 @@ def yosys(script: str, folder: Path, name: str) -> None:
         raise RuntimeError(f"Yosys, {folder / name}.ys: {(result.stdout + result.stderr)[-2000:]}")
 
 
-def read_commands(core: str, structure: Structure) -> str:
+def read_commands(core: str, structure: Structure, options: str = "") -> str:
     sources = [str(path) for path in simulation.sources(structure.sources)]
     parameters = [f"-G {name}={value}" for name, value in structure.parameters.items()]
-    return f"read_slang --threads 1 --top {core} {' '.join(parameters)} {' '.join(sources)}"
+    return f"read_slang --threads 1 {options} --top {core} {' '.join(parameters)} {' '.join(sources)}"
 
 
 @dataclass(frozen=True)
@@ -144,42 +144,51 @@ def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
     driver = cell["connections"][port][int(bit)]
     if port == "Q" and driver in initial:
         return False
-    if port.endswith("CLK") or (cell["type"] == "$mem_v2" and isinstance(driver, str)):
+    if port.upper().endswith("CLK") or (cell["type"] == "$mem_v2" and isinstance(driver, str)):
         return False
     return driver != mode.removeprefix("const")
 
 
-def base(core: str, structure: Structure, outside: Sequence[str] = ()) -> str:
-    """Script that makes one flat netlist of a core, base.il, and ports.json.
+def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: bool = True) -> str:
+    """Script that makes one netlist of a core, base.il, and ports.json; not `flat`: with the cores in it as they are.
 
     `outside`: registers that become ports of the netlist, to be where a testbench can write them.
     """
+    read = read_commands(core, structure, "" if flat else "--keep-hierarchy")
     return (
-        f"{read_commands(core, structure)}\nprep -flatten -top {core}\nopt -full\nopt_clean -purge\n"
+        f"{read}\nprep {'-flatten ' if flat else ''}-top {core}\nopt -full\nopt_clean -purge\n"
         f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\nwrite_json ports.json\n"
     )
 
 
 def make(
-    core: str, structure: Structure, count: int, seed: int, folder: Path, outside: Sequence[str] = ()
+    core: str,
+    structure: Structure,
+    count: int,
+    seed: int,
+    folder: Path,
+    outside: Sequence[str] = (),
+    flat: bool = True,
 ) -> tuple[list[Mutant], bool]:
     """Write <folder>/mutants.v and mutants.il, module <core>_netlist; the mutants, and whether those are all there are.
 
-    `outside` as in `base`. Constant logic goes first, so that no mutant is dead from the start.
+    `outside` as in `base`; not `flat`: of its own cells and of the pins of the cores in it alone. Constant logic goes
+    first, so that no mutant is dead from the start.
     """
     if structure.roms:
         structure.roms(folder)
     width = 12
     control = f"-ctrl {SELECTOR} {width} 1"
-    listing = f"mutate -list {2 * count} -seed {seed} {control} -o all.txt\n"
-    yosys(base(core, structure, outside) + listing, folder, "list")
+    listing = f"mutate -list {2 * count} -seed {seed} {control} -o all.txt {core}\n"
+    yosys(base(core, structure, outside, flat) + listing, folder, "list")
     module = json.loads((folder / "ports.json").read_text())["modules"][core]
     every = (folder / "all.txt").read_text().splitlines()
     initial = initialised(module["netnames"])
     lines = [line for line in every if counts(line, module["cells"], initial)][:count]
     (folder / "mutants.txt").write_text("\n".join(lines) + "\n")
     yosys(
-        f"read_rtlil base.il\nscript mutants.txt\nrename {core} {core}_netlist\nopt_clean\nwrite_rtlil mutants.il\n"
+        f"read_rtlil base.il\nscript mutants.txt\nflatten\nrename {core} {core}_netlist\nopt_clean\n"
+        "write_rtlil mutants.il\n"
         "write_verilog -noattr mutants.v\n",
         folder,
         "mutants",

@@ -51,6 +51,7 @@ class Core:
     tests: str = ""  # a filter, where all would take too long
     inside: Mapping[str, str] = field(default_factory=dict)  # signals of the core that its testbench reads
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
+    flat: bool = True  # else of its own cells and of the pins of the cores in it alone: those have runs of their own
 
 
 QUICK_FIRST = ("verilator", "icarus")
@@ -104,16 +105,17 @@ CORES = {
         ),
     ),
     "spectral_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE
+        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
     ),
     "tridiagonal_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE
+        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
     ),
     "tactile_depth": Core(
         protocols.tactile_depth,
         (3, 0),
         simulators=("verilator",),
         bar=WHOLE,
+        flat=False,
         tests=TOP_TESTS,
         inside={
             **dict.fromkeys(("threshold", "off_threshold"), "logic signed [31:0]"),
@@ -177,7 +179,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         structure = mutants.structure(name, index)
         folder = OUT / name / str(index)
         folder.mkdir(parents=True, exist_ok=True)
-        made, every = mutants.make(name, structure, count, seed, folder, core.outside)
+        made, every = mutants.make(name, structure, count, seed, folder, core.outside, core.flat)
         outcome.every &= every
         lived, killed = made, []
         for simulator in core.simulators:

@@ -5,9 +5,9 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 from gains import Gains, Grid, random_gains
-from stream import Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
+from stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
 
-from models.flat_field import dark_pixels, deviations, flat_codes
+from models.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
 from models.latency import FLAT_FIELD
 from models.round_saturate import Monitor
 
@@ -147,6 +147,27 @@ async def products_at_their_limits(dut):
         await device.gains.changed()
     await device.check()
     assert device.bench.saturations, "nothing was clipped: a poor test"
+
+
+def beside_ties(gains, drop):
+    """The pixels uint8 (rows, columns, 3) whose products with the gains at their places lie nearest to a tie."""
+    products = np.arange(256)[:, None, None, None] * gains
+    return np.abs(products % (1 << drop) - (1 << drop - 1)).argmin(axis=0).astype(np.uint8)
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+async def products_beside_ties(dut):
+    """Whichever way a product is rounded hangs on the lowest bits of its gain."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    (drop,) = parameters(dut, "Drop")
+    for _ in range(2 if device.large else 2 * MANY):
+        gains = random_gains(device.config, device.bench.random)
+        await device.gains.write(gains)
+        device.gains.due = True
+        await device.send(level=0, pixels=beside_ties(interpolated_gains(gains, device.config), drop))
+        await device.gains.changed()
+    await device.check()
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from stream import REGRESS
 
 from models.calibration import load
 from models.configuration import COLUMNS, Configuration
@@ -20,7 +21,7 @@ PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
 
 @pytest.mark.structures(
     "width rows columns bottom_first",
-    both=[(24, 8, 16, 0)],
+    both=[(24, 5, 8, 0), *([(24, 8, 16, 0)] if REGRESS else [])],
     icarus=[(6, 5, 8, 1), (32, 5, 16, 1), (12, 9, 4, 0)],
 )
 def test_rtl(run_tb, width, rows, columns, bottom_first):
