@@ -89,7 +89,7 @@ baselines: $(BASELINES)
 report: $(STAMP)
 	@$(PY) -m commands.report $(GIVEN)
 
-# From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS CIRCLES=found OUT
+# From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS CIRCLES=found HELD_OUT=each OUT
 calibrate: $(STAMP)
 	@$(PY) -m commands.calibrate $(GIVEN)
 

@@ -468,6 +468,8 @@ def main() -> None:
         seed = make_variables.number(given, "SEED", 1, 0, 10**9)
         if not READERS.keys() >= set(readers):
             raise InputError(f"READER={given['READER']} is unknown: accepted are {', '.join(READERS)}")
+        if "REPLAY" in given and ("READER" not in given or not Path(given["REPLAY"]).is_file()):
+            raise InputError(f"REPLAY={given['REPLAY']}: give a file that is there, and READER, which is to read it")
     except InputError as error:
         print(f"make fuzz: {error}", file=sys.stderr)
         sys.exit(2)
