@@ -216,13 +216,15 @@ module contact_events #(
   assign difference = shifted - {1'b0, area_closed};
   assign fits = ~difference[AreaWidth];
 
-  localparam int CentroidWidth = Steps + 1;
-  logic signed [CentroidWidth-1:0] rounded;
-  logic [CentroidWidth-1:0] column_centroid;
+  localparam int CentroidWidth = PlaceWidth + Fraction;
+  logic signed [Steps:0] rounded;
+  logic [CentroidWidth-1:0] centroid, column_centroid;
   logic unused_clipped;
-  round_saturate #(.InWidth(Steps + 2), .Drop(2), .OutWidth(CentroidWidth)) u_round (
+  round_saturate #(.InWidth(Steps + 2), .Drop(2), .OutWidth(Steps + 1)) u_round (
     .in($signed({1'b0, quotient, remainder != '0})), .out(rounded), .clipped(unused_clipped)
   );
+  logic [Steps-CentroidWidth:0] unused_centroid;  // no mean of places is larger than the largest
+  assign {unused_centroid, centroid} = rounded;
 
   always_ff @(posedge clk) begin
     if (summed) begin
@@ -239,7 +241,7 @@ module contact_events #(
       quotient <= {quotient[Steps-2:0], fits};
       step <= step - StepWidth'(1);
     end
-    if (divided) column_centroid <= rounded;
+    if (divided) column_centroid <= centroid;
     if (summed) begin
       dividing <= 1'b1;
       of_row <= 1'b0;
@@ -265,7 +267,7 @@ module contact_events #(
     record_valid <= renewed;
     if (renewed) begin
       record <= {
-        some_closed ? {16'(rounded), 16'(column_centroid)} : 32'd0, summary_closed, 32'(area_closed), begun_closed,
+        some_closed ? {16'(centroid), 16'(column_centroid)} : 32'd0, summary_closed, 32'(area_closed), begun_closed,
         frame, 29'd0, ended, began, touching
       };
     end

@@ -46,15 +46,17 @@ module floor_capture #(
   localparam int SumWidth = Width + Drop;
   localparam int Nodes = NodeRows * NodeColumns;
 
+  localparam int LeftWidth = MaxLog2 > 0 ? MaxLog2 : 1;
+
   localparam logic [1:0] Idle = 2'd0, Armed = 2'd1, Summing = 2'd2;
   logic [1:0] state;
   logic [3:0] log2, log2_next;
-  logic [MaxLog2:0] left, left_next;  // frames to come after this one
+  logic [LeftWidth-1:0] left, left_next;  // frames to come after this one
   logic take, begins;
   assign take = en & in_valid;
   assign begins = take & in_user & state == Armed;
   assign log2_next = log2_frames > 4'($unsigned(MaxLog2)) ? 4'(MaxLog2) : log2_frames;
-  assign left_next = begins ? ((MaxLog2 + 1)'(1) << log2_next) - (MaxLog2 + 1)'(1) : left;
+  assign left_next = begins ? (LeftWidth'(1) << log2_next) - LeftWidth'(1) : left;  // with MaxLog2: all ones
   assign busy = state != Idle | done;
 
   // A block's row of depths is added up, then added to its node's sum, or in the block's first row of the first frame
@@ -122,8 +124,8 @@ module floor_capture #(
       left <= left_next;
     end
     if (take && in_user) fresh <= begins;
-    // Below none: what follows before done is written nowhere.
-    if (take && in_frame_end) left <= left - (MaxLog2 + 1)'(1);
+    // After the last one all ones again: what follows before done is written nowhere.
+    if (take && in_frame_end) left <= left - LeftWidth'(1);
     done <= closed;
     if (closed) state <= Idle;
     if (request) state <= Armed;

@@ -50,10 +50,12 @@ module reference_capture #(
   localparam int Bits = Width + 1;  // of a quotient, before the last is rounded off
   localparam int Whole = GainFraction + 1 + 2 * BlockLog2 - Bits;  // the dividend is 2^(Whole + k + Bits)
 
+  localparam int LeftWidth = MaxLog2 > 0 ? MaxLog2 : 1;
+
   localparam logic [1:0] Idle = 2'd0, Armed = 2'd1, Summing = 2'd2, Dividing = 2'd3;
   logic [1:0] state;
   logic [3:0] log2, log2_next;
-  logic [MaxLog2:0] left;  // whole frames to come
+  logic [LeftWidth-1:0] left;  // whole frames to come
   logic take, starts, ends, last;
   assign take = en & in_valid;
   assign starts = take & in_place[0] & in_place[1] & (state == Armed | state == Summing);
@@ -165,11 +167,11 @@ module reference_capture #(
       fresh <= state == Armed;
       if (state == Armed) begin
         log2 <= log2_next;
-        left <= ((MaxLog2 + 1)'(1) << log2_next) - (MaxLog2 + 1)'(1);
+        left <= (LeftWidth'(1) << log2_next) - LeftWidth'(1);  // with MaxLog2: all ones
       end
     end
     if (ends) begin
-      left <= left - (MaxLog2 + 1)'(1);
+      left <= left - LeftWidth'(1);
       if (in_bad) state <= Armed;
     end
     if (last) begin
