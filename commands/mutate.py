@@ -71,7 +71,7 @@ CORES = {
     "burst_counter": Core(protocols.burst_counter, (1,)),
     "axis_skid": Core(protocols.axis_skid),
     "threshold_comparator": Core(protocols.threshold_comparator),
-    "frame_guard": Core(protocols.frame_guard, (2,), outside=("silence",)),
+    "frame_guard": Core(protocols.frame_guard, (1,), outside=("silence",)),
     "contact_events": Core(protocols.contact_events, (1,), outside=("frame",)),
     "depth_gate": Core(protocols.depth_gate),
     "gradient_lookup": Core(protocols.gradient_lookup, (1,)),

@@ -14,7 +14,7 @@ ROWS, COLUMNS = 4, 8  # of the model's frames
 @pytest.mark.structures(
     "rows columns",
     both=[(8, 2), *([(4, 8)] if REGRESS else [])],
-    icarus=[*([] if REGRESS else [(4, 8)]), (3, 4)],
+    icarus=[(3, 4)],
 )
 def test_rtl(run_tb, rows, columns):
     run_tb("frame_guard", ["frame_guard.sv"], {"Rows": rows, "Columns": columns})
