@@ -96,7 +96,7 @@ CORES = {
     "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "frame_output": Core(protocols.frame_output, (1,)),
-    "frame_tags": Core(protocols.frame_tags),
+    "frame_tags": Core(protocols.frame_tags, (4,)),
     "axil_registers": Core(
         protocols.axil_registers,
         outside=(

@@ -4,7 +4,9 @@
 import pytest
 
 
-# Two places, one, two exactly, four.
-@pytest.mark.structures("width latency pixels", both=[(33, 37, 24)], icarus=[(4, 9, 16), (33, 32, 16), (33, 50, 13)])
+# Two places, one, two exactly, four; the first again, for mutants.
+@pytest.mark.structures(
+    "width latency pixels", both=[(33, 37, 24)], icarus=[(4, 9, 16), (33, 32, 16), (33, 50, 13), (4, 9, 6)]
+)
 def test_rtl(run_tb, width, latency, pixels):
     run_tb("frame_tags", ["frame_tags.sv"], {"Width": width, "Latency": latency, "Pixels": pixels})
