@@ -93,8 +93,8 @@ CORES = {
     "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (6,)),
     "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
-    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
-    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
+    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (2,), flat=False),
+    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (2,), flat=False),
     "frame_output": Core(protocols.frame_output, (1,)),
     "frame_tags": Core(protocols.frame_tags, (4,)),
     "axil_registers": Core(
