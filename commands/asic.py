@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 from tqdm import tqdm
 from vcd.reader import TokenKind, tokenize
 
-from commands import bench, gate_sim, memory_model, sim, synthesis, yosys
+from commands import bench, gate_sim, memory_model, sim, synthesis, variables, yosys
 from commands import simulator as simulation
 from commands.gate_power import Power, power_of, typical
 from commands.gate_sim import Activity, Macro
@@ -691,14 +691,8 @@ def _above(path: str) -> Iterable[str]:
 
 
 def main() -> None:
-    try:
+    with variables.reported("asic"):
         sys.exit(run(*parse(sys.argv[1:]), "make asic " + " ".join(sys.argv[1:])))
-    except InputError as error:
-        print(f"make asic: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make asic: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

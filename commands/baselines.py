@@ -657,17 +657,8 @@ def run(request: Request) -> None:
 
 
 def main() -> None:
-    try:
+    with variables.reported("baselines", "interrupted; nothing was written"):
         run(parse(sys.argv[1:]))
-    except InputError as error:
-        print(f"make baselines: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make baselines: {error}", file=sys.stderr)
-        sys.exit(1)
-    except KeyboardInterrupt:
-        print("make baselines: interrupted; nothing was written", file=sys.stderr)
-        sys.exit(130)
 
 
 if __name__ == "__main__":

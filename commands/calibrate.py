@@ -839,11 +839,8 @@ def draw_presses(
 
 
 def main() -> None:
-    try:
+    with variables.reported("calibrate"):
         sys.exit(run(parse(sys.argv[1:])))
-    except InputError as error:
-        print(f"make calibrate: {error}", file=sys.stderr)
-        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands import sim
+from commands import sim, variables
 from commands import simulator as simulation
 from models.calibration import Calibration, load
 from models.certificate import Node, certify, slope_response
@@ -326,16 +326,10 @@ def _record(node: Node, attempts: list[Attempt]) -> dict:
 def main() -> None:
     arguments = [argument for argument in sys.argv[1:] if not argument.startswith("RTL=")]
     rtl = [argument.partition("=")[2] for argument in sys.argv[1:] if argument.startswith("RTL=")]
-    try:
+    with variables.reported("certify"):
         if any(value not in ("", "0", "1") for value in rtl):
             raise InputError(f"RTL={rtl[-1]}: accepted are 0 and 1")
         sys.exit(run(sim.parse(arguments), "0" not in rtl))
-    except InputError as error:
-        print(f"make certify: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make certify: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -537,19 +537,13 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
 
 
 def main() -> None:
-    try:
+    with variables.reported("extremes"):
         given = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
         if given["SHORT"] not in ("", "0", "1"):
             raise InputError(f"SHORT={given['SHORT']}: accepted are 0 and 1")
         request = sim.parse([f"N={given['N'] or 64}", f"SIM={given['SIM']}"])
         out = Path(given["OUT"]) if given["OUT"] else simulation.ROOT / "build" / "extremes"
         sys.exit(run(request.columns, request.simulator, out, given["SHORT"] == "1"))
-    except InputError as error:
-        print(f"make extremes: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make extremes: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -793,11 +793,8 @@ def main() -> None:
     if sys.argv[1:] == ["--document"]:
         DOCUMENT.write_text(document())
         return
-    try:
+    with variables.reported("formal"):
         proofs = selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE"))
-    except InputError as error:
-        print(f"make formal: {error}", file=sys.stderr)
-        sys.exit(2)
     begun = time.monotonic()
     outcomes = run_all(proofs)
     print("\n" + table(proofs, outcomes))

@@ -322,14 +322,8 @@ def table(report: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    try:
+    with variables.reported("fpga"):
         sys.exit(run(parse(sys.argv[1:]), " ".join(["make fpga", *sys.argv[1:]])))
-    except InputError as error:
-        print(f"make fpga: {error}", file=sys.stderr)
-        sys.exit(2)
-    except (RuntimeError, subprocess.TimeoutExpired) as error:
-        print(f"make fpga: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

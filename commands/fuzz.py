@@ -461,7 +461,7 @@ def run(reader: str, seconds: int, seed: int) -> tuple[int, list[str]]:
 
 
 def main() -> None:
-    try:
+    with make_variables.reported("fuzz"):
         given = make_variables.given(sys.argv[1:], ("MINUTES", "SEED", "READER", "REPLAY", "FUZZ"))
         readers = [given["READER"]] if "READER" in given else list(READERS)
         minutes = make_variables.number(given, "MINUTES", 10.0, 0.01, 10_000, float)
@@ -470,9 +470,6 @@ def main() -> None:
             raise InputError(f"READER={given['READER']} is unknown: accepted are {', '.join(READERS)}")
         if "REPLAY" in given and ("READER" not in given or not Path(given["REPLAY"]).is_file()):
             raise InputError(f"REPLAY={given['REPLAY']}: give a file that is there, and READER, which is to read it")
-    except InputError as error:
-        print(f"make fuzz: {error}", file=sys.stderr)
-        sys.exit(2)
     if "FUZZ" in given:
         fuzz(*json.loads(given["FUZZ"]))
     if "REPLAY" in given:

@@ -263,7 +263,7 @@ def parse(arguments: list[str]) -> dict[str, str]:
 
 
 def main() -> None:
-    try:
+    with variables.reported("mutate"):
         choices = parse(sys.argv[1:])
         names = choices["CORE"].split(",")
         for name in names:
@@ -274,9 +274,6 @@ def main() -> None:
             raise InputError(
                 f"commands/mutate.py does not list what is in hdl/: {modules ^ (CORES.keys() | LEFT_OUT.keys())}"
             )
-    except InputError as error:
-        print(f"make mutate: {error}", file=sys.stderr)
-        sys.exit(2)
     OUT.mkdir(parents=True, exist_ok=True)
     numbers = {name.lower(): int(choices[name]) for name in ("SEED", "JOBS", "SECONDS")}
     outcomes = []

@@ -197,7 +197,7 @@ def parse(arguments: list[str]) -> tuple[list[str], int]:
 
 
 def main() -> None:
-    try:
+    with variables.reported("netlists"):
         names, seed = parse(sys.argv[1:])
         library()
         for simulator in WHOLE_SIMULATORS:
@@ -210,12 +210,6 @@ def main() -> None:
                 results.append(run(case, seed))
                 tqdm.write(row(results[-1]))
                 sys.stdout.flush()
-    except InputError as error:
-        print(f"make netlists: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make netlists: {error}", file=sys.stderr)
-        sys.exit(1)
     wrong = [result.case.name for result in results if result.failed or not result.tests]
     tests = sum(result.tests for result in results)
     print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")

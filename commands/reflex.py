@@ -875,17 +875,8 @@ def trial_film(one: Loop, setup: Setup, draws: Draws, request: Request) -> refle
 
 
 def main() -> None:
-    try:
+    with variables.reported("reflex", "interrupted; nothing was written"):
         run(parse(sys.argv[1:]))
-    except InputError as error:
-        print(f"make reflex: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make reflex: {error}", file=sys.stderr)
-        sys.exit(1)
-    except KeyboardInterrupt:
-        print("make reflex: interrupted; nothing was written", file=sys.stderr)
-        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -323,15 +323,12 @@ def matrix(part: Part) -> str:
 
 
 def main() -> None:
-    try:
+    with variables.reported("regress"):
         given = variables.given(sys.argv[1:], ("PARTS", "JOBS"))
         names = given.get("PARTS", ",".join(PARTS)).split(",")
         jobs = variables.number(given, "JOBS", 2, 1, 1000)
         if not PARTS.keys() >= set(names):
             raise InputError(f"PARTS={given['PARTS']}: accepted are {', '.join(PARTS)}")
-    except InputError as error:
-        print(f"make regress: {error}", file=sys.stderr)
-        sys.exit(2)
     parts = []
     for name in names:
         part = Part(name)

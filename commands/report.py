@@ -548,18 +548,9 @@ def build(folder: Path) -> Path:
 
 
 def main() -> None:
-    try:
+    with variables.reported("report", "interrupted; the rows of the sweep are kept, run it again to go on"):
         folder = Path(variables.given(sys.argv[1:], ("OUT",)).get("OUT", DEFAULT_OUT))
         print(f"report: {os.path.relpath(build(folder))}")
-    except InputError as error:
-        print(f"make report: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make report: {error}", file=sys.stderr)
-        sys.exit(1)
-    except KeyboardInterrupt:
-        print("make report: interrupted; the rows of the sweep are kept, run it again to go on", file=sys.stderr)
-        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -465,14 +465,8 @@ def run(request: Request, frames: Frames | None = None) -> int:
 
 
 def main() -> None:
-    try:
+    with variables.reported("sim"):
         sys.exit(run(parse(sys.argv[1:])))
-    except InputError as error:
-        print(f"make sim: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make sim: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

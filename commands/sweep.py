@@ -297,19 +297,10 @@ def summary(rows: list[Row]) -> str:
 
 
 def main() -> None:
-    try:
+    with variables.reported("sweep", "interrupted; every row measured is kept, run it again to go on"):
         given = variables.given(sys.argv[1:], ACCEPTED)
         folder = Path(given.get("OUT", DEFAULT_OUT))
         rows = sweep(plan(), folder, given.get("DASK_SCHEDULER"))
-    except InputError as error:
-        print(f"make sweep: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make sweep: {error}", file=sys.stderr)
-        sys.exit(1)
-    except KeyboardInterrupt:
-        print("make sweep: interrupted; every row measured is kept, run it again to go on", file=sys.stderr)
-        sys.exit(130)
     print(summary(rows))
     print(f"results: {os.path.relpath(folder / 'sweep.csv')}")
 

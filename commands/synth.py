@@ -576,14 +576,8 @@ def run(arguments: list[str]) -> int:
 
 
 def main() -> None:
-    try:
+    with variables.reported("synth"):
         sys.exit(run(sys.argv[1:]))
-    except InputError as error:
-        print(f"make synth: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make synth: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

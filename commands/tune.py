@@ -439,14 +439,8 @@ def _none(search: Search, solvers: list[str]) -> str:
 
 
 def main() -> None:
-    try:
+    with variables.reported("tune"):
         sys.exit(run(*parse(sys.argv[1:])))
-    except InputError as error:
-        print(f"make tune: {error}", file=sys.stderr)
-        sys.exit(2)
-    except RuntimeError as error:
-        print(f"make tune: {error}", file=sys.stderr)
-        sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,6 @@ from commands import simulator as simulation
 from commands import variables
 from models.calibration import synthetic
 from models.configuration import Configuration
-from models.errors import InputError
 from models.tactile_depth import top_parameters, write_roms
 
 CASES: dict[str, dict[str, Any]] = {
@@ -68,13 +67,10 @@ def table(results: list[dict[str, Any]]) -> str:
 
 
 def main() -> None:
-    try:
+    with variables.reported("upsets"):
         given = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
         upsets = variables.number(given, "UPSETS", 60, 1, 100_000)
         seed = variables.number(given, "SEED", 1, 0, 10**9)
-    except InputError as error:
-        print(f"make upsets: {error}", file=sys.stderr)
-        sys.exit(2)
     folders = {case: simulation.ROOT / "build" / "upsets" / case for case in CASES}
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from models.errors import InputError
@@ -50,3 +53,24 @@ def number(values: Mapping[str, str], name: str, default: Any, low: float, high:
         to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
         raise InputError(f"{name}={values[name]}: accepted is {what}{to}")
     return value
+
+
+@contextmanager
+def reported(target: str, interrupted: str = "") -> Iterator[None]:
+    """Bad input ends `make <target>` with one line and exit status 2, what fails on the way with 1.
+
+    `interrupted`: what to say then, where there is something to say; exit status 130.
+    """
+    try:
+        yield
+    except InputError as error:
+        print(f"make {target}: {error}", file=sys.stderr)
+        sys.exit(2)
+    except (RuntimeError, subprocess.TimeoutExpired) as error:
+        print(f"make {target}: {error}", file=sys.stderr)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        if not interrupted:
+            raise
+        print(f"make {target}: {interrupted}", file=sys.stderr)
+        sys.exit(130)

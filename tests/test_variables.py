@@ -49,3 +49,23 @@ def test_number():
     for word in ("2.5", "x", "0", "10"):
         with pytest.raises(InputError, match=f"^N={word}: accepted is a whole number from 1 to 9$"):
             variables.number({"N": word}, "N", 7, 1, 9)
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (InputError("N=3: too small"), 2, "make sim: N=3: too small\n"),
+        (RuntimeError("no simulator"), 1, "make sim: no simulator\n"),
+        (KeyboardInterrupt(), 130, "make sim: nothing was written\n"),
+    ],
+)
+def test_what_goes_wrong_is_said_in_a_line(error, status, line, capsys):
+    with pytest.raises(SystemExit) as ended, variables.reported("sim", "nothing was written"):
+        raise error
+    assert ended.value.code == status
+    assert capsys.readouterr().err == line
+
+
+def test_an_interruption_with_nothing_to_say_goes_on():
+    with pytest.raises(KeyboardInterrupt), variables.reported("sim"):
+        raise KeyboardInterrupt
