@@ -24,7 +24,7 @@ test: $(HARDWARE) lint
 	@$(PY) -m pytest -n auto --dist worksteal
 
 # What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
-regress: $(TOOLS)
+regress: $(HARDWARE)
 	@sh commands/icarus.sh
 	@$(PY) -m commands.regress $(GIVEN)
 
