@@ -170,7 +170,7 @@ class Bench:
         self.dut, self.pause = dut, pause
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.clock, self.saturations = 0, 0  # clocks with en; values clipped
-        self.held = False
+        self.in_reset: int | None = None  # en in the clock of a reset
 
     async def start(self):
         Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
@@ -184,7 +184,8 @@ class Bench:
     async def _run(self):
         counts = hasattr(self.dut, "saturations")
         while True:
-            self.dut.en.value = int(not self.held and self.random.random() >= self.pause)
+            moves = int(self.random.random() >= self.pause)
+            self.dut.en.value = moves if self.in_reset is None else self.in_reset
             await RisingEdge(self.dut.clk)
             self.clock += int(self.dut.en.value)
             if counts and not self.dut.rst.value:
@@ -192,11 +193,11 @@ class Bench:
 
     async def reset(self, en=False):
         """One clock of reset; unless `en` is given nothing moves on in it by itself."""
-        self.held = True
-        self.dut.rst.value, self.dut.en.value = 1, int(en)
+        self.in_reset = int(en)
+        self.dut.rst.value, self.dut.en.value = 1, self.in_reset
         await RisingEdge(self.dut.clk)
         self.dut.rst.value = 0
-        self.held, self.saturations = False, 0
+        self.in_reset, self.saturations = None, 0
 
     async def clocks(self, count):
         """Wait for `count` clocks with en."""

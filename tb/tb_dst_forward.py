@@ -43,9 +43,10 @@ async def limits(dut):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True])
-async def reset_in_mid_burst(dut, late):
-    """In each of the clocks in which a burst begins to enter, or to leave."""
+@cocotb.parametrize(late=[False, True], clips=[False, True])
+async def reset_in_mid_burst(dut, late, clips):
+    """In each of the clocks in which a burst begins to enter, or to leave; what clips then is not counted."""
     size, width = parameters(dut, "Size", "InWidth")
     first = dst_forward_latency(size) - 3 if late else 1
-    await check(dut, uniform((2, size, 1), width), interrupts=range(first, first + 8))
+    words = (corners if clips else uniform)((2, size, 1), width)
+    await check(dut, words, interrupts=[count for count in range(first, first + 12) for _ in "en"])
