@@ -1047,7 +1047,7 @@ async def registers_written_phase_by_phase(dut):
 
     async def write_all():
         names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT", "OFF_THRESHOLD", "MINIMUM_AREA")
-        names += ("DEBOUNCE", "DARK_LEVEL", "CAPTURE")
+        names += ("DEBOUNCE", "DARK_LEVEL", "CAPTURE", "FLOOR_CAPTURE")
         answers = [await pipeline.write(name, 0) for name in names]
         assert answers == [Response.OKAY] * len(answers)
         assert await pipeline.write_bin(0, first) == Response.OKAY
