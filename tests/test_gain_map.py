@@ -21,7 +21,6 @@ SOURCES = ["gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
         (4, 2, 1, 1, 5),
         (4, 3, 1, 2, 1),
         (128, 8, 3, 3, 24),
-        (4, 5, 1, 3, 4),
     ],
 )
 def test_rtl(run_tb, columns, rows, block_log2, channels, width):
