@@ -3,7 +3,7 @@
 
 Parts, chosen with PARTS=a,b: `faults` (tests/test_faults.py, the full product), `codes` (RTL against model in bulk),
 `power_ups` (the quick tests of every core and of the top from 100 random states), `seeds` (every test of RTL with
-other seeds, with all that `make test` leaves out for its length). JOBS is the number of processes, 2 by default.
+another seed, with all that `make test` leaves out for its length). JOBS is the number of processes, 2 by default.
 """
 
 from __future__ import annotations
