@@ -38,7 +38,11 @@ ROOT = simulation.ROOT
 POWER_UPS = 100
 SEEDS = (2,)
 # Tests of RTL, and what else asks for REGRESS.
-WHOLE = "test_rtl or second_client or test_sample or (test_every_grid and icarus)"
+WHOLE = (
+    "test_rtl or second_client or test_sample or test_waves or test_the_largest_grid or held_out_in_turn or "
+    "test_elaboration.py and gradient_lookup or "
+    "test_sim.py and (icarus or 240 or 512)"
+)
 CODES = 6_000_000  # of each job of `codes`, or more: what makes a whole frame
 MODEL_PIXELS = 1 << 20  # that go through the models at a time
 SCENES_RENDERED = 160  # of a job, at most

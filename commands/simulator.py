@@ -9,6 +9,7 @@ import importlib.util
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -45,6 +46,10 @@ VERILATOR_MAKEFLAGS = (
     "CFG_CXXFLAGS_STD=-std=gnu++20 CFG_CXXFLAGS_COROUTINES=-fcoroutines CFG_LDLIBS_THREADS=-pthread "
     "VM_PARALLEL_BUILDS=0"
 )
+
+
+RUNTIME = "runtime.h"
+RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 
 
 class ClosedVerilator(Verilator):
@@ -119,13 +124,7 @@ def build(
     if simulator == "verilator":
         kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE])
         runtime = ROOT / "build" / "verilator-runtime" / kind
-        folder.mkdir(parents=True, exist_ok=True)
-        for compiled in runtime.glob("*.o"):
-            shutil.copy(compiled, folder)
-            later = (
-                time.time() + 600
-            )  # younger than the makefile that Verilator is about to write: make leaves it alone
-            os.utime(folder / compiled.name, (later, later))
+        arguments += _take_runtime(folder, runtime)
     runner.build(
         sources=files,
         hdl_toplevel=toplevel,
@@ -140,12 +139,35 @@ def build(
         _keep_runtime(folder, runtime)
 
 
+def _take_runtime(folder: Path, runtime: Path) -> list[str]:
+    """Put what `_keep_runtime` kept, if anything, where a model is built; the arguments that have it used."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if not runtime.exists():
+        return []
+    later = time.time() + 600  # younger than the makefile that Verilator is about to write: make leaves them alone
+    for compiled in runtime.glob("*.o"):
+        shutil.copy(compiled, folder)
+        os.utime(folder / compiled.name, (later, later))
+    for header in runtime.glob(f"{RUNTIME}*"):
+        (folder / header.name).unlink(missing_ok=True)
+        (folder / header.name).symlink_to(header)
+    return ["-CFLAGS", f"-include {RUNTIME}"]
+
+
 def _keep_runtime(folder: Path, runtime: Path) -> None:
-    """Keep the objects of Verilator's own runtime: they are the same for every model, and most of a small build."""
+    """Keep the objects of Verilator's own runtime, and its headers precompiled.
+
+    They are the same for every model, and most of a small build.
+    """
     runtime.parent.mkdir(parents=True, exist_ok=True)
     kept = Path(tempfile.mkdtemp(dir=runtime.parent))
     for compiled in folder.glob("verilated*.o"):
         shutil.copy(compiled, kept)
+    (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
+    precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's, with the flags of the model
+    subprocess.run(["make", "-s", "-C", folder, "-f", "Vtop.mk", precompiled], check=True, stdout=subprocess.DEVNULL)
+    shutil.copy(folder / RUNTIME, kept)
+    (folder / precompiled).rename(kept / f"{RUNTIME}.gch")
     try:
         kept.rename(runtime)
     except OSError:  # another build was first

@@ -12,7 +12,7 @@ from stream import CLOCK_NS, parameters
 
 from models.axis_skid import AxisSkid
 
-WORDS = 1000
+WORDS = 600
 FIELDS = ("data",)
 
 
@@ -79,7 +79,7 @@ async def words(dut, offers, accepts):
 async def resets(dut, accepts, clocks):
     """After a reset nothing of before is left, and nothing of after is lost."""
     source, taken, left = await start(dut, "none", accepts)
-    sent = random_words(dut, 300)
+    sent = random_words(dut, 200)
     for phase in (1, 2, 3, 4, 151, 153):
         cocotb.start_soon(source.send(sent))
         await ClockCycles(dut.clk, phase)

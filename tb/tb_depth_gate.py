@@ -144,7 +144,7 @@ async def started(dut, *arguments):
 async def waiting(dut, accepts, gap):
     """Nothing is lost, and each word is looked at in the clock in which it leaves."""
     bench = await started(dut, accepts)
-    for _ in range(30):
+    for _ in range(15):
         await bench.frame()
         await bench.idle(bench.random.randint(0, gap))
     await bench.drain()
@@ -162,7 +162,7 @@ async def dropping(dut, accepts, gap):
     bench.drop_frames = True
     await bench.idle()
     stood = bench.stood
-    for _ in range(60):
+    for _ in range(40):
         await bench.frame()
         await bench.idle(bench.random.randint(0, gap))
     await bench.drain()
@@ -225,7 +225,7 @@ async def changes_at_random(dut, accepts):
         if bench.random.random() < 0.1:
             bench.drop_frames = not bench.drop_frames
 
-    for _ in range(400):
+    for _ in range(200):
         for _ in range(bench.random.choice([0, 0, 0, 1, 2, 9])):
             coin()
             await bench.clock()

@@ -49,10 +49,10 @@ def test_the_largest_grid(solver):
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_frames_back_to_back_do_not_drift(solver):
-    extreme = drift(64)
+    extreme = drift(32)
     row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
-    assert row.frames == 64
+    assert row.frames == 32
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
