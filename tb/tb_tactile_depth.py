@@ -18,7 +18,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 from second_client import SecondMaster, SecondSink, SecondSource
 from stream import CLOCK_NS, MANY, configuration
-from tb_axil_registers import master_of, response_of
+from tb_axil_registers import master_of, present, read, response_of, take, write
 
 from models.axil_registers import WORD, Response
 from models.calibration import synthetic
@@ -38,6 +38,8 @@ from models.threshold_comparator import ThresholdComparator
 OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL, COMMIT, CAPTURE = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT", "CAPTURE"))
 FLOOR_CAPTURE = REGISTERS["FLOOR_CAPTURE"]
+SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")  # and signals of the device
+RECORD = [register.name for register in MAP if register.name.startswith("RECORD_")]
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 GREEN, BLUE, RED = 0, 8, 16  # lowest bits of the colours in a word
 TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
@@ -91,6 +93,8 @@ class Pipeline:
         self.drops = False  # CONTROL.drop_frames
         self.packets = []  # of contact events, in words
         self.events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
+        # A sink of records, never so slow that one is lost.
+        self.takes = profile(accepts if accepts in ("one_in_4", "alternate", "random") else "none", 3)
         self.settings = []  # of contact events, as they stood with the first depth of each frame
         self.tables = None  # of each frame that comes, if they differ
         self.floors = None  # the same
@@ -155,24 +159,35 @@ class Pipeline:
                 counts, user = dut.m_axis_tvalid.value and dut.m_axis_tready.value, dut.m_axis_tuser.value
                 depth = self.signed(dut.m_axis_tdata.value) if counts else 0
             if counts and user:
-                names = ("threshold", "off_threshold", "minimum_area", "debounce")
-                self.settings.append(Settings(*(getattr(dut, name).value.to_signed() for name in names)))
+                self.settings.append(Settings(*map(self.setting, SETTINGS)))
             if counts:
                 model.beat(depth, bool(user), dut.threshold.value.to_signed(), bool(dut.hold_contact.value))
 
     async def watch_events(self):
-        """Packets that leave; a reset ends one."""
+        """Packets that leave, each word the same until it is taken; a reset ends one."""
         dut, edge = self.dut, RisingEdge(self.dut.clk)
         while True:
             await RisingEdge(dut.m_event_tvalid)
-            words = []
+            words, held = [], None
             await edge
             while dut.m_event_tvalid.value and not dut.rst.value:
-                words.append(int(dut.m_event_tdata.value))
-                if dut.m_event_tlast.value:
-                    self.packets.append(words)
-                    words = []
+                word = int(dut.m_event_tdata.value), bool(dut.m_event_tlast.value)
+                assert held in (None, word), "a word of a record changed before it was taken"
+                held = word
+                if dut.m_event_tready.value:
+                    held = None
+                    words.append(word[0])
+                    if word[1]:
+                        self.packets.append(words)
+                        words = []
+                dut.m_event_tready.value = int(next(self.takes))
                 await edge
+            assert dut.rst.value or (held is None and not words), "a record broke off"
+
+    def setting(self, register):
+        """A register as the cores have it."""
+        value = getattr(self.dut, register.lower()).value
+        return value.to_signed() if "THRESHOLD" in register else value.to_unsigned()
 
     def signed(self, data):
         width = 8 * ((self.config.data_width + 7) // 8)
@@ -320,6 +335,8 @@ class Pipeline:
                 drained = depth - self.into.taken[frame.last]
                 assert drained == last_pixel_to_first_depth(self.config), f"last pixel to first depth: {drained}"
         self.check_events(got, [guarded.frames[index].first for index in good])
+        if self.packets:
+            assert [await self.read(name) for name in RECORD] == self.packets[-1], "the registers of the last record"
         self.counters["FRAMES_IN"] += len(good)
         self.counters["FRAMES_OUT"] += len(good)
         self.counters["FRAMES_DROPPED"] += len(guarded.faults)
@@ -359,6 +376,8 @@ class Pipeline:
         assert status.pop("touching") == self.events.touching
         bits = {name for name, value in status.items() if value}
         assert bits == self.sticky, f"sticky bits {bits}, should be {self.sticky}"
+        for name in SETTINGS:
+            assert await self.read(name) == self.setting(name) % 2**32, f"{name} is not what the cores have"
         latency = await self.read("FIRST_DEPTH_LATENCY")
         assert latency == self.latency, f"FIRST_DEPTH_LATENCY is {latency}, on the pins it was {self.latency}"
 
@@ -679,6 +698,114 @@ async def contact(dut, accepts):
     await pipeline.send(pressed, flat, pressed)
     await pipeline.check()
     assert dut.contact.value
+
+
+@TEST
+async def records_at_the_limits(dut):
+    """Both thresholds at a depth of the frame and one below it, the least area at that of the frame and one above."""
+    pipeline = await started(dut)
+    pressed = pipeline.pressed()
+    codes, _ = pipeline.model([[word.data for word in pressed]])
+    depths = np.unique(codes)
+    chosen = [int(depth) for depth in depths[:: max(1, len(depths) // 4)]]
+    # One of them stands where it always decides, at once, against what the other says of the frame before.
+    for name, other, always in (
+        ("THRESHOLD", "OFF_THRESHOLD", int(depths[-1])),
+        ("OFF_THRESHOLD", "THRESHOLD", int(depths[0])),
+    ):
+        await pipeline.write(other, always)
+        for depth in chosen:
+            for code in (depth, depth - 1):
+                await pipeline.write(name, code)
+                await pipeline.send(pressed, pressed)
+                await pipeline.check(counters=False)
+    area = int((codes > chosen[0]).sum())
+    for least, debounce in ((area, 1), (area + 1, 1), (area, 3), (area + 1, 2), (area, 2), (0, 0)):
+        await pipeline.write("OFF_THRESHOLD", chosen[0])
+        await pipeline.write("MINIMUM_AREA", least)
+        await pipeline.write("DEBOUNCE", debounce)
+        for _ in range(debounce + 1):
+            await pipeline.send(pressed)
+            await pipeline.check(counters=False)
+
+
+@TEST
+async def busy_while_a_frame_is_in_flight(dut):
+    """From its first pixel to its last depth, whatever the source pauses; and not before or after."""
+    pipeline = await started(dut)
+    source, out = pipeline.into, pipeline.out
+    polls = []  # clock before, clock after, busy
+
+    async def poll():
+        while True:
+            before = source.clock_count
+            busy = STATUS.unpack(await pipeline.read("STATUS"))["busy"]
+            polls.append((before, source.clock_count, busy))
+            await ClockCycles(dut.clk, pipeline.random.randrange(3))
+
+    for pause in (0, 1, 4, 30):
+        polling = cocotb.start_soon(poll())
+        await ClockCycles(dut.clk, 20)
+        frame = pipeline.frame()
+        await pipeline.send(frame[:1], [None] * pause, frame[1:-1], [None] * pause, frame[-1:])
+        while len(out.words) < pipeline.pixels:
+            await RisingEdge(dut.clk)
+        await ClockCycles(dut.clk, 20)
+        polling.cancel()
+        await ClockCycles(dut.clk, 20)  # for the read that it had begun
+        first, last = source.taken[0], out.taken[-1]
+        inside = [busy for before, after, busy in polls if before > first and after <= last]
+        outside = [busy for before, after, busy in polls if after <= first or before > last + 1]
+        assert len(inside) > 20, len(inside)
+        assert all(inside), f"{len(inside) - sum(inside)} of {len(inside)} reads say that nothing is in flight"
+        assert outside
+        assert not any(outside), "busy without a frame"
+        polls.clear()
+        await pipeline.check()
+
+
+@TEST
+async def the_register_port_waits(dut):
+    """Address and word of a write in either order, each taken once; answers stay until they are taken; bytes without a
+    strobe keep what they hold."""
+    pipeline = await started(dut)
+    pins = {name: getattr(dut, f"s_axil_{name}") for name in ("awready", "wready", "arready", "bvalid", "rvalid")}
+    dut.s_axil_bready.value = dut.s_axil_rready.value = 0
+
+    async def stays(clocks=3, **wanted):
+        for _ in range(clocks):
+            await RisingEdge(dut.clk)
+            got = {name: int(pin.value) for name, pin in pins.items()}
+            assert got == {"awready": 1, "wready": 1, "arready": 1, "bvalid": 0, "rvalid": 0} | wanted
+
+    held = 0
+    for strobe in (15, *range(16), 15):
+        data = pipeline.random.getrandbits(32)
+        beats = {"aw": {"awaddr": OFFSET["TIMEOUT"]}, "w": {"wdata": data, "wstrb": strobe}}
+        first, second = beats if strobe & 1 else reversed(beats)
+        await stays()
+        await present(dut, first, **beats[first])
+        await RisingEdge(dut.clk)
+        await stays(**{f"{first}ready": 0})
+        await present(dut, second, **beats[second])
+        while not dut.s_axil_bvalid.value:
+            await RisingEdge(dut.clk)
+        await stays(awready=0, wready=0, bvalid=1)
+        assert await take(dut, "b", 2) == Response.OKAY
+        mask = sum(0xFF << 8 * byte for byte in range(4) if strobe >> byte & 1)
+        held = data & mask | held & ~mask
+        await present(dut, "ar", araddr=OFFSET["TIMEOUT"])
+        await RisingEdge(dut.clk)
+        for _ in range(4):
+            await stays(1, arready=0, rvalid=1)
+            assert int(dut.s_axil_rdata.value) == held
+        assert await take(dut, "r", 2) == Response.OKAY
+    assert await write(dut, OFFSET["GRID"], 0) == Response.SLVERR
+    assert await write(dut, OFFSET["TIMEOUT"], 0) == Response.OKAY
+    assert await read(dut, OFFSET["TIMEOUT"]) == (0, Response.OKAY)
+    dut.s_axil_bready.value = dut.s_axil_rready.value = 1
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
 
 
 def places(pipeline, fault):

@@ -33,7 +33,7 @@ PAIRS = {
 # What is long: with a sink that never waits in Verilator, tridiagonal, alone; with one that does everywhere.
 LONG = "(malformed|random_streams|gradient_table_rewritten|registers_written_in).*accepts=none"
 # Every test, but of those that are repeated for each disturbance one: of the spectral solver, and on Icarus.
-REPEATED = f"gaps_and_stalls|{LONG}|random_streams|side_by_side|every_fault_in_a_row/.*random"
+REPEATED = f"gaps_and_stalls|records_at_the_limits|{LONG}|random_streams|side_by_side|every_fault_in_a_row/.*random"
 ONCE = f"^(?!.*({REPEATED}))"
 EVERY = "^(?!.*gaps_and_stalls)"
 # What one solver tells of both, and takes a quarter of the time.
