@@ -500,4 +500,6 @@ def tactile_depth(_: Mapping[str, int]) -> Protocol:
     source, offered = axis_source("s_axis_t", "data", "last", "user")
     compare |= dict.fromkeys((f"m_axis_t{name}" for name in ("data", "last", "user")), "live & m_axis_tvalid")
     compare |= {"s_axis_tready": "live", "m_axis_tvalid": "live", "contact": "live & ~rst"}
+    compare |= {"m_event_tvalid": "live & ~rst"}
+    compare |= dict.fromkeys(("m_event_tdata", "m_event_tlast"), "live & ~rst & m_event_tvalid")
     return Protocol(LIVE + registers + source, (*assume, *offered), compare)

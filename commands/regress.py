@@ -3,7 +3,7 @@
 
 Parts, chosen with PARTS=a,b: `faults` (tests/test_faults.py, the full product), `codes` (RTL against model in bulk),
 `power_ups` (the quick tests of every core and of the top from 100 random states), `seeds` (every test of RTL with
-another seed, with all that `make test` leaves out for its length). JOBS is the number of processes, 2 by default.
+another seed, of single cores on Icarus, and all that `make test` leaves out for its length). JOBS is the number of processes, 2 by default.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ from models.tactile_depth import tactile_depth
 ROOT = simulation.ROOT
 POWER_UPS = 100
 SEEDS = (2,)
-# Tests of RTL, and what else asks for REGRESS.
+# Tests of RTL, those of single cores on Icarus, which builds in no time; and what else asks for REGRESS.
 WHOLE = (
-    "test_rtl or second_client or test_sample or test_waves or test_the_largest_grid or held_out_in_turn or "
-    "test_elaboration.py and gradient_lookup or "
+    "test_rtl and (icarus or test_tactile_depth.py or solver.py or ulx3s) or test_axil and icarus or second_client or "
+    "test_sample or test_waves or test_the_largest_grid or held_out_in_turn or test_elaboration.py and gradient_lookup or "
     "test_sim.py and (icarus or 240 or 512)"
 )
 CODES = 6_000_000  # of each job of `codes`, or more: what makes a whole frame

@@ -122,7 +122,8 @@ def build(
     else:
         files = [file for file in files if file.suffix != ".vlt"]
     if simulator == "verilator":
-        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE])
+        flags = f"{zlib.crc32(Path(__file__).read_bytes()):08x}"
+        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE, flags])
         runtime = ROOT / "build" / "verilator-runtime" / kind
         arguments += _take_runtime(folder, runtime)
     runner.build(

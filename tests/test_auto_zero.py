@@ -16,8 +16,11 @@ SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_satura
 
 @pytest.mark.structures(
     "columns rows block_log2 width",
-    both=[(16, 15, 2, 4), (16, 8, 1, 24), *([(128, 128, 3, 24)] if REGRESS else [])],
-    icarus=[(4, 2, 1, 5), (16, 16, 1, 12), (32, 21, 1, 16), (128, 8, 3, 32)],
+    both=[(16, 15, 2, 4), (16, 8, 1, 24)],
+    icarus=[
+        *((4, 2, 1, 5), (16, 16, 1, 12), (32, 21, 1, 16), (128, 8, 3, 32)),
+        *([(128, 128, 3, 24)] if REGRESS else []),
+    ],
 )
 def test_rtl(run_tb, columns, rows, block_log2, width):
     floor = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
