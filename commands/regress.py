@@ -3,7 +3,8 @@
 
 Parts, chosen with PARTS=a,b: `faults` (tests/test_faults.py, the full product), `codes` (RTL against model in bulk),
 `power_ups` (the quick tests of every core and of the top from 100 random states), `seeds` (every test of RTL with
-another seed, of single cores on Icarus, and all that `make test` leaves out for its length). JOBS is the number of processes, 2 by default.
+another seed, of single cores on Icarus, and all that `make test` leaves out for its length). JOBS is the number of
+processes, 2 by default.
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ SEEDS = (2,)
 # Tests of RTL, those of single cores on Icarus, which builds in no time; and what else asks for REGRESS.
 WHOLE = (
     "test_rtl and (icarus or test_tactile_depth.py or solver.py or ulx3s) or test_axil and icarus or second_client or "
-    "test_sample or test_waves or test_the_largest_grid or held_out_in_turn or test_elaboration.py and gradient_lookup or "
-    "test_sim.py and (icarus or 240 or 512)"
+    "test_sample or test_waves or test_the_largest_grid or held_out_in_turn or test_elaboration.py and gradient_lookup "
+    "or test_sim.py and (icarus or 240 or 512)"
 )
 CODES = 6_000_000  # of each job of `codes`, or more: what makes a whole frame
 MODEL_PIXELS = 1 << 20  # that go through the models at a time

@@ -19,11 +19,7 @@ SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
     icarus=[
         (4, 5, 1, 4, 2),
         (4, 2, 1, 6, 1),
-        *(
-            [(32, 21, 1, 12, 1), (16, 16, 2, 24, 3), (128, 20, 3, 16, 1), (16, 9, 1, 32, 0)]
-            if REGRESS
-            else []
-        ),
+        *([(32, 21, 1, 12, 1), (16, 16, 2, 24, 3), (128, 20, 3, 16, 1), (16, 9, 1, 32, 0)] if REGRESS else []),
     ],
 )
 def test_rtl(run_tb, columns, rows, block_log2, width, largest):
