@@ -71,9 +71,11 @@ class Board:
         """The pipeline's clock for each frame's first pixel, which stands in the record."""
         depth = self.dut.u_depth
         while True:
-            await RisingEdge(depth.s_axis_tuser)
+            await RisingEdge(depth.s_axis_tvalid)  # tuser may be high from power-up on
             await ReadOnly()
-            while not (depth.s_axis_tvalid.value and depth.s_axis_tready.value):
+            if not depth.s_axis_tuser.value:
+                continue
+            while not depth.s_axis_tready.value:
                 await RisingEdge(self.dut.clk_25mhz)
                 await ReadOnly()
             self.starts.append(int(depth.now.value))

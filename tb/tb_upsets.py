@@ -29,7 +29,7 @@ from models.tactile_depth import tactile_depth
 
 FRAMES = 6
 FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency later
-OF_DATA = ("saturation", "contact")  # bits of STATUS that depend on what a frame shows
+OF_DATA = ("saturation", "contact", "touching")  # bits of STATUS that depend on what a frame shows
 # What holds until software writes it again; an upset there is no matter of frames.
 SETTINGS = {
     "axil_registers": (
