@@ -108,7 +108,7 @@ CORES = {
     ),
     "tactile_depth": Core(
         protocols.tactile_depth,
-        (3, 0),
+        (3,),
         simulators=("verilator",),
         bar=WHOLE,
         flat=False,

@@ -719,6 +719,13 @@ async def records_at_the_limits(dut):
                 await pipeline.write(name, code)
                 await pipeline.send(pressed, pressed)
                 await pipeline.check(counters=False)
+    # Depths below 0: their peak and their sum are.
+    for name in ("THRESHOLD", "OFF_THRESHOLD"):
+        await pipeline.write(name, -(1 << pipeline.config.data_width - 1))
+    await pipeline.send(pipeline.pressed(-0.5))
+    await pipeline.check(counters=False)
+    assert pipeline.events.touching
+    await pipeline.write("THRESHOLD", chosen[0])
     area = int((codes > chosen[0]).sum())
     for least, debounce in ((area, 1), (area + 1, 1), (area, 3), (area + 1, 2), (area, 2), (0, 0)):
         await pipeline.write("OFF_THRESHOLD", chosen[0])
@@ -754,7 +761,7 @@ async def busy_while_a_frame_is_in_flight(dut):
         polling.cancel()
         await ClockCycles(dut.clk, 20)  # for the read that it had begun
         first, last = source.taken[0], out.taken[-1]
-        inside = [busy for before, after, busy in polls if before > first and after <= last]
+        inside = [busy for before, after, busy in polls if before >= first and after <= last]
         outside = [busy for before, after, busy in polls if after <= first or before > last + 1]
         assert len(inside) > 20, len(inside)
         assert all(inside), f"{len(inside) - sum(inside)} of {len(inside)} reads say that nothing is in flight"
