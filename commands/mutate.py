@@ -55,7 +55,7 @@ class Core:
 
 
 QUICK_FIRST = ("verilator", "icarus")
-# Of the testbench of the whole, all tests but those that look at what is inside of a core.
+# Of the testbench of the whole, all tests but those that read or set what is inside of a core.
 TOP_TESTS = "^(?!.*(table_rewritten_while|floor_captured|the_clock_comes_round))"
 CORES = {
     "round_saturate": Core(protocols.round_saturate, (0, 1, 11)),
