@@ -48,7 +48,7 @@ LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=ran
 LARGER_SLOW = "configuration|back_to_back"
 
 
-# Through the second client, and in `make regress`.
+# Through the second client: here, and in `make regress`.
 SECOND_QUICK = (
     "configuration|one_frame|gaps_and_stalls/offers=random/accepts=random|waits_for_long|contact/accepts=none|"
     "malformed.*random|in_a_row/accepts=random|silence|registers_written_(all|phase)"
