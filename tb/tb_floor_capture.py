@@ -12,7 +12,7 @@ from stream import REGRESS, Bench, parameters
 
 from models.floor_capture import CLOCKS, captured_floor
 
-WORDS = 4096  # that a test sends, about
+WORDS = 2048  # that a test sends, about
 
 
 class Capture:
@@ -134,7 +134,7 @@ async def captures(dut, gap, pause, log2):
 async def most_frames(dut, high):
     """As many as fit the sum, all at one end of the range; more are asked for. The exponent changes meanwhile."""
     device = Capture(dut, 0.0, 0.0)
-    if device.size << device.largest > 16 * WORDS:
+    if device.size << device.largest > 32 * WORDS:
         return
     await device.start()
     depths = np.full(device.shape, (1 << device.width - 1) - 1 if high else -(1 << device.width - 1))

@@ -12,7 +12,7 @@ from stream import REGRESS, Bench, StreamDriver, configuration, parameters, rast
 from models.configuration import GAIN_FRACTION, GAIN_WIDTH
 from models.reference_capture import reference_capture, reference_capture_clocks
 
-PIXELS = 4096  # that a test sends, about
+PIXELS = 512  # that a test sends, about
 SUM_CLOCKS = 5  # from a pixel to its sum in the memory
 FIELDS = ["pixel", "place", "bad"]
 
@@ -188,7 +188,7 @@ async def captures(dut, gap, pause, log2):
 async def most_frames(dut):
     """As many as fit the sum; more are asked for. The exponent changes while the capture goes on."""
     device = Capture(dut, 0.0, 0.0)
-    if len(device.places) << device.largest > 16 * PIXELS:
+    if len(device.places) << device.largest > 128 * PIXELS:
         return
     await device.start()
     await device.request(15)

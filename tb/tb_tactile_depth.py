@@ -719,12 +719,15 @@ async def records_at_the_limits(dut):
                 await pipeline.write(name, code)
                 await pipeline.send(pressed, pressed)
                 await pipeline.check(counters=False)
-    # Most depths below 0: their sum is.
+    # Most depths below 0, then all: their sum is, and at last the peak.
     for name in ("THRESHOLD", "OFF_THRESHOLD"):
         await pipeline.write(name, -(1 << pipeline.config.data_width - 1))
     await pipeline.send(pipeline.pressed(-0.5))
     await pipeline.check(counters=False)
     assert pipeline.events.touching
+    await pipeline.send(pipeline.frame_of(np.full((pipeline.rows, pipeline.columns, 2), 0.5)))
+    below = await pipeline.check(counters=False)
+    assert below.max() < 0
     await pipeline.write("THRESHOLD", chosen[0])
     area = int((codes > chosen[0]).sum())
     for least, debounce in ((area, 1), (area + 1, 1), (area, 3), (area + 1, 2), (area, 2), (0, 0)):
@@ -769,6 +772,24 @@ async def busy_while_a_frame_is_in_flight(dut):
         assert not any(outside), "busy without a frame"
         polls.clear()
         await pipeline.check()
+
+    # To the clock: the address is taken before, with and after the first pixel.
+    seen = {}
+    for lead in range(5):
+        dut.s_axil_rready.value = 0
+        sending = cocotb.start_soon(pipeline.send([None] * (20 - lead), pipeline.frame()))
+        await ClockCycles(dut.clk, 20)
+        await present(dut, "ar", araddr=OFFSET["STATUS"])
+        asked = source.clock_count
+        await RisingEdge(dut.clk)
+        busy = STATUS.unpack(int(dut.s_axil_rdata.value))["busy"]
+        assert await take(dut, "r") == Response.OKAY
+        dut.s_axil_rready.value = 1
+        await sending
+        seen[asked - source.taken[0]] = busy
+        await pipeline.check()
+    assert seen.keys() >= {0, 1}, f"a poor test: clocks after the first pixel are {list(seen)}"
+    assert all(busy == (after > 0) for after, busy in seen.items()), seen
 
 
 @TEST
