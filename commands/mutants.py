@@ -277,6 +277,7 @@ def run(
         "COCOTB_TEST_FILTER": f"every_mutant|{tests}" if tests else "",
         "OPENBLAS_NUM_THREADS": "1",
         "REGRESS": "1",
+        "MANY": "60",
     }
     _, failed = simulation.run(
         core,

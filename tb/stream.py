@@ -17,7 +17,8 @@ from models.round_saturate import Monitor
 
 CLOCK_NS = 6
 REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
-MANY = 60 if REGRESS else 2  # frames or bursts, where what a test is after comes seldom: ties, values that just clip
+# Frames or bursts, where what a test is after comes seldom: ties, values that just clip. `make mutate` asks for more.
+MANY = int(os.environ.get("MANY", "15" if REGRESS else "2"))
 
 
 def parameters(dut, *names):
@@ -31,8 +32,8 @@ def configuration():
 
 
 def many(config):
-    """MANY frames; of large ones no more words than 60 of 16 x 16 have, but two frames at least."""
-    return min(MANY, max(2, 60 * 256 // (config.rows * config.columns)))
+    """MANY frames; of large ones no more words than as many of 16 x 16 have, but two frames at least."""
+    return max(2, min(MANY, MANY * 256 // (config.rows * config.columns)))
 
 
 def uniform(shape, width, amplitude=1.0):

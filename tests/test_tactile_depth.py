@@ -21,7 +21,7 @@ FORMATS = (
 )
 FLAT = f"{FORMATS}|capture|floor|dark_pixels|depth_frames|resets.*=2.*full"
 # On the first of each solver everything, but of the pairs of gaps and stalls each with one solver, every gap and every
-# stall with both. `make regress` runs all, but on Icarus for the spectral solver these.
+# stall with both. `make regress` runs all, but on Icarus for the spectral solver.
 PAIRS = {
     solver: "|".join(
         f"gaps_and_stalls/offers={gap}/accepts={stall}$"
@@ -91,7 +91,7 @@ def test_rtl(run_tb, simulator, choices, tests):
         elif slow:
             tests = LARGER_SLOW if tests == LARGER else tests.replace(*FIRST_OF_THEM)
     elif slow and spectral and not tests:
-        tests = f"{SPECTRAL}|{PAIRS['spectral']}"
+        tests = f"{SPECTRAL}|{DISTURBED}"
     run_tb(
         "tactile_depth",
         None,
