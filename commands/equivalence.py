@@ -9,7 +9,8 @@ alike they are one, so that what is left for the solver is what the mutant can r
 a difference, `scorr` and `pdr` prove that there is none. Before them comes a proof that knows nothing of reachable
 states, and so takes seconds where a whole solver takes them hours: from any state that is the same in both copies, a
 few clocks later they are in the same state again, and nothing was seen (`Spans`). And a proof that knows no data: where
-a difference can go (`Shadow`), for what is wrong only in places that are overwritten before anyone looks.
+a difference can go (`Shadow`), for what is wrong only in places that are overwritten before anyone looks. And one that
+has a second copy of those registers alone in which the two are seen to differ (`rejoins`).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import re
 import subprocess
 import threading
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from itertools import product
@@ -201,10 +202,14 @@ class Gates:
 
 
 class Miter(Gates):
-    """Two copies of a graph, made one where they are alike, and whether they differ where it is looked at."""
+    """Two copies of a graph, made one where they are alike, and whether they differ where it is looked at.
 
-    def __init__(self, source: Graph, number: int):
-        self.source, self.number = source, number
+    The second copy has latches of its own where it can differ, or where `allowed` says so: all others are then taken to
+    be the same in both, and `wrong` also has the literals of those that are not after all.
+    """
+
+    def __init__(self, source: Graph, number: int, allowed: Collection[int] | None = None):
+        self.source, self.number, self.allowed = source, number, allowed
         self.selector = {
             literal: int(re.search(r"\[(\d+)\]$", name)[1])
             for name, literal in source.inputs.items()
@@ -286,33 +291,35 @@ class Miter(Gates):
             for node in moved:
                 for index in loaded.get(node, ()):
                     literal, following, start = source.latches[index]
-                    if literal not in apart and read(other, following) != read(value, following):
+                    if literal in apart or (self.allowed is not None and literal not in self.allowed):
+                        continue
+                    if read(other, following) != read(value, following):
                         apart.add(literal)
                         other[literal] = self.state(self.twin[literal], literal, start)
                         changed.append(literal)
         self.apart = apart
-        wrong = []
-        self.compared = []
+        wrong: dict[str | int, int] = {}  # of bits of outputs, and of latches
         for name, literal in source.outputs.items():
             port = name.split("[")[0]
             if port == HOLDS or port.startswith("looked_at_"):
                 continue
             looked_at = read(value, source.outputs[f"looked_at_{port}"])
-            different = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
-            if different:
-                wrong.append(different)
-                self.compared.append(port)
-        self.bad = self.either(wrong)
+            wrong[name] = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
+        for literal, following, _ in source.latches:
+            if literal not in apart:
+                wrong[literal] = self.differ(read(value, following), read(other, following))
+        self.wrong = {place: different for place, different in wrong.items() if different}
+        self.bad = self.either(self.wrong.values())
         self.next = {self.latch[literal]: read(value, following) for literal, following, _ in source.latches}
         self.next.update(
             {self.twin[literal]: read(other, following) for literal, following, _ in source.latches if literal in apart}
         )
         self.start = {self.latch[literal]: int(start == 1) for literal, _, start in source.latches}
         self.start.update({self.twin[literal]: int(start == 1) for literal, _, start in source.latches})
-        self.value, self.other = value, other
 
-    def write(self, path: Path) -> None:
-        """As a binary AIGER file with one output: a difference is seen."""
+    def write(self, path: Path, apiece: bool = False) -> None:
+        """As a binary AIGER file with one output, a difference; or with `apiece` one for each that is `wrong`."""
+        outputs = [*self.wrong.values()] if apiece else [self.bad]
         latches = [(self.started, 1, 0)]
         latches += [
             (latch, self.next.get(latch, latch), self.start[latch])
@@ -320,11 +327,11 @@ class Miter(Gates):
             for latch in table.values()
         ]
         top = self.first - 1 + len(self.ands)
-        head = f"aig {top} {self.input_count} {len(latches)} 1 {len(self.ands)}\n"
+        head = f"aig {top} {self.input_count} {len(latches)} {len(outputs)} {len(self.ands)}\n"
         text = head + "".join(
             f"{following} {start}\n" if start else f"{following}\n" for _, following, start in latches
         )
-        text += f"{self.bad}\n"
+        text += "".join(f"{literal}\n" for literal in outputs)
         coded = bytearray()
         for index, (a, b) in enumerate(self.ands):
             node = 2 * (self.first + index)
@@ -784,6 +791,43 @@ def proved(name: str, folder: Path, seconds: int) -> bool:
     return "Property proved" in abc(f"read_aiger {name}; scleanup; pdr -T {seconds}", folder, limit)
 
 
+REJOINING = 20  # seconds, where more were given
+
+
+def rejoins(source: Graph, number: int, folder: Path, seconds: int) -> bool:
+    """Whether a difference stays in a few registers, where it is never seen.
+
+    All others are taken to be the same in both copies, and that they are is what is proven, with the outputs: so until
+    the first clock in which it fails, the copies are what they were taken to be. What it has to know of data, such as a
+    memory's words, is then there once. The few are those in which a search finds a difference, again and again.
+    (Speculative reduction: H. Mony et al., "Exploiting suspected redundancy without proving it", DAC 2005.)
+    """
+    name = f"rejoins{number}.aig"
+    apart: set[int] = set()
+    while True:
+        miter = Miter(source, number, apart)
+        if miter.bad == 0:
+            return True
+        places = list(miter.wrong)
+
+        def met(how: str, limit: int, places: Sequence[str | int] = places, miter: Miter = miter) -> list[str | int]:
+            """What is wrong, after all."""
+            miter.write(folder / name, apiece=True)
+            said = abc(f"read_aiger {name}; {how}", folder, limit)
+            return [places[int(found)] for found in re.findall(r"[Oo]utput +(\d+)[^\n]* asserted", said)]
+
+        found = met(f"bmc3 -a -T {max(2, seconds // 8)}", seconds + 20)
+        if not found:
+            miter.write(folder / name)
+            if proved(name, folder, seconds):
+                return True
+            found = met(f"pdr -a -T {seconds}", 2 * seconds + 20)
+        new = {place for place in found if isinstance(place, int)}
+        if not new:
+            return False
+        apart |= new
+
+
 def settle(source: Graph, spans: Spans, number: int, folder: Path, seconds: int) -> tuple[str, str]:
     """(verdict, how): whether the mutant can be told apart, within about so many seconds for each step."""
     miter = Miter(source, number)
@@ -807,6 +851,8 @@ def settle(source: Graph, spans: Spans, number: int, folder: Path, seconds: int)
     # Most are told apart in a few clocks, or proven by what is alike in both copies.
     if quick := looked(1, 2):
         return quick
+    if rejoins(source, number, folder, min(seconds, REJOINING)):
+        return EQUIVALENT, "by a difference that stays where it is"
     if Shadow(source, number, spans.readers).never(folder, f"shadow{number}.aig", seconds):
         return EQUIVALENT, "by where a difference can go"
     if spans.prove_between_pauses(number, folder, seconds):

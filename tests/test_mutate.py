@@ -8,7 +8,7 @@ import pytest
 
 from commands import mutate
 from commands import simulator as simulation
-from commands.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans
+from commands.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans, rejoins
 from commands.mutants import SELECTOR
 
 SMALL = "burst_counter"
@@ -104,3 +104,37 @@ def test_where_a_difference_can_go(tmp_path, stays, proven):
         frozenset((take, rst)),
     )
     assert Shadow(graph, 1, Readers(graph)).never(tmp_path, "shadow.aig", 5) == proven
+
+
+def turning(every):
+    """A register that takes its inverse in every clock in the mutant, and a count; it is looked at in every second
+    clock since the last reset, or in all of them. Beside it a word, which the mutant has as well."""
+    rst, x, selector, toggle, word, even = range(2, 2 * 7, 2)
+    gates = Gates(7)
+    seen = gates.differ(toggle, word)
+    following = {
+        toggle: gates.both(rst ^ 1, gates.differ(toggle, selector)),
+        word: gates.either((gates.both(x, word ^ 1), gates.both(x ^ 1, word))),
+        even: gates.either((rst, even ^ 1)),
+    }
+    return Graph(
+        {"any_rst": rst, "any_x": x, f"{SELECTOR}[0]": selector},
+        [(latch, to, latch) for latch, to in following.items()],
+        {"out[0]": seen, "looked_at_out": gates.both(rst ^ 1, 1 if every else even), HOLDS: 1},
+        [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
+        frozenset(),
+    )
+
+
+@pytest.mark.parametrize(
+    ("graph", "proven"),
+    [
+        (contrary("equal"), True),
+        (contrary("loose"), False),
+        (contrary("patient"), False),
+        (turning(every=False), True),
+        (turning(every=True), False),
+    ],
+)
+def test_a_difference_that_stays_where_it_is(tmp_path, graph, proven):
+    assert rejoins(graph, 1, tmp_path, 5) == proven
