@@ -44,7 +44,7 @@ WHOLE = (
     "test_sample or test_waves or test_the_largest_grid or held_out_in_turn or test_elaboration.py and gradient_lookup "
     "or test_sim.py and (icarus or 240 or 512)"
 )
-CODES = 6_000_000  # of each job of `codes`, or more: what makes a whole frame
+CODES = 5_000_000  # of each job of `codes`, or more: what makes a whole frame
 MODEL_PIXELS = 1 << 20  # that go through the models at a time
 SCENES_RENDERED = 160  # of a job, at most
 
