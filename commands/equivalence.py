@@ -10,7 +10,7 @@ a difference, `scorr` and `pdr` prove that there is none. Before them comes a pr
 states, and so takes seconds where a whole solver takes them hours: from any state that is the same in both copies, a
 few clocks later they are in the same state again, and nothing was seen (`Spans`). And a proof that knows no data: where
 a difference can go (`Shadow`), for what is wrong only in places that are overwritten before anyone looks. And one that
-has a second copy of those registers alone in which the two are seen to differ (`rejoins`).
+has a second copy of those registers alone in which the two are seen to differ (`confined`).
 """
 
 from __future__ import annotations
@@ -791,18 +791,18 @@ def proved(name: str, folder: Path, seconds: int) -> bool:
     return "Property proved" in abc(f"read_aiger {name}; scleanup; pdr -T {seconds}", folder, limit)
 
 
-REJOINING = 20  # seconds, where more were given
+CONFINING = 20  # seconds, where more were given
 
 
-def rejoins(source: Graph, number: int, folder: Path, seconds: int) -> bool:
-    """Whether a difference stays in a few registers, where it is never seen.
+def confined(source: Graph, number: int, folder: Path, seconds: int) -> bool:
+    """Whether a difference is confined to a few registers, where it is never seen.
 
     All others are taken to be the same in both copies, and that they are is what is proven, with the outputs: so until
     the first clock in which it fails, the copies are what they were taken to be. What it has to know of data, such as a
     memory's words, is then there once. The few are those in which a search finds a difference, again and again.
     (Speculative reduction: H. Mony et al., "Exploiting suspected redundancy without proving it", DAC 2005.)
     """
-    name = f"rejoins{number}.aig"
+    name = f"confined{number}.aig"
     apart: set[int] = set()
     while True:
         miter = Miter(source, number, apart)
@@ -851,8 +851,8 @@ def settle(source: Graph, spans: Spans, number: int, folder: Path, seconds: int)
     # Most are told apart in a few clocks, or proven by what is alike in both copies.
     if quick := looked(1, 2):
         return quick
-    if rejoins(source, number, folder, min(seconds, REJOINING)):
-        return EQUIVALENT, "by a difference that stays where it is"
+    if confined(source, number, folder, min(seconds, CONFINING)):
+        return EQUIVALENT, "by a difference confined to a few registers"
     if Shadow(source, number, spans.readers).never(folder, f"shadow{number}.aig", seconds):
         return EQUIVALENT, "by where a difference can go"
     if spans.prove_between_pauses(number, folder, seconds):

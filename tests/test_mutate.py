@@ -8,7 +8,7 @@ import pytest
 
 from commands import mutate
 from commands import simulator as simulation
-from commands.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans, rejoins
+from commands.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans, confined
 from commands.mutants import SELECTOR
 
 SMALL = "burst_counter"
@@ -136,5 +136,5 @@ def turning(every):
         (turning(every=True), False),
     ],
 )
-def test_a_difference_that_stays_where_it_is(tmp_path, graph, proven):
-    assert rejoins(graph, 1, tmp_path, 5) == proven
+def test_a_difference_confined_to_a_few_registers(tmp_path, graph, proven):
+    assert confined(graph, 1, tmp_path, 5) == proven
