@@ -31,11 +31,6 @@ def configuration():
     return Configuration(**json.loads(os.environ["CONFIGURATION"]))
 
 
-def many(config):
-    """MANY frames; of large ones no more words than as many of 16 x 16 have, but two frames at least."""
-    return max(2, min(MANY, MANY * 256 // (config.rows * config.columns)))
-
-
 def uniform(shape, width, amplitude=1.0):
     """Random words of `width` signed bits, up to `amplitude` of full scale, the same for a seed."""
     limit = amplitude * 2.0 ** (width - 1)

@@ -4,6 +4,7 @@
 import cocotb
 import numpy as np
 from stream import (
+    MANY,
     Bench,
     StreamDriver,
     StreamMonitor,
@@ -11,7 +12,6 @@ from stream import (
     configuration,
     corners,
     interrupt,
-    many,
     send_apart,
     uniform,
 )
@@ -73,7 +73,7 @@ async def frames(dut, gap, pause):
 @cocotb.parametrize(amplitude=[0.002, 0.05, None])
 async def many_frames(dut, amplitude):
     """Ties of every rounding, and clips of every one that can."""
-    await check(dut, codes(many(configuration()), amplitude))
+    await check(dut, codes(MANY, amplitude))
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
