@@ -64,8 +64,9 @@ class Field:
             if not self.dut.rst.value:
                 self.darkened += int(self.dut.dark.value)
 
-    async def send(self, frames=1, level=None, pixels=None):
-        """Frames back to back, each with the gains and the dark level that stand when it begins."""
+    async def send(self, frames=1, level=None, pixels=None, named=None):
+        """Frames back to back, each with the gains and the dark level that stand when it begins; the other bank is
+        named behind so many words."""
         chance = self.bench.random
         for _ in range(frames):
             given = chance.choice((0, 1, 16, 100, 255)) if level is None else level
@@ -81,7 +82,10 @@ class Field:
             self.dut.dark_level.value = given
             await send_apart(self.bench, self.driver, words[:1], 0.0)
             self.dut.dark_level.value = chance.randrange(256)
-            await send_apart(self.bench, self.driver, words[1:], self.gap)
+            await send_apart(self.bench, self.driver, words[1:named], self.gap)
+            if named:
+                self.gains.change()
+                await send_apart(self.bench, self.driver, words[named:], self.gap)
 
     async def check(self):
         await self.bench.clocks(FLAT_FIELD + 3)
@@ -129,6 +133,19 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
     await rewriter
     await device.check()
     assert device.dark, "no dark pixel: a poor test"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def named_inside_a_frame(dut):
+    """Another bank is that of the next frame, wherever in a frame it is named."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    size = len(device.places)
+    for count in range(3, size, size if device.large else max(device.config.columns + 1, size // 5)):
+        await device.gains.write(random_gains(device.config, device.bench.random))
+        await device.send(named=count)
+        await device.send()
+    await device.check()
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
