@@ -198,9 +198,9 @@ def run_tests() -> int:
     cores = [test for name, test in tests.items() if name != TOP]
     worst = 0
     # Of the whole all tests on each structure: the bins ask for every fault and disturbance with both solvers.
-    for regress, chosen in (("1", [tests[TOP]]), ("0", cores)):
+    for regress, many, chosen in (("1", "60", [tests[TOP]]), ("0", "2", cores)):
         command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-k", "verilator", *chosen]
-        given = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": regress}
+        given = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": regress, "MANY": many}
         run = subprocess.run(command, cwd=simulation.ROOT, env=os.environ | given, check=False)
         worst = max(worst, run.returncode)
     return worst

@@ -17,7 +17,7 @@ from models.round_saturate import Monitor
 
 CLOCK_NS = 6
 REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
-# Frames or bursts, where what a test is after comes seldom: ties, values that just clip. `make mutate` asks for more.
+# Frames or bursts, where what a test is after comes seldom: ties, values that just clip. Mutants and coverage get more.
 MANY = int(os.environ.get("MANY", "15" if REGRESS else "2"))
 
 
