@@ -31,7 +31,7 @@ from commands.equivalence import EQUIVALENT, Protocol, Spans, settle
 from models.errors import InputError
 
 OUT = simulation.ROOT / "build" / "mutate"
-LEAF, WHOLE = 100.0, 95.0  # per cent of the mutants that are not equivalent
+LEAF, CHAIN = 100.0, 95.0  # per cent of the mutants that are not equivalent
 CONTROLS = 4  # killed mutants of each structure that are also put to the solver
 
 
@@ -47,11 +47,14 @@ class Core:
     structures: tuple[int, ...] = (0,)
     # One after the other gets what the one before let live. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
-    bar: float = LEAF
     tests: str = ""  # a filter, where all would take too long
     inside: Mapping[str, str] = field(default_factory=dict)  # signals of the core that its testbench reads
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
     flat: bool = True  # else of its own cells and of the pins of the cores in it alone: those have runs of their own
+
+    @property
+    def bar(self) -> float:
+        return LEAF if self.flat else CHAIN
 
 
 QUICK_FIRST = ("verilator", "icarus")
@@ -89,8 +92,8 @@ CORES = {
     "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (6,)),
     "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
-    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (2,), flat=False),
-    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (2,), flat=False),
+    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (6,), flat=False),
+    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (6,), flat=False),
     "frame_output": Core(protocols.frame_output, (1,)),
     "frame_tags": Core(protocols.frame_tags, (4,)),
     "axil_registers": Core(
@@ -101,16 +104,15 @@ CORES = {
         ),
     ),
     "spectral_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
+        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, flat=False
     ),
     "tridiagonal_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
+        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, flat=False
     ),
     "tactile_depth": Core(
         protocols.tactile_depth,
         (3,),
         simulators=("verilator",),
-        bar=WHOLE,
         flat=False,
         tests=TOP_TESTS,
         inside={

@@ -20,10 +20,11 @@ async def check(dut, x, **behaviour):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0])
-async def bursts(dut, gap, pause, amplitude):
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), clips=[False, True])
+async def bursts(dut, gap, pause, clips):
     size, width = parameters(dut, "Size", "InWidth")
-    await check(dut, uniform((5, size, 1), width, amplitude), gap=gap, pause=pause)
+    shape = (5, size, 1)
+    await check(dut, corners(shape, width) if clips else uniform(shape, width, 0.3), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
