@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import cocotb
 import numpy as np
-from cocotb.triggers import RisingEdge
+from cocotb.triggers import FallingEdge, RisingEdge
 from stream import parameters, places
 
 from models.configuration import GAIN_WIDTH, Format
@@ -13,6 +13,7 @@ from models.flat_field import unit_gains
 from models.gain_map import ENTRIES_PER_NODE, table_entries
 
 READ_CLOCKS = 3  # from table_read to the gain
+PAUSED = 4  # clocks of a pause before its last
 
 
 def first_gains(rows, columns, channels, width):
@@ -178,3 +179,25 @@ class Gains:
         want &= (1 << self.width) - 1
         got = int(getattr(self.dut, f"table_read_{self.name}").value)
         assert got == want, f"entry {index} of bank {free}: {got:#x}, not {want:#x}"
+
+
+async def reads_as_a_pause_ends(device):
+    """The first pixel of a frame waits in a pause for the bank that it takes over; the last node is read meanwhile, or
+    as the pause ends. `device`: of a testbench, with its `gains` and `bench`."""
+    gains, bench, clk = device.gains, device.bench, device.dut.clk
+    rows, columns, channels = gains.banks[0].shape
+    for early in range(PAUSED + 1):
+        await gains.write(np.roll(first_gains(rows, columns, channels, gains.width), early))
+        gains.due = True
+        sending = cocotb.start_soon(device.send())
+        await FallingEdge(clk)
+        bench.pause = 1.0  # from the next edge on, which takes the pixel
+        for _ in range(early + 1):
+            await RisingEdge(clk)
+        reading = cocotb.start_soon(gains.read(gains.per_node * (rows * columns - 1)))
+        for _ in range(PAUSED - early):
+            await RisingEdge(clk)
+        bench.pause = 0.0
+        await reading
+        await sending
+        await gains.changed()

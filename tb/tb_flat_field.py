@@ -4,7 +4,7 @@
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
-from gains import Gains, Grid, random_gains
+from gains import Gains, Grid, random_gains, reads_as_a_pause_ends
 from stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
 
 from models.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
@@ -133,6 +133,14 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
     await rewriter
     await device.check()
     assert device.dark, "no dark pixel: a poor test"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def read_as_a_pause_ends(dut):
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    await reads_as_a_pause_ends(device)
+    await device.check()
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")

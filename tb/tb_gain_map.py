@@ -3,7 +3,7 @@
 
 import cocotb
 import numpy as np
-from gains import Gains, Grid, first_gains, random_gains
+from gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
 from stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
 
 from models.flat_field import interpolated_gains
@@ -100,6 +100,14 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
     await device.check()
     used = {gains.tobytes() for gains in device.expected}
     assert len(used) > 1, "no change-over was seen: a poor test"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def read_as_a_pause_ends(dut):
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    await reads_as_a_pause_ends(device)
+    await device.check()
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
