@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from commands import simulator as simulation
+from commands.mutants import MANY
 
 DATA = simulation.ROOT / "build" / "coverage"
 WAIVERS = Path(__file__).with_name("coverage_waivers.toml")
@@ -198,9 +199,9 @@ def run_tests() -> int:
     cores = [test for name, test in tests.items() if name != TOP]
     worst = 0
     # Of the whole all tests on each structure: the bins ask for every fault and disturbance with both solvers.
-    for regress, many, chosen in (("1", "60", [tests[TOP]]), ("0", "2", cores)):
+    for more, chosen in (({"REGRESS": "1", "MANY": str(MANY)}, [tests[TOP]]), ({"REGRESS": "0"}, cores)):
         command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-k", "verilator", *chosen]
-        given = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": regress, "MANY": many}
+        given = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", **more}
         run = subprocess.run(command, cwd=simulation.ROOT, env=os.environ | given, check=False)
         worst = max(worst, run.returncode)
     return worst

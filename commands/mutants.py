@@ -20,6 +20,7 @@ from pathlib import Path
 from commands import simulator as simulation
 
 SELECTOR = "mutsel"
+MANY = 60  # of what tests repeat to meet what comes seldom (tb/stream.py), where it is counted what they meet
 TESTS = simulation.ROOT / "tests"
 # A register becomes an input, its value, and an output, what it takes next.
 OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
@@ -277,7 +278,7 @@ def run(
         "COCOTB_TEST_FILTER": f"every_mutant|{tests}" if tests else "",
         "OPENBLAS_NUM_THREADS": "1",
         "REGRESS": "1",
-        "MANY": "60",
+        "MANY": str(MANY),
     }
     _, failed = simulation.run(
         core,

@@ -31,7 +31,7 @@ from commands.equivalence import EQUIVALENT, Protocol, Spans, settle
 from models.errors import InputError
 
 OUT = simulation.ROOT / "build" / "mutate"
-LEAF, CHAIN = 100.0, 95.0  # per cent of the mutants that are not equivalent
+LEAF, WHOLE = 100.0, 95.0  # per cent of the mutants that are not equivalent
 CONTROLS = 4  # killed mutants of each structure that are also put to the solver
 
 
@@ -47,14 +47,11 @@ class Core:
     structures: tuple[int, ...] = (0,)
     # One after the other gets what the one before let live. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
+    bar: float = LEAF
     tests: str = ""  # a filter, where all would take too long
     inside: Mapping[str, str] = field(default_factory=dict)  # signals of the core that its testbench reads
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
     flat: bool = True  # else of its own cells and of the pins of the cores in it alone: those have runs of their own
-
-    @property
-    def bar(self) -> float:
-        return LEAF if self.flat else CHAIN
 
 
 QUICK_FIRST = ("verilator", "icarus")
@@ -104,15 +101,16 @@ CORES = {
         ),
     ),
     "spectral_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, flat=False
+        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
     ),
     "tridiagonal_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, flat=False
+        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
     ),
     "tactile_depth": Core(
         protocols.tactile_depth,
         (3,),
         simulators=("verilator",),
+        bar=WHOLE,
         flat=False,
         tests=TOP_TESTS,
         inside={

@@ -20,11 +20,12 @@ async def check(dut, x, **behaviour):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), clips=[False, True])
-async def bursts(dut, gap, pause, clips):
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0, None])
+async def bursts(dut, gap, pause, amplitude):
     size, width = parameters(dut, "Size", "InWidth")
     shape = (5, size, 1)
-    await check(dut, corners(shape, width) if clips else uniform(shape, width, 0.3), gap=gap, pause=pause)
+    words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+    await check(dut, words, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
