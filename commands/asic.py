@@ -30,19 +30,19 @@ from typing import TYPE_CHECKING
 from tqdm import tqdm
 from vcd.reader import TokenKind, tokenize
 
-from commands import bench, gate_sim, memory_model, sim, synthesis, variables, yosys
+from commands import bench, gate_sim, memory_model, results, sim, synthesis, variables, yosys
 from commands import simulator as simulation
 from commands.gate_power import Power, power_of, typical
 from commands.gate_sim import Activity, Macro
 from commands.gates import Bit, Netlist, cell_models, from_yosys, part, structural
 from commands.liberty import Library, read
 from commands.memory_model import MACRO_BITS, Range
-from models.calibration import Calibration, load
-from models.configuration import Configuration
-from models.errors import InputError
-from models.frames import Frames, load_frames
-from models.latency import first_depth_latency
-from models.tactile_depth import tactile_depth, write_roms
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import Frames, load_frames
+from tactile_depth.latency import first_depth_latency
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import tactile_depth, write_roms
 
 if TYPE_CHECKING:
     from commands.report import Figure
@@ -83,15 +83,11 @@ def parse(arguments: list[str]) -> tuple[sim.Request, Options]:
     ------
     InputError
     """
-    own, rest = {}, []
-    for argument in arguments:
-        key, equals, value = argument.partition("=")
-        if equals and key in OWN:
-            own[key] = value
-        else:
-            rest.append(argument)
-    if not any(argument.startswith(("SOLVER=", "CONFIG=")) and argument[-1] != "=" for argument in rest):
-        rest.append("SOLVER=tridiagonal")
+    given = variables.given(arguments, (*OWN, *sim.ACCEPTED))
+    own = {key: value for key, value in given.items() if key in OWN}
+    rest = {key: value for key, value in given.items() if key not in OWN}
+    if not rest.keys() & {"SOLVER", "CONFIG"}:
+        rest["SOLVER"] = "tridiagonal"
 
     def number(key: str, default: float, low: float, high: float) -> float:
         try:
@@ -102,21 +98,21 @@ def parse(arguments: list[str]) -> tuple[sim.Request, Options]:
             raise InputError(f"{key}={own[key]}: accepted is a number from {low:g} to {high:g}")
         return value
 
-    library = Path(own.get("LIB") or DEFAULT_LIB)
-    if not own.get("LIB") and not library.exists():
-        raise InputError(f"LIB: {library} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
-    if own.get("LIB") and library.resolve() != DEFAULT_LIB and not own.get("NODE_NM"):
-        raise InputError(f"NODE_NM is missing: LIB={library} does not say its feature size, which memories go by")
     timed = tuple(name for name in own.get("TIMED", "").split(",") if name)
     for name in timed:
         if not (simulation.HDL / f"{name}.sv").exists():
             raise InputError(f"TIMED={name}: no such core in hdl/")
-    return sim.parse(rest), Options(
-        library,
-        number("NODE_NM", DEFAULT_NODE_NM, 1, 1000),
-        number("CLOCK_MHZ", DEFAULT_CLOCK_MHZ, 0.001, 10_000),
-        timed,
-    )
+    request = sim.parse([f"{key}={value}" for key, value in rest.items()])
+    node_nm = number("NODE_NM", DEFAULT_NODE_NM, 1, 1000)
+    clock_mhz = number("CLOCK_MHZ", DEFAULT_CLOCK_MHZ, 0.001, 10_000)
+    library = Path(own.get("LIB") or DEFAULT_LIB)
+    if not own.get("LIB") and not library.exists():
+        raise InputError(f"LIB: {library} is not installed: run `apt-get install qflow-tech-osu018`, or give a .lib")
+    if not library.is_file():
+        raise InputError(f"LIB={library}: no such file: give a Liberty file (.lib)")
+    if own.get("LIB") and library.resolve() != DEFAULT_LIB and not own.get("NODE_NM"):
+        raise InputError(f"NODE_NM is missing: LIB={library} does not say its feature size, which memories go by")
+    return request, Options(library, node_nm, clock_mhz, timed)
 
 
 def check_tools() -> None:
@@ -529,13 +525,13 @@ def figure(report: dict) -> Figure:
     return Figure("asic", "In standard cells", text, report["command"], as_table(head, rows))
 
 
-def frame_of(request: sim.Request) -> tuple[Frames, Calibration, Configuration]:
-    calibration = load(request.calibration)
+def frame_of(request: sim.Request) -> tuple[Frames, Sensor, Configuration]:
+    calibration = sim.load_sensor(request)
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
     frames = load_frames(
         request.frames, (request.rows, request.columns), request.reference, request.seed, request.press
     )
-    calibration = calibration.on_grid(frames.pixel_scale, frames.reference)
+    calibration = calibration.on_grid(frames)
     return frames, calibration, sim.configure(request, calibration)
 
 
@@ -550,13 +546,8 @@ def run(request: sim.Request, options: Options, command: str) -> int:
         request.out
         or simulation.ROOT / "build" / "asic" / f"{request.solver}-{request.boundary}-{shape}-{library.name}"
     )
-    if out.exists() and not out.is_dir():
-        raise InputError(f"OUT={out} is a file: give a folder")
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent)).resolve()
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(out, ["asic.json"])
+    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out)).resolve()
     period_ns = 1000 / options.clock_mhz
     kept = False
     try:
@@ -647,7 +638,6 @@ def run(request: sim.Request, options: Options, command: str) -> int:
         }
         result = work / "asic.json"
         result.write_text(json.dumps(report, indent=1) + "\n")
-        out.mkdir(exist_ok=True)
         os.replace(result, out / "asic.json")
         kept = bool(activity.wrong)
     except RuntimeError:

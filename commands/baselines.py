@@ -4,7 +4,7 @@
 The same 2-D solve (divergence in, depth out, single precision) on the same frames, the contacts of the bench in turn,
 in scipy, ducc0, pyFFTW and PyTorch, on one core and on all, and on CUDA where there is a device, the frames already on
 it. And the tridiagonal solver's method on the CPU: ducc0 along the rows, Thomas's algorithm by numba down the columns.
-Every result is compared with models/reference.py before it is timed: WARM_UPS solves, then RUNS that count, or as many
+Every result is checked by tactile_depth.reference before it is timed: WARM_UPS solves, then RUNS that count, or as many
 as there is time for. Each method is timed in a process of its own, so that none runs beside the threads of another.
 
 Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a result is wrong,
@@ -20,9 +20,8 @@ import json
 import math
 import multiprocessing
 import os
-import shutil
+import signal
 import sys
-import tempfile
 import time
 from collections import defaultdict
 from collections.abc import Callable, Sequence
@@ -38,21 +37,22 @@ import numpy as np
 import scipy.fft
 from tqdm import tqdm
 
-from commands import markdown, variables
+from commands import markdown, results, variables
 from commands import simulator as simulation
 from commands.machine import machine
 from commands.tune import CLOCK_MHZ
-from models import reference
-from models.calibration import synthetic
-from models.configuration import COLUMNS, Configuration
-from models.divergence import divergence
-from models.errors import InputError
-from models.latency import last_pixel_to_first_depth
-from models.scenes import render
+from tactile_depth import reference
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.scenes import render
+from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
+RESULTS = ("baselines.json", "baselines.png")
 DEFAULT_OUT = simulation.ROOT / "build" / "baselines"
 GRIDS = (64, 128, 256, 512)
 SCENE = "bench"
@@ -149,7 +149,7 @@ def with_pyfftw(size: int, threads: int) -> Prepared:
 
 
 def with_tridiagonal(size: int, threads: int) -> Prepared:
-    """DST along the rows, Thomas's algorithm down the columns: models/tridiagonal_solver.py in floats."""
+    """DST along the rows, Thomas's algorithm down the columns: the tridiagonal solver in floats."""
     import numba
     from ducc0.fft import dst
 
@@ -354,7 +354,12 @@ def in_own_process(job: Job) -> list[dict[str, Any]]:
     before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(job.threads)))
     try:
-        with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        with ProcessPoolExecutor(
+            1,
+            mp_context=multiprocessing.get_context("spawn"),
+            initializer=signal.signal,
+            initargs=(signal.SIGINT, signal.SIG_DFL),  # ended without a word
+        ) as pool:
             return pool.submit(measure, job).result()
     except BrokenProcessPool:
         return [{"problem": "it crashed"} for _ in job.scenes]
@@ -466,7 +471,7 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
     wrong = [row for row in rows if row.get("problem") == "wrong result"]
     if wrong:
         row = wrong[0]
-        raise RuntimeError(
+        raise variables.Mismatch(
             f"{row['method']} at {row['grid']}, {row['threads']} threads, is {row['error_percent']:.2g} % of peak from "
             f"the reference: at most {TOLERANCE_PERCENT:g} is right"
         )
@@ -637,27 +642,19 @@ def run(request: Request) -> None:
 
     Raises
     ------
-    InputError, RuntimeError
+    InputError, Mismatch, RuntimeError
     """
-    try:
-        request.out.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=".baselines-", dir=request.out))
-    except OSError as error:
-        raise InputError(f"OUT={request.out} cannot be written ({error.strerror}): give a folder that can") from error
-    try:
+    with results.workspace(request.out, RESULTS) as work:
         document, rows = measure_all(request)
         print(show(document))
         (work / "baselines.json").write_text(json.dumps(document, indent=1) + "\n")
         plot(work / "baselines.png", document, rows)
-        for file in work.iterdir():
-            os.replace(file, request.out / file.name)
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
+        results.replace(work, RESULTS, request.out)
     print(f"results: {os.path.relpath(request.out)}")
 
 
 def main() -> None:
-    with variables.reported("baselines", "interrupted; nothing was written"):
+    with variables.reported("baselines", "nothing was written"):
         run(parse(sys.argv[1:]))
 
 

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from commands import simulator as simulation
-from models.calibration import Calibration
-from models.configuration import Configuration
-from models.tactile_depth import top_parameters, write_roms
+from tactile_depth.configuration import Configuration
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 BENCH = "frame_bench"
 KINDS = {"pixel": 0, "idle": 1, "sink": 2, "source": 3, "reset": 4, "arm": 5}
@@ -107,7 +107,7 @@ def build(simulator: str, config: Configuration, waves: bool = False) -> Path:
 def play(
     simulator: str,
     config: Configuration,
-    calibration: Calibration,
+    calibration: Sensor,
     entries: np.ndarray | Sequence[int],
     folder: Path,
     *,
@@ -120,7 +120,7 @@ def play(
     floor: np.ndarray | None = None,
 ) -> Played:
     """Play entries in `folder`, from reset on, with `registers` written; then read the registers. `floor`: of
-    `models.tactile_depth`.
+    `tactile_depth.tactile_depth`.
 
     It ends when the file does and `total_frames` have left, and fails after so many `clocks`.
     """

@@ -20,17 +20,17 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands import sim, variables
+from commands import results, sim, sim_table, variables
 from commands import simulator as simulation
-from models.calibration import Calibration, load
-from models.certificate import Node, certify, slope_response
-from models.configuration import GRADIENT_MODELS, Configuration
-from models.errors import InputError
-from models.frames import Frames, load_frames
-from models.gradient_lookup import gradient_codes
-from models.round_saturate import Monitor
-from models.tactile_depth import tactile_depth
+from tactile_depth.certificate import Node, certify, slope_response
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.frames import Frames, camera_scale
+from tactile_depth.gradient.gradient_lookup import gradient_codes
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import tactile_depth
 
+RESULTS = ("worst.npy", "certificate.json")
 BATCH = 8  # frames that the model runs at a time
 ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: tests/test_dst_forward.py
 
@@ -72,9 +72,7 @@ class Peaks(Monitor):
         self.clips[node][now] |= (high >= limit) | (low < -limit)
 
 
-def worst_frames(
-    nodes: list[Node], calibration: Calibration, config: Configuration
-) -> tuple[np.ndarray, list[Attempt]]:
+def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) -> tuple[np.ndarray, list[Attempt]]:
     """For each node the frame that drives it furthest: every pixel takes the colour whose slopes add the most.
 
     Returns
@@ -211,7 +209,7 @@ class Streamed:
     differences: list[str]
 
 
-def stream(request: sim.Request, config: Configuration, calibration: Calibration, frames: np.ndarray) -> Streamed:
+def stream(request: sim.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:
     """Send uint8 frames (frames, rows, columns, 3) through the RTL as often as the request says."""
     labels = tuple(str(index) for index in range(len(frames)))
     monitor = Monitor()
@@ -220,8 +218,8 @@ def stream(request: sim.Request, config: Configuration, calibration: Calibration
     with tempfile.TemporaryDirectory() as folder:
         played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, Path(folder))
     codes = played.codes.reshape(request.repeat, *model.shape)
-    report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim.measure(played)}
-    differences = sim.check_registers(played.registers, report, request.stalls)
+    report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim_table.measure(played)}
+    differences = sim_table.check_registers(played.registers, report, request.stalls)
     exact = bool((codes == model).all())
     if config.solver == "tridiagonal":  # it puts the bottom row out first
         codes = codes[..., ::-1, :]
@@ -232,11 +230,10 @@ def run(request: sim.Request, rtl: bool = True) -> int:
     """Everything after parsing; returns the exit status."""
     if rtl:
         simulation.check(request.simulator)
-    calibration = load(request.calibration)
+    calibration = sim.load_sensor(request)
     grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
-    scene = load_frames(request.frames, (grid.rows, grid.columns), None, request.seed, request.press)
     # It holds for all slopes, whatever the colours: they are taken as a table without a reference reads them.
-    calibration = calibration.on_grid(scene.pixel_scale)
+    calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
     pixel_pitch_mm = calibration.pixel_pitch_mm
     config = sim.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
     shape = f"{config.rows}x{config.columns}"
@@ -244,10 +241,7 @@ def run(request: sim.Request, rtl: bool = True) -> int:
     if request.depth_range_mm == math.inf:
         name += "-worst"
     out = request.out or simulation.ROOT / "build" / "certify" / name
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(out, RESULTS)  # refused before minutes of work
 
     with tqdm(
         total=1.0,
@@ -265,7 +259,6 @@ def run(request: sim.Request, rtl: bool = True) -> int:
         print(cost_of_worst(config, pixel_pitch_mm))
 
     frames, attempts = worst_frames(nodes, calibration, config)
-    np.save(out / "worst.npy", frames)
     peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
     for peaks.first in tqdm(range(0, len(frames), BATCH), desc="model", leave=False, disable=None, delay=3):
         tactile_depth(frames[peaks.first : peaks.first + BATCH], calibration, config, peaks)
@@ -295,7 +288,10 @@ def run(request: sim.Request, rtl: bool = True) -> int:
         "rtl": rtl,
         "faults": faults,
     }
-    (out / "certificate.json").write_text(json.dumps(document, indent=1) + "\n")
+    with results.workspace(out, RESULTS) as work:
+        np.save(work / "worst.npy", frames)
+        (work / "certificate.json").write_text(json.dumps(document, indent=1) + "\n")
+        results.replace(work, RESULTS, out)
     for fault in faults:
         print(fault)
     print(f"results: {os.path.relpath(out)}")
@@ -324,12 +320,11 @@ def _record(node: Node, attempts: list[Attempt]) -> dict:
 
 
 def main() -> None:
-    arguments = [argument for argument in sys.argv[1:] if not argument.startswith("RTL=")]
-    rtl = [argument.partition("=")[2] for argument in sys.argv[1:] if argument.startswith("RTL=")]
     with variables.reported("certify"):
-        if any(value not in ("", "0", "1") for value in rtl):
-            raise InputError(f"RTL={rtl[-1]}: accepted are 0 and 1")
-        sys.exit(run(sim.parse(arguments), "0" not in rtl))
+        given = variables.given(sys.argv[1:], ("RTL", *sim.ACCEPTED))
+        rtl = bool(variables.number(given, "RTL", 1, 0, 1))
+        given.pop("RTL", None)
+        sys.exit(run(sim.parse([f"{key}={value}" for key, value in given.items()]), rtl))
 
 
 if __name__ == "__main__":

@@ -19,14 +19,16 @@ import shutil
 import subprocess
 import sys
 import time
-import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+import tomllib
+
 from commands import simulator as simulation
+from commands import variables
 from commands.mutants import MANY
 
 DATA = simulation.ROOT / "build" / "coverage"
@@ -227,8 +229,17 @@ def functional() -> tuple[str, list[str]]:
 
 
 def main() -> None:
+    with variables.reported("coverage"):
+        given = variables.given(sys.argv[1:], ("TESTS",))
+        failed = run(bool(variables.number(given, "TESTS", 1, 0, 1)))
+        if failed:
+            raise variables.Mismatch("; ".join(failed))
+
+
+def run(tests: bool) -> list[str]:
+    """Run the tests, or take the data of the last run; print the table and return the gates that are missed."""
     begun = time.monotonic()
-    failed = [] if sys.argv[1:] == ["report"] else ["the tests failed"] * bool(run_tests())
+    failed = ["the tests failed"] * bool(tests and run_tests())
     points: Counter[Point] = Counter()
     for path in DATA.glob("*/*/run-*/coverage.dat"):
         with path.open(errors="replace") as lines:
@@ -244,7 +255,7 @@ def main() -> None:
     if not points:
         failed.append("no coverage data")
     print(f"coverage: {time.monotonic() - begun:.0f} s, " + ("all gates met" if not failed else "FAILED:"))
-    sys.exit("\n".join(failed) or None)
+    return failed
 
 
 if __name__ == "__main__":

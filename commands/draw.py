@@ -9,25 +9,39 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from models.frames import Frames
+from commands.flags import Flags
+from tactile_depth.frames import Frames
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
+from matplotlib.colors import to_rgb
 
 FRAMES_DRAWN = 6
 UM_PER_MM = 1000
 
 
 def draw_depth(
-    path: Path, frames: Frames, depth: np.ndarray, reference: np.ndarray, pixel_pitch_mm: float, title: str
+    path: Path,
+    frames: Frames,
+    depth: np.ndarray,
+    reference: np.ndarray,
+    pixel_pitch_mm: float,
+    title: str,
+    differing: np.ndarray,
+    flagged: Flags,
 ) -> None:
-    """Input, depth, reference and error side by side, one row for each of the first frames.
+    """Draw input, depth, reference and error side by side, one row for each of the first frames.
+
+    Frames in which codes differ from the model come before others, and a red square marks each of these codes. The
+    input is painted over where it is dark and where slopes are outside the calibrated range.
 
     Parameters
     ----------
     depth, reference : float array (frames, rows, cols), mm
+    differing : bool array (frames, rows, cols)
     """
-    count = min(len(depth), FRAMES_DRAWN)
+    shown = sorted(np.argsort(~differing.any(axis=(1, 2)), kind="stable")[:FRAMES_DRAWN])
+    count = len(shown)
     rows, columns = depth.shape[1:]
     extent = (0, columns * pixel_pitch_mm, rows * pixel_pitch_mm, 0)
     # A layout by hand, since matplotlib's own takes longer than all else. Between are the scales, and room for numbers.
@@ -38,36 +52,59 @@ def draw_depth(
     figure.subplots_adjust(left=0.07, right=0.95, bottom=0.6 / height, top=1 - 0.75 / height, wspace=0.13, hspace=0.12)
     figure.suptitle(title, y=1 - 0.15 / height)
     look = {"extent": extent, "interpolation": "nearest"}
-    for row, label, pixels, ours, double in zip(axes, frames.labels, frames.pixels, depth, reference, strict=False):
+    for row, index in zip(axes, shown, strict=True):
+        ours, double = depth[index], reference[index]
         top = max(float(double.max()), 1e-9)
         bottom = min(float(double.min()), 0.0)
         error = (ours - double) * UM_PER_MM
         limit = max(float(np.abs(error).max()), 1e-9)
-        row[0].imshow(pixels, **look)
+        row[0].imshow(painted(frames.pixels[index], flagged, index), **look)
         row[1].imshow(ours, cmap="cividis", vmin=bottom, vmax=top, **look)
         scales = (
             ("mm", row[3], row[2].imshow(double, cmap="cividis", vmin=bottom, vmax=top, **look)),
             ("um", row[6], row[5].imshow(error, cmap="PuOr", vmin=-limit, vmax=limit, **look)),
         )
-        for unit, place, shown in scales:
-            figure.colorbar(shown, cax=place)
+        for unit, place, image in scales:
+            figure.colorbar(image, cax=place)
             place.set_title(unit, fontsize="medium", loc="left")
-        row[0].set_ylabel(f"{label}\nmm")
+        down, across = (np.argwhere(differing[index]).T + 0.5) * pixel_pitch_mm
+        row[1].plot(across, down, "s", color="red", markersize=4, fillstyle="none")
+        row[0].set_ylabel(f"{frames.labels[index]}\nmm")
         row[4].set_axis_off()
         for axis in row[[1, 2, 5]]:
             axis.tick_params(labelleft=False)
+    marked = "; red: differs" if differing.any() else ""
     for axis, name in zip(
         axes[0, [0, 1, 2, 5]],
-        ("input", "depth, from the RTL", "reference, double precision", "depth - reference"),
+        ("input", "depth (RTL)" + marked, "reference, double precision", "depth - reference"),
         strict=True,
     ):
         axis.set_title(name)
     for axis in axes[:-1, [0, 1, 2, 5]].ravel():
         axis.tick_params(labelbottom=False)
+    notes = [f"{colour}: {what}" for colour, what, mask in _paints(flagged) if mask.any()]
     if len(depth) > count:
-        figure.supxlabel(f"the first {count} of {len(depth)} frames", y=0.1 / height)
+        which = "frames with differing codes and others" if differing.any() else "the first frames"
+        notes.append(f"{which}: {count} of {len(depth)}")
+    figure.supxlabel("; ".join(notes), y=0.1 / height, fontsize="medium")
     figure.savefig(path, dpi=80)
     plt.close(figure)
+
+
+def _paints(flagged: Flags) -> list[tuple[str, str, np.ndarray]]:
+    """Colour and meaning of each kind of flag, and where it is up."""
+    return [
+        ("orange", "slope outside the calibrated range", flagged.outside),
+        ("magenta", "dark, colour taken from the neighbour", flagged.dark),
+    ]
+
+
+def painted(frame: np.ndarray, flagged: Flags, index: int) -> np.ndarray:
+    """Return a frame, uint8 (rows, cols, 3), with its flagged pixels in the colours of their flags."""
+    picture = frame.copy()
+    for colour, _, mask in _paints(flagged):
+        picture[mask[index]] = np.round(255 * np.array(to_rgb(colour)))
+    return picture
 
 
 @dataclass(frozen=True)

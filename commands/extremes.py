@@ -22,21 +22,23 @@ from scipy.fft import dst, idst
 from tqdm import tqdm
 
 from commands import certify as certificate
-from commands import sim, variables
+from commands import results, sim, variables
 from commands import simulator as simulation
-from models import reference, spectral_solver
-from models.calibration import load
-from models.certificate import certify
-from models.configuration import COLUMNS, ROWS, Configuration
-from models.errors import InputError
-from models.orders import bit_reversed, makhoul
-from models.register_map import REGISTERS
-from models.round_saturate import Monitor
-from models.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
-from models.sdf_fft import halvings, twiddle_stages
-from models.tactile_depth import tactile_depth
-from models.twiddle_multiply import coefficient_gain
+from tactile_depth import reference
+from tactile_depth.certificate import certify
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.poisson import spectral_solver
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
+from tactile_depth.sensor import load
+from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.transform.orders import bit_reversed, makhoul
+from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
+from tactile_depth.transform.twiddle_multiply import coefficient_gain
 
+RESULTS = ("extremes.json", "extremes.csv", "compliance.csv")
 CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
@@ -495,10 +497,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     simulation.check(simulator)
     for solver in COLUMNS:
         Configuration(columns=size, solver=solver)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(out, RESULTS)  # refused before minutes of work
     plan = [
         (extreme, solver)
         for solver in COLUMNS
@@ -529,7 +528,9 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     print(table(rows))
     print()
     print(compliance_table(measured))
-    write(out, rows, measured)
+    with results.workspace(out, RESULTS) as work:
+        write(work, rows, measured)
+        results.replace(work, RESULTS, out)
     for fault in found:
         print(fault)
     print(f"results: {os.path.relpath(out)}")

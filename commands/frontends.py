@@ -13,21 +13,22 @@ import shutil
 import sys
 import time
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from commands import simulator as simulation
-from commands import yosys
-from models import tridiagonal_solver
-from models.calibration import synthetic
-from models.configuration import Configuration
-from models.flat_field import unit_gains
-from models.rom_files import write_floor, write_gains, write_quadratic, write_words
-from models.spectral_divide import reciprocals
-from models.tactile_depth import top_parameters, write_roms
+from commands import variables, yosys
+from commands.signals import threads
+from tactile_depth.calibration.flat_field import unit_gains
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.poisson import tridiagonal_solver
+from tactile_depth.poisson.spectral_divide import reciprocals
+from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 FOLDER = simulation.ROOT / "build" / "frontends"
 TIMEOUT_S = 900
@@ -192,20 +193,29 @@ def prove(case: Case, folder: Path = FOLDER) -> tuple[str, float]:
     write_words(place / "rom.hex", (37 * i % (1 << ROM["Width"]) for i in range(ROM["Depth"])), ROM["Width"])
     write_gains(place, unit_gains(case.config))
     write_floor(place, np.arange(8) - 4, FLOOR["Width"])
-    write_quadratic(place, np.arange(36).reshape(2, 3, 6), QUADRATIC["WordWidth"])
+    half = 1 << QUADRATIC["WordWidth"] - 1
+    write_quadratic(place, np.arange(36).reshape(2, 3, 6) % (2 * half) - half, QUADRATIC["WordWidth"])
     problem = yosys.run(prepare(case.core, simulation.sources(), case.parameters, place), timeout_s=TIMEOUT_S)
     return problem, time.monotonic() - begin
 
 
 def main() -> None:
-    wanted = sys.argv[1:]  # names of cores; none: all
-    chosen = [case for case in cases() if not wanted or case.core in wanted]
+    with variables.reported("frontends"):
+        core = variables.given(sys.argv[1:], ("CORE",)).get("CORE")
+        known = sorted({case.core for case in cases()})
+        if core not in (None, *known):
+            raise InputError(f"CORE={core} is unknown: accepted are {', '.join(known)}")
+        sys.exit(run([case for case in cases() if core in (None, case.core)]))
+
+
+def run(chosen: list[Case]) -> int:
+    """Compare both front ends on these cases; returns the exit status."""
     cores = {path.stem for path in simulation.sources() if not path.stem.endswith("_pkg")}
     unknown = cores - {case.core for case in cases()} - WITHIN_THE_WHOLE
     if unknown:
-        sys.exit(f"make frontends: no case for {', '.join(sorted(unknown))}")
+        raise variables.Mismatch(f"no case for {', '.join(sorted(unknown))}")
     begin, failed = time.monotonic(), []
-    with ThreadPoolExecutor(max_workers=2) as pool:
+    with threads(2) as pool:
         for case, (problem, seconds) in zip(chosen, pool.map(prove, chosen), strict=True):
             print(
                 f"{'DIFFERS' if problem else 'agree':8} {seconds:6.1f} s  {case.name}  {problem}".rstrip(), flush=True
@@ -214,7 +224,7 @@ def main() -> None:
                 failed.append(case.name)
     verdict = f"{len(chosen) - len(failed)} of {len(chosen)} structures read alike by both front ends"
     print(f"{verdict}, {time.monotonic() - begin:.0f} s" + (f"; not: {', '.join(failed)}" if failed else ""))
-    sys.exit(bool(failed))
+    return variables.MISMATCH if failed else variables.EQUAL
 
 
 if __name__ == "__main__":

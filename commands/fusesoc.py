@@ -11,11 +11,12 @@ from pathlib import Path
 
 import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))  # FuseSoC runs it by its path
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 
-from commands import sim, synth
-from models.errors import InputError
-from models.tactile_depth import top_parameters, write_roms
+from commands import sim, synth  # noqa: E402
+from tactile_depth.errors import InputError  # noqa: E402
+from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
 
 
 def generate(description: Path, folder: Path) -> None:

@@ -12,13 +12,11 @@ inputs are kept in build/fuzz/<reader>; `make fuzz READER=<reader> REPLAY=<file>
 from __future__ import annotations
 
 import inspect
-import io
 import json
 import os
 import re
 import resource
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -26,199 +24,36 @@ import time
 import traceback
 import warnings
 import zipfile
-import zlib
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from functools import cache
+from concurrent.futures import as_completed
 from pathlib import Path
 
 import atheris
 import numpy as np
 from tqdm import tqdm
 
-from commands import calibrate, sim
+from commands import sim
 from commands import simulator as simulation
 from commands import variables as make_variables
-from commands.calibrate import read_presses
+from commands.fuzz_files import GOOD_PNG, MEMORY_MB, Bytes, damaged, good_jpeg, npy, npz, picture
+from commands.signals import threads
 from commands.sim import Request, parse
-from models import calibration as calibrations
-from models import frames as pictures
-from models.calibration import Calibration, load
-from models.configuration import Configuration
-from models.errors import InputError
-from models.frames import Frames, load_frames
-from models.quadratic_gradient import polynomial_words
+from tactile_depth import calibration_file, press_folder
+from tactile_depth import frames as pictures
+from tactile_depth import presses as ball_presses
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import Frames, load_frames
+from tactile_depth.gradient.quadratic_gradient import polynomial_words
+from tactile_depth.press_folder import read_presses
+from tactile_depth.presses import gather, to_grid
+from tactile_depth.sensor import Sensor, load
 
 FOLDER = simulation.ROOT / "build" / "fuzz"
 SECONDS_A_RUN = 10
-MEMORY_MB = 256  # more than a reader may take beyond what it has after the first runs
-BOMB_MB = 2 * MEMORY_MB
 LONGEST = 4096  # bytes of the fuzzer's input
 WORKERS = 2
 SIZE = (16, 16)
-
-Bytes = atheris.FuzzedDataProvider
-
-
-# Files out of bytes.
-
-
-def whole_number(data: Bytes) -> int:
-    """Mostly small, at times on an edge of a machine word."""
-    kind = data.ConsumeIntInRange(0, 9)
-    if kind < 7:
-        return data.ConsumeIntInRange(0, 40)
-    if kind < 9:
-        return data.ConsumeIntInRange(0, 1 << 24)
-    edge = 1 << data.PickValueInList([15, 16, 31, 32, 62, 63, 64])
-    return data.PickValueInList([edge - 1, edge, -1, -edge])
-
-
-def chunk(kind: bytes, body: bytes) -> bytes:
-    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-
-
-CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of PNG's colour types
-CHUNKS = [b"tRNS", b"PLTE", b"gAMA", b"tEXt", b"zTXt", b"iTXt", b"iCCP", b"eXIf", b"acTL", b"fcTL", b"fdAT", b"pHYs"]
-
-
-def png(data: Bytes) -> bytes:
-    """A PNG with right checksums and any contents."""
-    width, height = (max(whole_number(data), 0) & 0xFFFFFFFF for _ in range(2))
-    if data.ConsumeIntInRange(0, 3):
-        width, height = 16 + width % 8, 16 + height % 8
-    elif data.ConsumeIntInRange(0, 3) == 0:
-        width, height = 1 << data.ConsumeIntInRange(12, 20), 16
-    depth = data.PickValueInList([8, 8, 8, 1, 2, 4, 16, 0, 255])
-    colour = data.PickValueInList([2, 2, 6, 3, 0, 4, 1, 7])
-    interlace = data.PickValueInList([0, 0, 0, 1, 2])
-    out = b"\x89PNG\r\n\x1a\n"
-    out += chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, interlace))
-    if colour == 3 and data.ConsumeIntInRange(0, 7):
-        out += chunk(b"PLTE", bytes(range(48)))
-    for _ in range(data.ConsumeIntInRange(0, 2)):
-        kind = data.PickValueInList(CHUNKS)
-        body = data.ConsumeBytes(data.ConsumeIntInRange(0, 40))
-        if kind in (b"zTXt", b"iCCP"):
-            body = b"name\0\0" + zlib.compress(bytes(data.PickValueInList([10, 1 << 16, 1 << 24])))
-        out += chunk(kind, body)
-    row = (width * depth * CHANNELS.get(colour, 3) + 7) // 8 + 1
-    wanted = row * height
-    body = data.ConsumeBytes(data.ConsumeIntInRange(0, 200))
-    if wanted <= 1 << 26:
-        body = (body + bytes(wanted))[: wanted + data.PickValueInList([0, 0, 0, -1, 1])]
-    elif data.ConsumeBool():
-        body = bytes(1 << 24)
-    packed = zlib.compress(body, 1)
-    cut = data.PickValueInList([len(packed), len(packed), len(packed) // 2])
-    out += chunk(b"IDAT", packed[:cut])
-    if data.ConsumeIntInRange(0, 7):
-        out += chunk(b"IEND", b"")
-    return out
-
-
-DTYPES = [
-    "|u1",
-    "|u1",
-    "|u1",
-    "<f8",
-    "<f8",
-    "<f4",
-    "<f2",
-    ">f8",
-    "<f16",
-    "|i1",
-    "<i8",
-    "|O",
-    "|b1",
-    "<c16",
-    "<U4",
-    "|V3",
-    "<M8[s]",
-]
-
-
-def npy(data: Bytes, shapes: list[tuple[int, ...]], dtypes: list[str]) -> bytes:
-    """A .npy with a header of the right length and any contents."""
-    shape = data.PickValueInList([*shapes, *shapes, ()])
-    if data.ConsumeIntInRange(0, 2) == 0:
-        shape = tuple(whole_number(data) for _ in range(data.ConsumeIntInRange(0, 5)))
-    name = data.PickValueInList([*dtypes, *dtypes, *DTYPES])
-    order = data.PickValueInList(["False", "False", "True", "0"])
-    header = f"{{'descr': '{name}', 'fortran_order': {order}, 'shape': {shape}, }}"
-    kind = data.ConsumeIntInRange(0, 15)
-    if kind == 0:
-        header = data.ConsumeUnicodeNoSurrogates(60)
-    elif kind == 1:
-        header = "(" * data.PickValueInList([10, 200, 9000]) + header
-    elif kind == 2:
-        header = header.replace("descr", "descriptor")
-    elif kind == 3:
-        header = header.replace(f"'{name}'", "[('x', '|u1', (3,)), ('y', '<f8')]")
-    text = header.encode("utf-8", "replace") + b"\n"
-    version = data.PickValueInList([1, 1, 1, 2, 3, 0, 255])
-    length = struct.pack("<H" if version < 2 else "<I", len(text) % 65536)
-    try:
-        count = int(np.prod([max(s, 0) for s in shape], dtype=object)) * np.dtype(name).itemsize
-    except (TypeError, ValueError):
-        count = 64
-    body = data.ConsumeBytes(data.ConsumeIntInRange(0, 64))
-    if count <= 1 << 22:
-        body = (body + bytes(count))[: count + data.PickValueInList([0, 0, 0, -1, 7])]
-    return b"\x93NUMPY" + bytes([version, 0]) + length + text + body
-
-
-def damaged(data: Bytes, file: bytes) -> bytes:
-    """The file, or every second time one with bytes changed, cut off or inserted."""
-    for _ in range(data.ConsumeIntInRange(0, 1) * data.ConsumeIntInRange(1, 4)):
-        place = data.ConsumeIntInRange(0, len(file))
-        kind = data.ConsumeIntInRange(0, 3)
-        if kind == 0:
-            file = file[:place]
-        elif kind == 1:
-            file = file[:place] + data.ConsumeBytes(4) + file[place:]
-        else:
-            file = file[:place] + bytes([data.ConsumeIntInRange(0, 255)]) + file[place + 1 :]
-    return file
-
-
-@cache
-def bomb(member: str) -> bytes:
-    """A small archive with a member that is `BOMB_MB` large."""
-    count = BOMB_MB << 17
-    text = f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({count},), }}\n".encode()
-    store = io.BytesIO()
-    with zipfile.ZipFile(store, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
-        with archive.open(f"{member}.npy", "w") as file:
-            file.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text)
-            for _ in range(BOMB_MB):
-                file.write(bytes(1 << 20))
-        archive.writestr("pixel_pitch_mm.npy" if member == "gradient" else "gradient.npy", b"")
-    return store.getvalue()
-
-
-def npz(data: Bytes) -> bytes:
-    """An archive of arrays."""
-    if data.ConsumeIntInRange(0, 15) == 0:
-        return bomb(data.PickValueInList(["gradient", "pixel_pitch_mm"]))
-    bins = [(1 << b, 1 << b, 1 << b, 2) for b in (1, 2, 4)]
-    store = io.BytesIO()
-    with warnings.catch_warnings(), zipfile.ZipFile(store, "w") as archive:
-        warnings.simplefilter("ignore")  # a name may come twice
-        keys = ["gradient", "pixel_pitch_mm", "coefficients", "largest_slope", "model"]
-        for wanted in keys[: data.PickValueInList([2, 2, 4, 5])]:
-            name = data.PickValueInList([wanted, wanted, wanted, wanted, "other", f"../{wanted}", "pixel_pitch_mm"])
-            if wanted == "gradient":
-                content = npy(data, bins, ["<f8", "<f4", "<f2"])
-            elif wanted == "coefficients":
-                content = npy(data, [(2, 3, 6)], ["<f8", "<f4"])
-            elif wanted == "model":
-                content = npy(data, [()], ["<U3", "<U9"])
-            else:
-                content = npy(data, [()], ["<f8", "<i8", "<f4"])
-            method = data.PickValueInList([zipfile.ZIP_DEFLATED, zipfile.ZIP_STORED, zipfile.ZIP_LZMA])
-            archive.writestr(f"{name}{data.PickValueInList(['.npy', '.npy', '.npy', ''])}", content, method, 1)
-    return store.getvalue()
 
 
 # Readers: what is given to each, and what a valid result is.
@@ -239,9 +74,9 @@ def frames_npy(data: Bytes, folder: Path) -> None:
     good_frames(load_frames(str(path), SIZE))
 
 
-def frames_png(data: Bytes, folder: Path) -> None:
-    path = folder / data.PickValueInList(["frame.png", "frame.png", "frame", "frame.tif", "frame.gif"])
-    path.write_bytes(damaged(data, png(data)))
+def frames_picture(data: Bytes, folder: Path) -> None:
+    path = folder / data.PickValueInList(["frame.png", "frame.jpg", "frame", "frame.tif", "frame.gif"])
+    path.write_bytes(damaged(data, picture(data)))
     good_frames(load_frames(str(path), SIZE))
 
 
@@ -251,12 +86,12 @@ def frames_folder(data: Bytes, folder: Path) -> None:
     for _ in range(data.ConsumeIntInRange(0, 3)):
         name = data.PickValueInList(["", "", "7", "12", "\u00b2", "\u0663"])
         name = re.sub(r"[/\0]", "", name + data.ConsumeUnicodeNoSurrogates(8)) + data.PickValueInList(
-            [".png", ".png", ".PNG", ""]
+            [".png", ".jpg", ".PNG", ".JPEG", ""]
         )
         if name in ("", ".", "..") or (inside / name).exists():
             continue
         if data.ConsumeIntInRange(0, 15):
-            (inside / name).write_bytes(GOOD_PNG if data.ConsumeBool() else damaged(data, png(data)))
+            (inside / name).write_bytes(GOOD_PNG if data.ConsumeBool() else damaged(data, picture(data)))
         else:
             (inside / name).mkdir(exist_ok=True)
     good_frames(load_frames(str(inside), SIZE))
@@ -265,14 +100,14 @@ def frames_folder(data: Bytes, folder: Path) -> None:
 def frames_reference(data: Bytes, folder: Path) -> None:
     frame, reference = folder / "frame.png", folder / "reference.png"
     frame.write_bytes(GOOD_PNG)
-    reference.write_bytes(damaged(data, png(data)))
+    reference.write_bytes(damaged(data, picture(data)))
     good_frames(load_frames(str(frame), SIZE, str(reference)))
 
 
 def calibration(data: Bytes, folder: Path) -> None:
     path = folder / "sensor.npz"
     path.write_bytes(damaged(data, data.PickValueInList([npz, npz, npz, npz, npz, plain])(data)))
-    result: Calibration = load(str(path))
+    result: Sensor = load(str(path), camera_size=(240, 320))
     assert 0 < result.pixel_pitch_mm < float("inf")
     config = Configuration(columns=16, gradient_limit=result.gradient_limit)
     if result.gradient is not None:
@@ -284,6 +119,21 @@ def calibration(data: Bytes, folder: Path) -> None:
     if result.coefficients is not None:
         assert np.isfinite(result.coefficients).all()
         polynomial_words(result, config, result.pixel_pitch_mm)
+    camera = result.camera
+    assert camera is not None
+    assert min(camera.rows, camera.columns) > 0
+    assert camera.black_level == 0
+    assert camera.exposure_us is None or 0 < camera.exposure_us < float("inf")
+    assert set(result.fitted_slope) | set(result.height_errors) <= set(result.models)
+    assert all(0 < slope < float("inf") for slope in result.fitted_slope.values())
+    for error in result.height_errors.values():
+        assert 0 <= error.relative < float("inf")
+        assert error.presses >= 0
+    if result.lighting is not None:
+        result.check_lighting(REST)
+    result.save(path)
+    again = load(str(path))
+    assert (again.camera, again.height_errors) == (camera, result.height_errors)
     assert (result.gradient if result.model == "lut" else result.coefficients) is not None
 
 
@@ -301,13 +151,20 @@ def presses(data: Bytes, folder: Path) -> None:
             cells.append(data.PickValueInList(["12.5", "30", "-1", "nan", "inf", "1e400", "", '"', "x", "1_0"]))
         lines.append(",".join(cells))
     (folder / "presses.csv").write_bytes(damaged(data, "\n".join(lines).encode()))
-    rows, notes = read_presses(folder)
+    pressed, notes = read_presses(folder)
     assert all(note.isprintable() for note in notes)
-    for row in rows:
-        assert 0 < row.diameter_mm < float("inf")
-        if row.circle:
-            assert np.isfinite([row.circle.x, row.circle.y]).all()
-            assert 0 < row.circle.radius < (row.ball_radius or float("inf"))
+    for press in pressed:
+        assert 0 < press.diameter_mm < float("inf")
+        if press.circle:
+            assert np.isfinite(press.circle).all()
+            assert 0 < press.circle[2] < (press.ball_radius_px or float("inf"))
+    (folder / "1.png").write_bytes(GOOD_PNG)
+    (folder / "background.jpg").write_bytes(good_jpeg("RGB", 0, False, 0))
+    on_grid = to_grid(gather(folder), 0.5)
+    assert all(note.isprintable() for note in on_grid.notes)
+    for view in on_grid.views:
+        assert 0 < view.press.largest_slope < float("inf")
+        assert np.isfinite(view.press.slopes(on_grid.size)).all()
 
 
 KEYS = ["N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REPEAT", "SEED"]
@@ -362,15 +219,9 @@ def paths(data: Bytes, folder: Path) -> None:
 
 READERS: dict[str, Callable[[Bytes, Path], None]] = {
     read.__name__: read
-    for read in (frames_npy, frames_png, frames_folder, frames_reference, calibration, presses, variables, paths)
+    for read in (frames_npy, frames_picture, frames_folder, frames_reference, calibration, presses, variables, paths)
 }
-ROWS = b"".join(b"\0" + bytes(range(60)) for _ in range(20))
-GOOD_PNG = (
-    b"\x89PNG\r\n\x1a\n"
-    + chunk(b"IHDR", struct.pack(">IIBBBBB", 20, 20, 8, 2, 0, 0, 0))
-    + chunk(b"IDAT", zlib.compress(ROWS))
-    + chunk(b"IEND", b"")
-)
+REST = np.full((240, 320, 3), 100, np.uint8)
 
 
 # One reader, in a process of its own.
@@ -402,7 +253,7 @@ def attempt(reader: str, data: bytes, folder: Path) -> str:
 
 def guide() -> None:
     """Let the fuzzer see which branches of the readers are taken."""
-    for module in (calibrate, sim, calibrations, pictures, np.lib.format, zipfile):
+    for module in (sim, calibration_file, press_folder, ball_presses, pictures, np.lib.format, zipfile):
         for function in vars(module).values():
             if inspect.isfunction(function):
                 atheris.instrument_func(function)
@@ -461,6 +312,7 @@ def run(reader: str, seconds: int, seed: int) -> tuple[int, list[str]]:
 
 
 def main() -> None:
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # of the processes that fuzz a reader
     with make_variables.reported("fuzz"):
         given = make_variables.given(sys.argv[1:], ("MINUTES", "SEED", "READER", "REPLAY", "FUZZ"))
         readers = [given["READER"]] if "READER" in given else list(READERS)
@@ -470,16 +322,23 @@ def main() -> None:
             raise InputError(f"READER={given['READER']} is unknown: accepted are {', '.join(READERS)}")
         if "REPLAY" in given and ("READER" not in given or not Path(given["REPLAY"]).is_file()):
             raise InputError(f"REPLAY={given['REPLAY']}: give a file that is there, and READER, which is to read it")
+        sys.exit(campaign(given, readers, minutes, seed))
+
+
+def campaign(given: dict[str, str], readers: list[str], minutes: float, seed: int) -> int:
+    """Fuzz the readers, or replay one file; returns the exit status."""
     if "FUZZ" in given:
         fuzz(*json.loads(given["FUZZ"]))
     if "REPLAY" in given:
         file = Path(given["REPLAY"])
         problem = attempt(readers[0], file.read_bytes(), Path(tempfile.mkdtemp(prefix="fuzz-")))
-        sys.exit(problem or 0)
+        if problem:
+            raise make_variables.Mismatch(problem)
+        return make_variables.EQUAL
     seconds = max(1, round(60 * minutes * min(WORKERS, len(readers)) / len(readers)))
     begin, failed, total = time.monotonic(), [], 0
     with (
-        ThreadPoolExecutor(WORKERS) as pool,
+        threads(WORKERS) as pool,
         tqdm(total=round(60 * minutes), unit="s", disable=None, leave=False) as bar,
     ):
         pending = {pool.submit(run, reader, seconds, seed): reader for reader in readers}
@@ -493,9 +352,8 @@ def main() -> None:
             total += runs
     seconds = round(time.monotonic() - begin)
     print(f"fuzz: {total:,} runs of {len(readers)} readers, {len(failed)} failures, {seconds} s, SEED={seed}")
-    sys.exit(bool(failed))
+    return make_variables.MISMATCH if failed else make_variables.EQUAL
 
 
 if __name__ == "__main__":
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     main()

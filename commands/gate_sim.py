@@ -14,7 +14,7 @@ import numpy as np
 
 from commands.gates import Bit, Instance, Netlist, state
 from commands.liberty import Cell, boolean
-from models.errors import InputError
+from tactile_depth.errors import InputError
 
 SOURCE = Path(__file__).with_name("gate_sim.cpp")
 LARGEST_GATE = 6  # inputs

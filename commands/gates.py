@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from commands.liberty import Cell, Library, boolean
-from models.errors import InputError
+from tactile_depth.errors import InputError
 
 Bit = int | str  # a net's number, or a constant: "0", "1", "x"
 

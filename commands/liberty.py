@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from models.errors import InputError
+from tactile_depth.errors import InputError
 
 LARGEST = 400_000_000  # characters
 TOKEN = re.compile(r'"[^"]*"|[{}();:,]|[^\s{}();:,"]+')

@@ -13,23 +13,22 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from commands import fpga
+from commands import fpga, variables
 from commands import simulator as simulation
 from commands import yosys as yosys_runner
-from models.auto_zero import no_floor
-from models.calibration import load
-from models.configuration import COLUMNS, POLYNOMIAL, Configuration
-from models.errors import InputError
-from models.flat_field import unit_gains
-from models.rom_files import write_floor, write_gains, write_quadratic, write_words
-from models.tactile_depth import top_parameters, write_roms
+from commands.signals import threads
+from tactile_depth.calibration.auto_zero import no_floor
+from tactile_depth.calibration.flat_field import unit_gains
+from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
+from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
+from tactile_depth.sensor import load
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 GRIDS = (16, 128, 512)
 TOP = "tactile_depth"
@@ -204,15 +203,19 @@ def checks() -> list[Check]:
 
 
 def main() -> None:
+    with variables.reported("lint"):
+        variables.given(sys.argv[1:], ())
+        for simulator in simulation.SIMULATORS:
+            simulation.check(simulator)
+        sys.exit(run())
+
+
+def run() -> int:
+    """Run every check and print what it finds; returns the exit status."""
     begin = time.monotonic()
-    try:
-        simulation.check("verilator")
-        simulation.check("icarus")
-    except InputError as error:
-        sys.exit(f"make lint: {error}")
     found = checks()
     failed: list[str] = []
-    with ThreadPoolExecutor(max_workers=2) as pool:
+    with threads(2) as pool:
         pending = [(check, pool.submit(check.run)) for check in found]
         for tool in dict.fromkeys(check.tool for check in found):
             results = [(check, future.result()) for check, future in pending if check.tool == tool]
@@ -226,7 +229,7 @@ def main() -> None:
         f"lint: {len(found) - len(failed)} checks clean, {time.monotonic() - begin:.0f} s"
         + (f", {len(failed)} not: {', '.join(failed)}" if failed else "")
     )
-    sys.exit(bool(failed))
+    return variables.MISMATCH if failed else variables.EQUAL
 
 
 if __name__ == "__main__":

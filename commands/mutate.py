@@ -28,7 +28,7 @@ from tqdm import tqdm
 from commands import equivalence, mutants, protocols, variables
 from commands import simulator as simulation
 from commands.equivalence import EQUIVALENT, Protocol, Spans, settle
-from models.errors import InputError
+from tactile_depth.errors import InputError
 
 OUT = simulation.ROOT / "build" / "mutate"
 LEAF, WHOLE = 100.0, 95.0  # per cent of the mutants that are not equivalent
@@ -244,6 +244,9 @@ def row(outcome: Outcome) -> str:
     return f"{outcome.core:<22}{cells}  {', '.join(notes)}".rstrip()
 
 
+RANGES = {"MUTANTS": (1, 100_000), "SEED": (0, 10**9), "JOBS": (1, 1000), "SECONDS": (1, 86_400)}
+
+
 def parse(arguments: list[str]) -> dict[str, str]:
     choices = {
         "CORE": ",".join(CORES),
@@ -253,9 +256,8 @@ def parse(arguments: list[str]) -> dict[str, str]:
         "SECONDS": "60",
     }
     choices |= variables.given(arguments, choices)
-    for name, value in choices.items():
-        if name != "CORE" and not value.isdecimal():
-            raise InputError(f"{name}={value}: accepted is a whole number")
+    for name, (low, high) in RANGES.items():
+        variables.number(choices, name, None, low, high)
     return choices
 
 
@@ -268,18 +270,20 @@ def main() -> None:
                 raise InputError(f"CORE={name} is unknown: accepted are {', '.join(CORES)}")
         modules = {path.stem for path in simulation.sources()}
         if modules != CORES.keys() | LEFT_OUT.keys():
-            raise InputError(
+            raise variables.Mismatch(
                 f"commands/mutate.py does not list what is in hdl/: {modules ^ (CORES.keys() | LEFT_OUT.keys())}"
             )
+        sys.exit(run(names, choices))
+
+
+def run(names: list[str], choices: dict[str, str]) -> int:
+    """Mutate each core and print a row of it; returns the exit status."""
     OUT.mkdir(parents=True, exist_ok=True)
     numbers = {name.lower(): int(choices[name]) for name in ("SEED", "JOBS", "SECONDS")}
     outcomes = []
     print(HEAD)
     for name in names:
-        try:
-            outcomes.append(mutate(name, CORES[name], int(choices["MUTANTS"]), **numbers))
-        except RuntimeError as error:
-            sys.exit(f"make mutate: {name}: {error}")
+        outcomes.append(mutate(name, CORES[name], int(choices["MUTANTS"]), **numbers))
         print(row(outcomes[-1]), flush=True)
         for survivor in outcomes[-1].survivors:
             if survivor["verdict"] != EQUIVALENT:
@@ -290,7 +294,7 @@ def main() -> None:
         f"mutate: {sum(o.mutants for o in outcomes):,} mutants of {len(outcomes)} cores"
         + (f", missed: {', '.join(missed)}" if missed else "")
     )
-    sys.exit(bool(missed))
+    return variables.MISMATCH if missed else variables.EQUAL
 
 
 if __name__ == "__main__":

@@ -22,10 +22,10 @@ from tqdm import tqdm
 
 from commands import mutants, mutate, variables
 from commands import simulator as simulation
-from models.calibration import synthetic
-from models.configuration import COLUMNS, Configuration
-from models.errors import InputError
-from models.tactile_depth import top_parameters, write_roms
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 OUT = simulation.ROOT / "build" / "netlists"
 WHOLE = "tactile_depth"
@@ -191,9 +191,7 @@ def parse(arguments: list[str]) -> tuple[list[str], int]:
     for name in names:
         if name not in mutate.CORES:
             raise InputError(f"CORE={name} is unknown: accepted are {', '.join(mutate.CORES)}")
-    if not given["SEED"].isdecimal():
-        raise InputError(f"SEED={given['SEED']}: accepted is a whole number")
-    return names, int(given["SEED"])
+    return names, variables.number(given, "SEED", 1, 0, 10**9)
 
 
 def main() -> None:
@@ -210,11 +208,16 @@ def main() -> None:
                 results.append(run(case, seed))
                 tqdm.write(row(results[-1]))
                 sys.stdout.flush()
+        sys.exit(verdict(results))
+
+
+def verdict(results: list[Result]) -> int:
+    """Print whether all netlists agree; returns the exit status."""
     wrong = [result.case.name for result in results if result.failed or not result.tests]
     tests = sum(result.tests for result in results)
     print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")
     print(f", not as the RTL: {', '.join(wrong)}" if wrong else ": all as the RTL")
-    sys.exit(bool(wrong))
+    return variables.MISMATCH if wrong else variables.EQUAL
 
 
 if __name__ == "__main__":

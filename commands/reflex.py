@@ -21,7 +21,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -31,21 +30,23 @@ import numpy as np
 from scipy.stats import mannwhitneyu
 from tqdm import tqdm
 
-from commands import bench, markdown, reflex_pictures, variables
+from commands import bench, markdown, reflex_pictures, results, variables
 from commands import simulator as simulation
 from commands.machine import machine
+from commands.signals import threads
 from commands.sim import CONTACT_THRESHOLD
 from commands.tune import CLOCK_MHZ
-from models import reference
-from models.calibration import SYNTHETIC_PIXEL_PITCH_MM, Calibration, load
-from models.configuration import COLUMNS, Configuration
-from models.errors import InputError
-from models.latency import last_pixel_to_first_depth
-from models.scenes import SENSOR_WIDTH_MM, Press, render, scene_pixel_pitch_mm
-from models.tactile_depth import tactile_depth
+from tactile_depth import reference
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.scenes import SENSOR_WIDTH_MM, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load
+from tactile_depth.tactile_depth import tactile_depth
 
+RESULTS = ("reflex.json", "reflex.png")
 DEFAULT_OUT = simulation.ROOT / "build" / "reflex"
-PIN = "ball"  # its round tip, of models/scenes.py
+PIN = "ball"  # its round tip, of models/tactile_depth/scenes.py
 STOP_MM = 1.0  # the press ends so deep
 DECIDING_CLOCKS = 1  # from the deciding depth's leaving to `contact`
 
@@ -239,8 +240,8 @@ def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
             return
 
 
-def calibration_on(size: int) -> Calibration:
-    return load("synthetic").on_grid(scene_pixel_pitch_mm(size) / SYNTHETIC_PIXEL_PITCH_MM)
+def calibration_on(size: int) -> Sensor:
+    return load("synthetic").scaled(scene_pixel_pitch_mm(size) / SYNTHETIC_PIXEL_PITCH_MM)
 
 
 # Near the sensor.
@@ -368,7 +369,7 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
             seed=request.seed,
         )
 
-    with tempfile.TemporaryDirectory() as work, ThreadPoolExecutor(min(len(configs), os.cpu_count() or 1)) as pool:
+    with tempfile.TemporaryDirectory() as work, threads(min(len(configs), os.cpu_count() or 1)) as pool:
         folders = [Path(work).resolve() / config.solver for config in configs]
         runs = [pool.submit(play, config, folder) for config, folder in zip(configs, folders, strict=True)]
         total = len(sent) * len(configs)
@@ -382,7 +383,7 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
 
 
 def examine(
-    config: Configuration, played: bench.Played, sent: list[Sent], pixels: np.ndarray, calibration: Calibration
+    config: Configuration, played: bench.Played, sent: list[Sent], pixels: np.ndarray, calibration: Sensor
 ) -> Loop:
     codes = played.codes.reshape(len(sent), config.rows, config.columns)
     found, faults = decisions(played, sent, config)
@@ -430,9 +431,7 @@ def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, w
     return Times(motion - parts["servo"], motion, parts)
 
 
-def first_above(
-    setup: Setup, draws: Draws, trial: int, size: int, calibration: Calibration
-) -> tuple[int, float, float]:
+def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: Sensor) -> tuple[int, float, float]:
     """The deciding frame by double precision; how long its reconstruction took, and how late a sleep before it ended.
 
     Returns
@@ -551,7 +550,7 @@ def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
             f"0 to {DRIVER_BUFFERS - 1} frames, each as likely",
             "OpenCV asks V4L2 for 4 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
         ),
-        Delay("host", "reconstruction", "as measured in each trial", "models/reference.py on this machine"),
+        Delay("host", "reconstruction", "as measured in each trial", "tactile_depth.reference on this machine"),
         Delay(
             "host", "operating system", "as measured in each trial", f"lateness after a sleep of {ASLEEP_MS:g} ms, here"
         ),
@@ -594,7 +593,7 @@ def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]
     loops = loop(request, near, near_draws)
     faults = [fault for one in loops for fault in one.faults]
     if faults:
-        raise RuntimeError("; ".join(faults[:5]) + (f"; and {len(faults) - 5} more" if len(faults) > 5 else ""))
+        raise variables.Mismatch("; ".join(faults[:5]) + (f"; and {len(faults) - 5} more" if len(faults) > 5 else ""))
     none = np.zeros(request.trials)
     solvers: dict[str, Any] = {}
     near_times: dict[str, Times] = {}
@@ -725,7 +724,7 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
         shown = (f"{command:.1f} +- {command_sd:.1f}", f"{motion:.1f} +- {motion_sd:.1f}")
         return (name, str(path["trials"]), *shown, spread, against)
 
-    results = [
+    comparison = [
         *(row(f"near the sensor, {solver}", path) for solver, path in near.items()),
         printed("near the sensor, published", published["near"], "0 / 0"),
         row("host", host),
@@ -767,7 +766,7 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
         "results": (
             "Contact to command and to motion, ms",
             ("path", "trials", "to command", "to motion", "range", "U to command / to motion"),
-            results,
+            comparison,
         ),
         "parts": ("Where the time goes, ms", ("path", "part", "mean", "sd"), parts),
         "delays": (
@@ -830,15 +829,10 @@ def run(request: Request) -> None:
 
     Raises
     ------
-    InputError, RuntimeError
+    InputError, Mismatch, RuntimeError
     """
     simulation.check(request.simulator)
-    try:
-        request.out.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=".reflex-", dir=request.out))
-    except OSError as error:
-        raise InputError(f"OUT={request.out} cannot be written ({error.strerror}): give a folder that can") from error
-    try:
+    with results.workspace(request.out, RESULTS) as work:
         document, loops, setup, draws = measure(request)
         print(show(document))
         (work / "reflex.json").write_text(json.dumps(document, indent=1) + "\n")
@@ -848,10 +842,7 @@ def run(request: Request) -> None:
             reflex_pictures.video(work / "trial.gif", trial_film(loops[0], setup, draws, request))
             shutil.copy(work / "trial.gif", draft := request.video.with_name(f".{request.video.name}"))
             os.replace(draft, request.video)
-        for name in ("reflex.json", "reflex.png"):
-            os.replace(work / name, request.out / name)
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
+        results.replace(work, RESULTS, request.out)
     print(f"results: {os.path.relpath(request.out)}")
 
 
@@ -875,7 +866,7 @@ def trial_film(one: Loop, setup: Setup, draws: Draws, request: Request) -> refle
 
 
 def main() -> None:
-    with variables.reported("reflex", "interrupted; nothing was written"):
+    with variables.reported("reflex", "nothing was written"):
         run(parse(sys.argv[1:]))
 
 

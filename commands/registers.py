@@ -3,14 +3,14 @@
 
 Committed, so that nobody needs these tools to read or to use them: the page by peakrdl-markdown, the C header by
 peakrdl-cheader, and two by the templates here: hdl/register_map_pkg.sv, since no exporter writes a package that Icarus
-11 takes, and the JSON that models/register_map.py reads, since a run needs neither the compiler nor its 40 MB. The
+11 takes, and the JSON that register_map.py reads, since a run needs neither the compiler nor its 40 MB. The
 Python access layer of peakrdl-python goes to build/: it is thousands of lines, most of them its library.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -22,22 +22,26 @@ from peakrdl_python import PythonExporter
 from systemrdl import RDLCompiler
 from systemrdl.node import FieldNode, RegNode, RootNode
 
+from commands import variables
+
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "registers" / "tactile_depth.rdl"
+PACKAGE_MAP = ROOT / "models" / "tactile_depth" / "registers" / "register_map.json"
 LAYER = ROOT / "build" / "registers"
 NAME = SOURCE.stem
+LAYER_NAME = f"{NAME}_registers"  # `tactile_depth` is the package of models
 WRITTEN_BY = f"Written by `make registers` from {SOURCE.relative_to(ROOT)}: change it there."
 
 
-def compiled(source: Path = SOURCE) -> RootNode:
-    """The elaborated map."""
+def compiled(source: Path = SOURCE, inst_name: str | None = None) -> RootNode:
+    """The elaborated map, under its own name or under `inst_name`."""
     compiler = RDLCompiler()
     compiler.compile_file(str(source))
-    return compiler.elaborate()
+    return compiler.elaborate(inst_name=inst_name)
 
 
 def access(field: FieldNode) -> str:
-    """One of models.register_map.ACCESSES.
+    """One of tactile_depth.registers.register_map.ACCESSES.
 
     Raises
     ------
@@ -148,27 +152,36 @@ def generated(root: RootNode) -> dict[Path, str]:
             + header.read_text(),
         }
     return texts | {
-        SOURCE.with_suffix(".json"): json.dumps(described, indent=1) + "\n",
+        PACKAGE_MAP: json.dumps(described, indent=1) + "\n",
         ROOT / "hdl" / "register_map_pkg.sv": package(registers),
     }
 
 
-def python_layer(root: RootNode, folder: Path) -> None:
-    """The package `tactile_depth` in the folder, with its library: needs nothing else installed."""
+def python_layer(folder: Path) -> None:
+    """The package `tactile_depth_registers` in the folder, with its library: needs nothing else installed."""
     PythonExporter().export(
-        root.top, str(folder), skip_test_case_generation=True, skip_systemrdl_name_and_desc_in_docstring=True
+        compiled(inst_name=LAYER_NAME).top,
+        str(folder),
+        skip_test_case_generation=True,
+        skip_systemrdl_name_and_desc_in_docstring=True,
     )
 
 
 def main() -> None:
-    argparse.ArgumentParser(description=__doc__).parse_args()
+    with variables.reported("registers"):
+        variables.given(sys.argv[1:], ())
+        run()
+
+
+def run() -> None:
+    """Write every file, and say which have changed."""
     root = compiled()
     for path, text in generated(root).items():
         changed = not path.exists() or path.read_text() != text
         path.write_text(text)
         print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
-    python_layer(root, LAYER)
-    print(f"wrote {LAYER.relative_to(ROOT)}/{NAME}")
+    python_layer(LAYER)
+    print(f"wrote {LAYER.relative_to(ROOT)}/{LAYER_NAME}")
 
 
 if __name__ == "__main__":

@@ -28,12 +28,12 @@ import numpy as np
 
 from commands import bench, variables
 from commands import simulator as simulation
-from models.calibration import synthetic
-from models.configuration import Configuration
-from models.errors import InputError
-from models.round_saturate import Monitor
-from models.scenes import SCENES, render
-from models.tactile_depth import tactile_depth
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.scenes import SCENES, render
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import tactile_depth
 
 ROOT = simulation.ROOT
 POWER_UPS = 100
@@ -334,6 +334,11 @@ def main() -> None:
         jobs = variables.number(given, "JOBS", 2, 1, 1000)
         if not PARTS.keys() >= set(names):
             raise InputError(f"PARTS={given['PARTS']}: accepted are {', '.join(PARTS)}")
+        sys.exit(run(names, jobs))
+
+
+def run(names: list[str], jobs: int) -> int:
+    """Run the parts and print a table of them; returns the exit status."""
     parts = []
     for name in names:
         part = Part(name)
@@ -355,7 +360,7 @@ def main() -> None:
     failed = sum(len(part.failures) for part in parts)
     total = sum(part.seconds for part in parts)
     print(f"\n{compared:,} codes compared; {total / 60:.1f} minutes, {used / 60:.1f} of processor; {failed} failed")
-    sys.exit(bool(failed))
+    return variables.MISMATCH if failed else variables.EQUAL
 
 
 if __name__ == "__main__":

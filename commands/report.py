@@ -22,14 +22,13 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands import baselines, extremes, reflex, sim, sweep, synth, variables
+from commands import baselines, extremes, reflex, results, sim, sweep, synth, variables
 from commands.tune import CLOCK_MHZ
-from models import reference
-from models.calibration import synthetic
-from models.configuration import COLUMNS, Configuration
-from models.errors import InputError
-from models.latency import first_depth_latency, last_pixel_to_first_depth
-from models.scenes import BENCH, SENSOR_WIDTH_MM, render
+from tactile_depth import reference
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.scenes import BENCH, SENSOR_WIDTH_MM, render
+from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -112,23 +111,23 @@ def run_rtl(solver: str, folder: Path) -> Run:
 
     Raises
     ------
-    RuntimeError
+    Mismatch
         The RTL differs from the model.
     """
     repeat = -(-CONSECUTIVE // len(BENCH))
     words = [f"SOLVER={solver}", "FRAMES=bench", f"REPEAT={repeat}", f"N={SIZE}"]
     out = folder / solver
     if sim.run(sim.parse([*words, f"OUT={out}"])):
-        raise RuntimeError(f"the RTL of the {solver} solver differs from its model: see {out / 'report.json'}")
+        raise variables.Mismatch(f"the RTL of the {solver} solver differs from its model: see {out / 'report.json'}")
     report = json.loads((out / "report.json").read_text())
     depth = np.load(out / "depth.npy", mmap_mode="r")[: len(BENCH)] * report["depth_lsb_mm"]
     return Run("make sim " + " ".join(words), report, depth)
 
 
 def run_extremes(folder: Path) -> None:
-    """Raises RuntimeError when a row is not as it must be."""
+    """Raises Mismatch when a row is not as it must be."""
     if extremes.run(EXTREMES_SIZE, "verilator", folder, short=True):
-        raise RuntimeError(f"a row of the extremes is not as it must be: see {folder}")
+        raise variables.Mismatch(f"a row of the extremes is not as it must be: see {folder}")
 
 
 def document_of(command: Any, name: str) -> dict[str, Any]:
@@ -218,9 +217,7 @@ def grid_figure(folder: Path) -> Figure:
     axis.set(xlabel="grid (N x N)", ylabel="cycles to the first depth")
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
-    text = (
-        "Fixed by the structure (models/latency.py), the same in every run of the RTL, whatever the gaps in the input."
-    )
+    text = "Fixed by the structure (latency.py), the same in every run of the RTL, whatever the gaps in the input."
     return Figure("grids", "Latency against grid", text, "make sim N=.. SOLVER=..", picture(figure, folder, "grids"))
 
 
@@ -504,14 +501,9 @@ def build(folder: Path) -> Path:
 
     Raises
     ------
-    InputError, RuntimeError
+    InputError, Mismatch, RuntimeError
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / ".writable").touch()
-        (folder / ".writable").unlink()
-    except OSError as error:
-        raise InputError(f"OUT={folder} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(folder, ["report.html"])
     steps: list[tuple[str, Callable[[], Any]]] = [
         *(
             (f"{solver}: {CONSECUTIVE} frames through the RTL", lambda s=solver: run_rtl(s, folder))
@@ -548,7 +540,7 @@ def build(folder: Path) -> Path:
 
 
 def main() -> None:
-    with variables.reported("report", "interrupted; the rows of the sweep are kept, run it again to go on"):
+    with variables.reported("report", "the rows of the sweep are kept, run it again to go on"):
         folder = Path(variables.given(sys.argv[1:], ("OUT",)).get("OUT", DEFAULT_OUT))
         print(f"report: {os.path.relpath(build(folder))}")
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make sim`: streams frames through the RTL, checks every code, prints a table, draws.
 
-Takes the variables of the README's table as KEY=VALUE arguments. Exit status: 0 bit-exact, 1 not, 2 bad input.
+Takes the variables of docs/make-sim.md as KEY=VALUE arguments. Exit status: docs/exit-status.md.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import errno
 import json
 import math
 import os
+import re
 import shutil
 import sys
-import tempfile
 import threading
 from dataclasses import dataclass, replace
 from functools import partial
@@ -21,31 +21,51 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from commands import bench, variables
+from commands import bench, results, variables
 from commands import simulator as simulation
+from commands.compare import compare, warnings
 from commands.draw import draw_depth
-from models import latency, reference
-from models.accuracy import errors
-from models.auto_zero import exact_zero
-from models.calibration import Calibration, load
-from models.certificate import deepest
-from models.configuration import COLUMNS, GRADIENT_MODELS, Configuration
-from models.errors import InputError
-from models.floor_capture import LARGEST_LOG2, captured_floor
-from models.frames import Frames, load_frames
-from models.npy import is_file
-from models.round_saturate import Monitor
-from models.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
-from models.spectral_divide import reciprocal_rom
-from models.tactile_depth import tactile_depth
-from models.thomas_table import thomas_table
+from commands.flags import flags
+from commands.sim_table import check_registers, coefficient_words, measure, table
+from tactile_depth import latency, reference
+from tactile_depth.accuracy import errors
+from tactile_depth.calibration.auto_zero import exact_zero
+from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
+from tactile_depth.certificate import deepest
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import Frames, load_frames
+from tactile_depth.npy import is_file
+from tactile_depth.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
+from tactile_depth.sensor import BUILT_IN, Sensor, load
+from tactile_depth.tactile_depth import tactile_depth
 
 DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can leave
 SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
-ROWS_SHOWN = 16
+ACCEPTED = (
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "FRAMES", "PRESS"),
+    *(
+        "AT",
+        "NOISE",
+        "REFERENCE",
+        "FLOOR",
+        "CALIBRATION",
+        "CAMERA_SIZE",
+        "GRADIENT",
+        "REPEAT",
+        "SEED",
+        "GAPS",
+        "STALLS",
+        "WAVES",
+    ),
+    *("CONFIG", "OUT"),
+)
+RESULTS = ("depth.npy", "depth.png", "report.json")
+DUMPS = (".vcd", ".fst")
 LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
@@ -66,6 +86,7 @@ class Request:
     reference: str | None
     floor: str | None
     calibration: str
+    camera_size: tuple[int, int] | None  # rows, columns
     gradient: str  # a model; "": the calibration's own
     repeat: int
     seed: int
@@ -82,13 +103,9 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    accepted = (
-        "N ROWS COLS SOLVER BOUNDARY SIM DATA_WIDTH COEFF_WIDTH DEPTH_RANGE FRAMES PRESS AT NOISE REFERENCE FLOOR "
-        "CALIBRATION GRADIENT REPEAT SEED GAPS STALLS WAVES CONFIG OUT"
-    )
-    given = variables.given(arguments, accepted.split())
+    given = variables.given(arguments, ACCEPTED)
     if "CONFIG" in given:
-        given = from_file(Path(given.pop("CONFIG")), given, accepted.replace("CONFIG ", "").split()) | given
+        given = from_file(Path(given.pop("CONFIG")), given, [name for name in ACCEPTED if name != "CONFIG"]) | given
 
     number = partial(variables.number, given)
 
@@ -103,7 +120,7 @@ def parse(arguments: list[str]) -> Request:
             x, y = (float(part) for part in given.get(key, "0,0").split(","))
         except ValueError:
             x = y = math.nan
-        if not max(abs(x), abs(y)) <= SENSOR_WIDTH_MM:
+        if not (abs(x) <= SENSOR_WIDTH_MM and abs(y) <= SENSOR_WIDTH_MM):
             raise InputError(f"{key}={given[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
         return x, y
 
@@ -127,7 +144,8 @@ def parse(arguments: list[str]) -> Request:
         ),
         reference=given.get("REFERENCE"),
         floor=given.get("FLOOR"),
-        calibration=given.get("CALIBRATION", "synthetic"),
+        calibration=_calibration(given),
+        camera_size=_camera_size(given),
         gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
         seed=int(number("SEED", 1, 0, 10**9)),
@@ -136,6 +154,46 @@ def parse(arguments: list[str]) -> Request:
         waves=bool(number("WAVES", 0, 0, 1)),
         out=Path(given["OUT"]) if "OUT" in given else None,
     )
+
+
+def _calibration(given: dict[str, str]) -> str:
+    """The calibration that is named. Scenes are drawn for the synthetic sensor; a picture needs that of its sensor."""
+    if "CALIBRATION" in given:
+        return given["CALIBRATION"]
+    for key in ("FRAMES", "REFERENCE", "FLOOR"):
+        if key in given and given[key] not in SCENES and os.path.exists(given[key]):
+            raise InputError(
+                f"{key}={given[key]} needs CALIBRATION, that of the sensor that took it: {', '.join(BUILT_IN)}, or the "
+                ".npz of `make calibrate`"
+            )
+    return BUILT_IN[0]
+
+
+def _camera_size(given: dict[str, str]) -> tuple[int, int] | None:
+    """Rows and columns of CAMERA_SIZE=320x240, which gives columns first, as cameras do."""
+    if "CAMERA_SIZE" not in given:
+        return None
+    size = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", given["CAMERA_SIZE"])
+    if not size:
+        raise InputError(f"CAMERA_SIZE={given['CAMERA_SIZE']}: accepted is columns x rows in pixels, as 320x240")
+    return int(size[2]), int(size[1])
+
+
+def load_sensor(request: Request) -> Sensor:
+    """The calibration of a request.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        return load(request.calibration, request.camera_size)
+    except InputError as error:
+        if request.camera_size is None:
+            raise
+        rows, columns = request.camera_size
+        given = f"CAMERA_SIZE={columns}x{rows}"
+        raise InputError(str(error).replace(f"camera_size={request.camera_size}", given)) from error
 
 
 def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[str, str]:
@@ -163,15 +221,14 @@ def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[st
             raise InputError(f"CONFIG={path}: unknown variable {key}: accepted are {', '.join(accepted)}")
         if isinstance(value, bool) or not isinstance(value, str | int | float):
             raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: accepted is a number or a string")
+        if isinstance(value, str) and not variables.usable(value):
+            raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: it holds a character that no path can hold")
     replaced = ("ROWS", "COLS") if "N" in given else ()
     return {key: str(value) for key, value in values.items() if key not in replaced}
 
 
-def configure(request: Request, calibration: Calibration) -> Configuration:
+def configure(request: Request, calibration: Sensor) -> Configuration:
     """The pipeline for a request and a calibration on its grid; the depth range becomes grid pixels."""
-    model = request.gradient or (calibration.model if calibration.reference is not None else GRADIENT_MODELS[0])
-    if model not in calibration.models:
-        raise InputError(f"GRADIENT={model}: {calibration.name} holds only {', '.join(calibration.models)}")
     neumann = request.boundary == "neumann"
     depth_range = request.depth_range_mm
     if depth_range == math.inf:
@@ -179,7 +236,8 @@ def configure(request: Request, calibration: Calibration) -> Configuration:
         depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
     else:
         depth_range_px = None if depth_range is None else depth_range / calibration.pixel_pitch_mm
-    return Configuration(
+    return calibration.configuration(
+        request.gradient,
         columns=request.columns,
         rows=request.rows,
         solver=request.solver,
@@ -187,10 +245,6 @@ def configure(request: Request, calibration: Calibration) -> Configuration:
         data_width=request.data_width,
         coefficient_width=request.coefficient_width,
         depth_range_px=depth_range_px,
-        gradient_limit=calibration.gradient_limit,
-        bits_per_channel=calibration.bits_per_channel,
-        flat_field=calibration.reference is not None,
-        gradient_model=model,
         auto_zero=request.floor is not None,
     )
 
@@ -211,16 +265,14 @@ def untouched(request: Request, frames: Frames) -> np.ndarray | None:
     return rest.pixels[: 1 << min(LARGEST_LOG2, len(rest.pixels).bit_length() - 1)]
 
 
-def floor_of(rest: np.ndarray | None, calibration: Calibration, config: Configuration) -> np.ndarray | None:
+def floor_of(rest: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray | None:
     """What a capture of those frames measures, codes (node rows, node columns)."""
     if rest is None:
         return None
     return captured_floor(tactile_depth(rest, calibration, replace(config, auto_zero=False)), config)
 
 
-def exact_depth(
-    frames: np.ndarray, rest: np.ndarray | None, calibration: Calibration, config: Configuration
-) -> np.ndarray:
+def exact_depth(frames: np.ndarray, rest: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray:
     """Depth in double precision, grid pixels, rows from the top."""
     depth = reference.depth_of(frames, calibration, config)
     if rest is None:
@@ -234,7 +286,7 @@ def simulate(
     request: Request,
     config: Configuration,
     frames: Frames,
-    calibration: Calibration,
+    calibration: Sensor,
     folder: Path,
     floor: np.ndarray | None = None,
 ) -> bench.Played:
@@ -278,190 +330,128 @@ def simulate(
         watcher.join()
 
 
-def measure(played: bench.Played) -> dict[str, list[int | None]]:
-    """Latencies of each frame, in clocks, from the events of the bench."""
-    taken, depth, end = (played.clocks(letter) for letter in "tde")
-    first, last = taken[::2], taken[1::2]
-    contact: dict[int, int] = {}
-    frame = -1
-    for letter, numbers in played.events:
-        if letter == "d":
-            frame += 1
-        elif letter == "c":
-            contact[frame] = numbers[0]
-    frames = range(len(end))
-    return {
-        "first_depth_latency_cycles": [depth[i] - first[i] for i in frames],
-        "last_depth_latency_cycles": [end[i] - first[i] for i in frames],
-        "last_pixel_to_first_depth_cycles": [depth[i] - last[i] for i in frames],
-        "frame_interval_cycles": [depth[i] - depth[i - 1] if i else None for i in frames],
-        "contact_latency_cycles": [contact[i] - first[i] if i in contact else None for i in frames],
-    }
-
-
-def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
-    """What the hardware counted against what was seen from outside; one line for each that differs."""
-    total = report["frames"]
-    clipped = sum(report["saturations"].values())
-    expected = {
-        "frames_in": total,
-        "frames_out": total,
-        "frames_dropped": 0,
-        "saturations": min(clipped, 2**32 - 1),
-    }
-    if not stalls:
-        expected["first_depth_latency"] = report["first_depth_latency_cycles"][-1]
-    return [
-        f"register {name.upper()} says {registers[name]}, expected {value}"
-        for name, value in expected.items()
-        if registers[name] != value
-    ]
-
-
-def coefficient_words(config: Configuration) -> int:
-    """Words of the table along the columns: reciprocals (spectral), or coefficients of Thomas's algorithm."""
-    if config.solver == "spectral":
-        return len(reciprocal_rom(config))
-    return len(thomas_table(config).words) + config.columns
-
-
-def table(report: dict, labels: tuple[str, ...]) -> str:
-    """One line a frame, the sequence once; then what holds for all."""
-
-    def cell(value: float | None, digits: int = 5) -> str:
-        return "-" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.{digits}f}"
-
-    head = ("frame", "first depth", "last px > depth", "interval", "contact", "RMS % peak", "max % peak")
-    columns = (
-        "first_depth_latency_cycles",
-        "last_pixel_to_first_depth_cycles",
-        "frame_interval_cycles",
-        "contact_latency_cycles",
-        "rms_percent_of_peak",
-        "max_percent_of_peak",
-    )
-    lines = ["".join(f"{name:>17}" if i else f"{name:<20}" for i, name in enumerate(head))]
-    shown = min(len(labels), ROWS_SHOWN)
-    for i in range(shown):
-        cells = "".join(f"{cell(report[column][i]):>17}" for column in columns)
-        lines.append(f"{labels[i][:19]:<20}{cells}")
-    if report["frames"] > shown:
-        lines.append(f"and {report['frames'] - shown:,} frames more: report.json")
-    rms = [value for value in report["rms_percent_of_peak"] if value is not None]
-    if rms:
-        lines.append(f"mean RMS {np.mean(rms):.5f} % of peak, worst {max(rms):.5f} %")
-    for column in columns[:3]:
-        values = {value for value in report[column] if value is not None}
-        if values:
-            spread = f"{min(values):,}" if len(values) == 1 else f"{min(values):,} to {max(values):,}"
-            lines.append(f"{column.removesuffix('_cycles').replace('_', ' ')}: {spread} cycles, all frames")
-    clipped = report["saturations"]
-    lines.append(
-        f"saturated: {', '.join(f'{node} {count:,}' for node, count in clipped.items())}"
-        if clipped
-        else "no saturation"
-    )
-    return "\n".join(lines)
-
-
 def run(request: Request, frames: Frames | None = None) -> int:
     """Everything after parsing; returns the exit status. `frames`: in place of those that the request names."""
     simulation.check(request.simulator)
-    calibration = load(request.calibration)
+    calibration = load_sensor(request)
     # Refuse a grid before frames are read.
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
     grid = (request.rows, request.columns)
     if frames is None:
         frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
-    calibration = calibration.on_grid(frames.pixel_scale, frames.reference)
-    pixel_pitch_mm = calibration.pixel_pitch_mm
+    calibration = calibration.on_grid(frames)
     config = configure(request, calibration)
-    shape = f"{config.rows}x{config.columns}"
-    widths = f"d{config.data_width}-c{config.coefficient_width}"
+    flagged = flags(frames.pixels, calibration, config, request.reference)
     rest = untouched(request, frames)
     floor = floor_of(rest, calibration, config)
-    colours = f"-{config.gradient_model}" if config.flat_field else ""
-    colours += "-zero" if config.auto_zero else ""
-    name = f"{request.solver}-{request.boundary}-{shape}-{widths}{colours}-{request.simulator}"
-    out = request.out or simulation.ROOT / "build" / "sim" / name
-    if out.exists() and not out.is_dir():
-        raise InputError(f"OUT={out} is a file: give a folder")
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent)).resolve()
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
-    try:
+    out = request.out or default_folder(request, config)
+    with results.workspace(out, RESULTS) as work:
         played = simulate(request, config, frames, calibration, work, floor)
         monitor = Monitor()
         codes = tactile_depth(frames.pixels, calibration, config, monitor, floor=floor)
         reference_px = exact_depth(frames.pixels, rest, calibration, config)
         seen = played.codes.reshape(request.repeat, *codes.shape)
-        depth = seen.reshape(-1, *codes.shape[1:])
-        bit_exact = bool((seen == codes).all())
         if config.solver == "tridiagonal":  # it puts the bottom row out first; results are in input order
-            seen, depth = seen[..., ::-1, :], depth[..., ::-1, :]
-        per_frame = errors(seen[0] * config.depth_lsb_px, reference_px)
-        report = {
-            "grid": [config.rows, config.columns],
-            "solver": request.solver,
-            "boundary": request.boundary,
-            "simulator": request.simulator,
-            "data_width": config.data_width,
-            "coeff_width": config.coefficient_width,
-            "frames": len(depth),
-            "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
-            "pixel_pitch_mm": pixel_pitch_mm,
-            "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
-            "gradient_lsb": config.gradient_lsb,
-            "coefficient_table_words": coefficient_words(config),
-            "contact_threshold_mm": CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
-            "calibration": calibration.name,
-            "gradient_model": config.gradient_model,
-            "flat_field": config.flat_field,
-            "auto_zero": config.auto_zero,
-            "source": frames.name,
-            "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
-            **measure(played),
-            **{key: values * request.repeat for key, values in per_frame.items()},
-            "bit_exact": bit_exact,
-            "saturations": {node: count * request.repeat for node, count in sorted(monitor.saturations.items())},
-        }
-        report["registers"] = played.registers
-        differences = check_registers(played.registers, report, request.stalls)
-        report["registers_agree"] = not differences
-
+            seen, codes = seen[..., ::-1, :], codes[..., ::-1, :]
+        difference = compare(seen, codes)
+        percent = errors(seen[0] * config.depth_lsb_px, reference_px)
         result = work / "result"
         result.mkdir()
-        np.save(result / "depth.npy", depth.astype(np.int32))
+        dumps = take_dumps(request, config, work, result)
+        clips = {node: count * request.repeat for node, count in sorted(monitor.saturations.items())}
+        report = {
+            **describe(request, config, calibration, frames),
+            **measure(played),
+            **{key: values * request.repeat for key, values in percent.items()},
+            "bit_exact": not difference.count,
+            "differing_codes": difference.count,
+            "saturations": clips,
+            "registers": played.registers,
+            "waves": dumps,
+            **flagged.report(request.repeat),
+        }
+        differences = check_registers(played.registers, report, request.stalls)
+        report["registers_agree"] = not differences
+        report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
+        report["warnings"] += flagged.warnings()
+        np.save(result / "depth.npy", seen.reshape(-1, *grid).astype(np.int32))
         (result / "report.json").write_text(json.dumps(report, indent=1) + "\n")
+        pitch = calibration.pixel_pitch_mm
         draw_depth(
             result / "depth.png",
             frames,
-            seen[0] * config.depth_lsb_px * pixel_pitch_mm,
-            reference_px * pixel_pitch_mm,
-            pixel_pitch_mm,
-            f"{request.solver}, {request.boundary}, {shape}, {config.data_width}-bit words, {calibration.name}",
+            seen[0] * config.depth_lsb_px * pitch,
+            reference_px * pitch,
+            pitch,
+            f"{request.solver}, {request.boundary}, {config.rows}x{config.columns}, {config.data_width}-bit words, "
+            f"{calibration.name}",
+            difference.differing.reshape(seen.shape).any(axis=0),
+            flagged,
         )
-        if request.waves:
-            for dump in (
-                *work.glob("*.vcd"),
-                *bench.build(request.simulator, config, True).glob("*.fst"),
-            ):  # Verilator's, Icarus'
-                shutil.move(dump, result / dump.name)
-        out.mkdir(exist_ok=True)
-        for file in result.iterdir():
-            os.replace(file, out / file.name)
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
+        results.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))
 
     print(table(report, frames.labels))
     for line in differences:
         print(line)
-    verdict = "RTL equals the model on every code" if bit_exact else "RTL DIFFERS from the model"
-    print(f"{verdict}: {depth.size:,} codes in {len(depth):,} frames")
+    print(difference.sentence())
     print(f"results: {os.path.relpath(out)}")
-    return 0 if bit_exact and not differences else 1
+    for line in report["warnings"]:
+        print(f"make sim: warning: {line}", file=sys.stderr)
+    return variables.MISMATCH if difference.count or differences else variables.EQUAL
+
+
+def default_folder(request: Request, config: Configuration) -> Path:
+    """Folder of results when OUT is not given: one for each configuration."""
+    widths = f"d{config.data_width}-c{config.coefficient_width}"
+    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    colours += "-zero" if config.auto_zero else ""
+    shape = f"{config.rows}x{config.columns}"
+    name = f"{request.solver}-{request.boundary}-{shape}-{widths}{colours}-{request.simulator}"
+    return simulation.ROOT / "build" / "sim" / name
+
+
+def describe(request: Request, config: Configuration, calibration: Sensor, frames: Frames) -> dict:
+    """Fields of the report that are known before the simulation."""
+    pixel_pitch_mm = calibration.pixel_pitch_mm
+    assert config.depth_range_px is not None
+    return {
+        "grid": [config.rows, config.columns],
+        "solver": request.solver,
+        "boundary": request.boundary,
+        "simulator": request.simulator,
+        "data_width": config.data_width,
+        "coeff_width": config.coefficient_width,
+        "frames": len(frames.pixels) * request.repeat,
+        "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
+        "pixel_pitch_mm": pixel_pitch_mm,
+        "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
+        "gradient_lsb": config.gradient_lsb,
+        "coefficient_table_words": coefficient_words(config),
+        "contact_threshold_mm": CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
+        "calibration": calibration.name,
+        "gradient_model": config.gradient_model,
+        "flat_field": config.flat_field,
+        "auto_zero": config.auto_zero,
+        "source": frames.name,
+        "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
+    }
+
+
+def take_dumps(request: Request, config: Configuration, work: Path, result: Path) -> list[str]:
+    """Move the waveforms that a simulation left to `result`; returns their names."""
+    if not request.waves:
+        return []
+    built = bench.build(request.simulator, config, True)  # Icarus writes there, Verilator into `work`
+    return [Path(shutil.move(dump, result / dump.name)).name for dump in (*work.glob("*.vcd"), *built.glob("*.fst"))]
+
+
+def earlier_dumps(out: Path) -> list[str]:
+    """Names of the waveforms that the report in `out` lists: this command wrote them, and new results replace them."""
+    try:
+        names = json.loads((out / "report.json").read_text())["waves"]
+        return [name for name in names if name == Path(name).name and name.endswith(DUMPS)]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):  # no report, or one of something else
+        return []
 
 
 def main() -> None:

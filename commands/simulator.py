@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 
 from cocotb_tools.runner import Runner, Verilator, get_results, get_runner
 
-from models.errors import InputError
+from tactile_depth.errors import InputError
 
 ROOT = Path(__file__).resolve().parent.parent
 HDL = ROOT / "hdl"
@@ -31,6 +31,8 @@ SIMULATORS = ("verilator", "icarus")
 # cocotb has pytest rewrite every module that a simulation imports, numpy's too, so that a failed assertion shows its
 # values: seconds a run, where most runs take less. With this variable set to *.py it does.
 NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
+# Paths of attachments would stand in results.xml, which cannot hold every path.
+NO_ATTACHMENTS = {"COCOTB_RESULTS_ATTACHMENTS": ""}
 COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
 BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
 COVERAGE_ARGUMENTS = (
@@ -161,18 +163,19 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
     They are the same for every model, and most of a small build.
     """
     runtime.parent.mkdir(parents=True, exist_ok=True)
-    kept = Path(tempfile.mkdtemp(dir=runtime.parent))
-    for compiled in folder.glob("verilated*.o"):
-        shutil.copy(compiled, kept)
-    (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
-    precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's, with the flags of the model
-    subprocess.run(["make", "-s", "-C", folder, "-f", "Vtop.mk", precompiled], check=True, stdout=subprocess.DEVNULL)
-    shutil.copy(folder / RUNTIME, kept)
-    (folder / precompiled).rename(kept / f"{RUNTIME}.gch")
-    try:
-        kept.rename(runtime)
-    except OSError:  # another build was first
-        shutil.rmtree(kept)
+    with tempfile.TemporaryDirectory(dir=runtime.parent) as place:
+        kept = Path(place) / "runtime"
+        kept.mkdir()
+        for compiled in folder.glob("verilated*.o"):
+            shutil.copy(compiled, kept)
+        (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
+        precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's, with the flags of the model
+        make = ["make", "-s", "-C", folder, "-f", "Vtop.mk", precompiled]
+        subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
+        shutil.copy(folder / RUNTIME, kept)
+        (folder / precompiled).rename(kept / f"{RUNTIME}.gch")
+        with contextlib.suppress(OSError):  # another build was first
+            kept.rename(runtime)
 
 
 def versions() -> list[str]:
@@ -245,7 +248,7 @@ def run(
             test_dir=run_folder,
             results_xml=str(results),
             seed=seed,
-            extra_env=NO_REWRITING | dict(environment or {}),
+            extra_env=NO_REWRITING | NO_ATTACHMENTS | dict(environment or {}),
             waves=waves,
             log_file=log,
             test_args=arguments,

@@ -24,11 +24,11 @@ from typing import Any, BinaryIO
 import joblib
 from tqdm import tqdm
 
-from commands import variables
-from models import accuracy
-from models.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
-from models.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
-from models.errors import InputError
+from commands import results, variables
+from tactile_depth import accuracy
+from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.errors import InputError
 
 ROOT = Path(__file__).resolve().parent.parent
 DEFAULT_OUT = ROOT / "build" / "sweep"
@@ -131,11 +131,8 @@ def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
     InputError
     """
     path = folder / "sweep.csv"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = path.open("a+b")
-    except OSError as error:
-        raise InputError(f"OUT={folder} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(folder, [path.name])
+    file = path.open("a+b")
     with file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -218,8 +215,9 @@ def _packed(folder: Path) -> Path:
     """The models as workers import them."""
     path = folder / "tactile_depth_models.zip"
     with zipfile.ZipFile(path, "w") as archive:
-        for source in sorted(Path(accuracy.__file__).parent.glob("*.py")):
-            archive.write(source, f"models/{source.name}")
+        package = Path(accuracy.__file__).parent
+        for source in sorted(package.rglob("*.py")):
+            archive.write(source, source.relative_to(package.parent))
     return path
 
 
@@ -297,7 +295,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def main() -> None:
-    with variables.reported("sweep", "interrupted; every row measured is kept, run it again to go on"):
+    with variables.reported("sweep", "every row measured is kept, run it again to go on"):
         given = variables.given(sys.argv[1:], ACCEPTED)
         folder = Path(given.get("OUT", DEFAULT_OUT))
         rows = sweep(plan(), folder, given.get("DASK_SCHEDULER"))

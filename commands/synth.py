@@ -24,27 +24,27 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
-from commands import sim, synthesis, variables, yosys
+from commands import results, sim, synthesis, variables, yosys
 from commands import simulator as simulation
-from models.calibration import Calibration, load
-from models.configuration import COLUMNS, Configuration
-from models.errors import InputError
-from models.frames import REST_SCENE, load_frames
-from models.tactile_depth import top_parameters
+from commands.signals import threads
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import REST_SCENE, load_frames
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import top_parameters
 
 TOP = "tactile_depth"
 OUT = simulation.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
 CONFIGURING = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REFERENCE", "FLOOR"),
-    *("GRADIENT", "CALIBRATION", "CONFIG"),
+    *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
 RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
 
@@ -227,19 +227,19 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
     return TARGETS[name], name, sizes, sim.parse([f"{key}={value}" for key, value in given.items()])
 
 
-def configured(request: sim.Request) -> tuple[Configuration, Calibration]:
+def configured(request: sim.Request) -> tuple[Configuration, Sensor]:
     """The configuration of a request, and the calibration on its grid.
 
     Raises
     ------
     InputError
     """
-    calibration = load(request.calibration)
+    calibration = sim.load_sensor(request)
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
     # A reference frame says how wide the camera's pixels are on the grid: it is read as a frame too.
     source = sim.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
     frames = load_frames(source, (request.rows, request.columns), request.reference, request.seed)
-    calibration = calibration.on_grid(frames.pixel_scale, frames.reference)
+    calibration = calibration.on_grid(frames)
     return sim.configure(request, calibration), calibration
 
 
@@ -259,7 +259,7 @@ def described(config: Configuration) -> dict[str, Any]:
 # Reading the design.
 
 
-def elaborate(config: Configuration, calibration: Calibration, folder: Path) -> tuple[list[str], list[str]]:
+def elaborate(config: Configuration, calibration: Sensor, folder: Path) -> tuple[list[str], list[str]]:
     """Write sources and ROMs and read them: lines that read them again, and all modules, <core>$<path>.
 
     <folder>/design.json then holds the memories.
@@ -369,7 +369,7 @@ def mapped(
     watcher = threading.Thread(target=follow, args=([s.with_suffix(".log") for s in scripts], label, finished))
     watcher.start()
     try:
-        with ThreadPoolExecutor(len(scripts)) as pool:
+        with threads(len(scripts)) as pool:
             faults = [fault for fault in pool.map(lambda s: yosys.run(s, timeout_s=TIMEOUT_S), scripts) if fault]
     finally:
         finished.set()
@@ -390,7 +390,7 @@ def misfit(totals: Mapping[str, float], target: Target) -> str:
     return "; ".join(short)
 
 
-def synthesize(config: Configuration, calibration: Calibration, target: Target, folder: Path) -> Design:
+def synthesize(config: Configuration, calibration: Sensor, target: Target, folder: Path) -> Design:
     """One design. Memories that do not fit end it after a second; nothing is mapped then.
 
     Raises
@@ -528,13 +528,8 @@ def run(arguments: list[str]) -> int:
     else:
         configured(request)  # before anything is made
     out = request.out or OUT / (name if grids else f"{name}-{request.solver}-{request.rows}x{request.columns}")
-    if out.exists() and not out.is_dir():
-        raise InputError(f"OUT={out} is a file: give a folder")
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
+    results.make(out, ["resources.json"])
+    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
     document: dict[str, Any] = {
         "target": name,
         "device": target.device,

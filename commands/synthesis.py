@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from commands import simulator as simulation
-from models.calibration import Calibration, load
-from models.configuration import Configuration
-from models.tactile_depth import top_parameters, write_roms
+from tactile_depth.configuration import Configuration
+from tactile_depth.sensor import Sensor, load
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 # Small ROMs are LUTs. Vivado says "distributed", which Yosys takes for a RAM of LUTs and finds none to read alone.
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
@@ -20,7 +20,7 @@ def read(
     folder: Path,
     config: Configuration,
     *,
-    calibration: str | Calibration = "synthetic",
+    calibration: str | Sensor = "synthetic",
     top: str = "tactile_depth",
     parameters: Mapping[str, int] | None = None,
     extra: Sequence[Path] = (),

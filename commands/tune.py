@@ -3,7 +3,7 @@
 
 Two thirds of the frames, drawn by SEED, are for tuning, by the bit-accurate model; on the rest the choice is proven in
 RTL. Cost is the share that a configuration takes of the multipliers plus the share it takes of the memory bits of the
-device of the published design; of two that cost the same the quicker wins. Takes the variables of the README as
+device of the published design; of two that cost the same the quicker wins. Takes the variables of docs/commands.md as
 KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
 """
 
@@ -21,20 +21,20 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands import sim, variables
+from commands import results, sim, variables
 from commands import simulator as simulation
-from models import reference
-from models.accuracy import SMALLEST_PEAK_PX, depth_px, errors
-from models.calibration import Calibration, load
-from models.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
-from models.cost import Cost, cost
-from models.errors import InputError
-from models.frames import Frames, load_frames
+from tactile_depth import reference
+from tactile_depth.accuracy import SMALLEST_PEAK_PX, depth_px, errors
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.cost import Cost, cost
+from tactile_depth.errors import InputError
+from tactile_depth.frames import Frames, load_frames
+from tactile_depth.sensor import Sensor
 
 OWN = ("TOLERANCE", "MAX_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
 OF_SIM = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
-    *("REFERENCE", "CALIBRATION", "SEED", "OUT"),
+    *("REFERENCE", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
 )
 DEFAULT_OUT = simulation.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
@@ -264,8 +264,10 @@ def config_file(request: sim.Request, at: Widths) -> dict[str, str | int | float
     if request.depth_range_mm is not None:
         chosen["DEPTH_RANGE"] = request.depth_range_mm
     path = Path(request.calibration)
-    if request.calibration != "synthetic":
-        chosen["CALIBRATION"] = str(path.resolve()) if path.is_file() else request.calibration
+    chosen["CALIBRATION"] = str(path.resolve()) if path.is_file() else request.calibration
+    if request.camera_size is not None:
+        rows, columns = request.camera_size
+        chosen["CAMERA_SIZE"] = f"{columns}x{rows}"
     if request.gradient:
         chosen["GRADIENT"] = request.gradient
     return chosen
@@ -288,7 +290,7 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     """Everything after parsing; returns the exit status."""
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
-    calibration = load(request.calibration)
+    calibration = sim.load_sensor(request)
 
     def shaped(at: Widths) -> sim.Request:
         return replace(request, solver=at.solver, data_width=at.data, coefficient_width=at.coefficient)
@@ -297,7 +299,7 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     frames = load_frames(
         request.frames, (request.rows, request.columns), request.reference, request.seed, request.press
     )
-    calibration = calibration.on_grid(frames.pixel_scale, frames.reference)
+    calibration = calibration.on_grid(frames)
     built: dict[Widths, Configuration | None] = {}
     refusals: list[InputError] = []
 
@@ -318,7 +320,7 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     print(how)
-    _writable(out)
+    results.make(out, ("config.json", "report.json"))
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
         measure = _measurement(tuning, calibration, widest, bar)
@@ -350,7 +352,7 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
             "give more frames or a smaller tolerance"
         )
         return 1
-    results = {
+    documents = {
         "config.json": config_file(request, best),
         "report.json": {
             "tolerance_percent": limits.tolerance,
@@ -364,10 +366,10 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
             "tried": {str(at): error if math.isfinite(error) else None for at, error in sorted(search.tried.items())},
         },
     }
-    for name, content in results.items():
-        temporary = out / f".{name}"
-        temporary.write_text(json.dumps(content, indent=1) + "\n")
-        os.replace(temporary, out / name)
+    with results.workspace(out) as work:
+        for name, content in documents.items():
+            (work / name).write_text(json.dumps(content, indent=1) + "\n")
+        results.replace(work, documents, out)
     file = os.path.relpath(out / "config.json")
     print(f"proven: {worst:.4f} % of peak at worst, within {limits.tolerance:g}; make sim CONFIG={file}")
     return 0
@@ -395,18 +397,8 @@ def _check_grid(request: sim.Request, solvers: list[str]) -> None:
     raise refused[0]
 
 
-def _writable(out: Path) -> None:
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        probe = out / ".probe"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a folder that can") from error
-
-
 def _measurement(
-    tuning: Frames, calibration: Calibration, any_of_them: Configuration, bar: tqdm
+    tuning: Frames, calibration: Sensor, any_of_them: Configuration, bar: tqdm
 ) -> Callable[[Configuration], float]:
     exact = reference.depth_of(tuning.pixels, calibration, any_of_them)
 

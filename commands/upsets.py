@@ -12,9 +12,9 @@ from typing import Any
 
 from commands import simulator as simulation
 from commands import variables
-from models.calibration import synthetic
-from models.configuration import Configuration
-from models.tactile_depth import top_parameters, write_roms
+from tactile_depth.configuration import Configuration
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 CASES: dict[str, dict[str, Any]] = {
     "spectral": {"columns": 16, "bits_per_channel": 2},
@@ -71,6 +71,11 @@ def main() -> None:
         given = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
         upsets = variables.number(given, "UPSETS", 60, 1, 100_000)
         seed = variables.number(given, "SEED", 1, 0, 10**9)
+        sys.exit(campaign(upsets, seed))
+
+
+def campaign(upsets: int, seed: int) -> int:
+    """Flip bits in every case and print tables of the outcomes; returns the exit status."""
     folders = {case: simulation.ROOT / "build" / "upsets" / case for case in CASES}
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)
@@ -85,7 +90,7 @@ def main() -> None:
         print(f"\n{case}\n{table(results.result())}")
         bad += sum(not r["setting"] and r["outcome"] in ("hang", "stays wrong") for r in results.result())
     print(f"\n{bad} hang or stay wrong")
-    sys.exit(bool(bad))
+    return variables.MISMATCH if bad else variables.EQUAL
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
 //
-// Nothing is assumed of the master, the pipeline, the tables or reset. The registers of the specification change by what
+// Nothing is assumed of the master, the pipeline, the tables or reset. The registers of the specification change by
+// what
 // was seen on the ports alone.
 
 module fv_axil_registers

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_contact_events: a record Latency clocks after the last depth of each frame, kept until the next; touching moves
-// only 3 clocks after a last depth, and the record says so; packets are whole, in order, each the record that stood when
+// only 3 clocks after a last depth, and the record says so; packets are whole, in order, each the record that stood
+// when
 // it began; stable under stall; a record is sent, or waits, or is lost and said so.
 //
 // Whatever frames come, one may begin inside another; their last depths lie at least Latency clocks apart, as the core
@@ -11,7 +12,7 @@ module fv_contact_events #(
   parameter int Width   = 2,
   parameter int Rows    = 3,
   parameter int Columns = 4,
-  parameter int Latency = 20  // models/contact_events.py
+  parameter int Latency = 20  // models/tactile_depth/contact/contact_events.py
 ) (
   input logic                    clk,
   input logic                    rst,

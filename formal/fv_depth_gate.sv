@@ -4,7 +4,8 @@
 // looked at once and in order: of a frame that does not wait in the clock after it came; of one that does no later than
 // it leaves, and sooner only when the next frame does not wait. With such a frame en is high, but for the first clock.
 //
-// One arbitrary word is followed: `pick` is free. Frames are of Words words, in successive enabled clocks, with any gaps
+// One arbitrary word is followed: `pick` is free. Frames are of Words words, in successive enabled clocks, with any
+// gaps
 // between them; drop_frames and m_ready move freely.
 
 module fv_depth_gate #(

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_gradient_lookup: the slopes of a pixel are those that stand at the index of its colour in the bank that its frame
 // began with, from power-up or as last written; valid and place travel with it, 4 enabled clocks; while en is low all
-// outputs hold. An entry asked for stands on the read port 2 clocks later and until the next: that of the bank not in use.
+// outputs hold. An entry asked for stands on the read port 2 clocks later and until the next: that of the bank not in
+// use.
 //
-// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read; the
+// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read;
+// the
 // first pixels of two frames do not follow each other.
 
 module fv_gradient_lookup #(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_quadratic_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that stood
+// fv_quadratic_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that
+// stood
 // in the bank which the frame began with, from power-up or as last written; valid and place travel with the pixel, 11
 // enabled clocks; while en is low all outputs hold. A word read stands on the read port from the next clock until the
 // next read: that of the bank not in use.

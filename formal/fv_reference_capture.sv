@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_reference_capture: a capture begins with the first whole frame behind a request, takes 2^k good frames in a row,
 // and is done a fixed number of clocks behind the last of them; no node is read before it was written, or in the clock
-// that writes it, and nothing is written while idle. In a second part (Sums 1): an arbitrary pixel of a capture, the only
+// that writes it, and nothing is written while idle. In a second part (Sums 1): an arbitrary pixel of a capture, the
+// only
 // one that is not black, is added once to its node and to no other; what does nothing but add does so to all.
 //
 // Of the three colours, red; the quotients are left to simulation. Assumed: places in raster order.

@@ -7,7 +7,8 @@
 // which gain_map interpolates. Its words there are offset binary, so that it need not know of signs; floor_0.hex has
 // them so at power-up. A node of the table or of the capture is signed, nodes row by row in the order of the stream.
 // Stream in: frames of depth, whole but for a reset. Stream out: the same. Latency: 10 cycles; a gap or en low changes
-// no depth. `active`: a frame is inside. Banks, bus and capture: see gain_map. Bit-accurate model: models/auto_zero.py.
+// no depth. `active`: a frame is inside. Banks, bus and capture: see gain_map. Bit-accurate model:
+// models/tactile_depth/calibration/auto_zero.py.
 
 module auto_zero #(
   parameter int Rows      = 128,

@@ -25,7 +25,7 @@
 // start is refused while its change-over is pending: it comes so much later than a frame's start, that a capture would
 // write the bank which is to be used. record: word n of the contact events in bits 32 n + 31 to 32 n; what is read is
 // the word as it stands.
-// Behavioural model: models/axil_registers.py.
+// Behavioural model: models/tactile_depth/registers/axil_registers.py.
 
 module axil_registers
   import register_map_pkg::*;

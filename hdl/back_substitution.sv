@@ -4,7 +4,7 @@
 //   z[i] = d[i] - c[i] z[i+1],  z[Rows] = 0
 //
 // Stream in: bursts of Size words d, Rows of them a frame, last row first. Stream out: the same bursts of z, Width
-// bits. Latency: 8 cycles. One multiplier. Bit-accurate model: models/back_substitution.py.
+// bits. Latency: 8 cycles. One multiplier. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
 
 module back_substitution #(
   parameter int Width          = 27,

@@ -3,7 +3,7 @@
 //
 // A burst is Size words in successive enabled clocks; start comes with the first. position and active are combinational
 // with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
-// Bit-accurate model: models/burst_counter.py.
+// Bit-accurate model: models/tactile_depth/common/burst_counter.py.
 
 module burst_counter #(
   parameter int Size = 128,

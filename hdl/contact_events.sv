@@ -24,7 +24,8 @@
 // Stream out: each record as a packet of 13 words, word 0 first, tlast with word 12. A record that finds the one before
 // still waiting for its turn replaces it, and event_lost is high for a clock; what has begun is finished.
 // Latency: the record stands in its register Latency = 2 log2(larger side) + 16 clocks after the last depth was taken,
-// the packet's first word one clock later, touching 3 clocks after it. Bit-accurate model: models/contact_events.py.
+// the packet's first word one clock later, touching 3 clocks after it. Bit-accurate model:
+// models/tactile_depth/contact/contact_events.py.
 
 module contact_events #(
   parameter int Width       = 24,

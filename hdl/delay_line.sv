@@ -2,7 +2,7 @@
 // delay_line: out is in, Delay enabled clocks later.
 //
 // Time moves with en alone, not with the data: what is inside drains by itself. Short lines are registers, long ones a
-// memory whose pointer runs round. Bit-accurate model: models/delay_line.py.
+// memory whose pointer runs round. Bit-accurate model: models/tactile_depth/common/delay_line.py.
 
 module delay_line #(
   parameter int Width = 54,

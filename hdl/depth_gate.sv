@@ -12,7 +12,7 @@
 // the comparator and contact_events see it: each word once, in order; with 0 in the clock in which it leaves, with 1 a
 // clock after it came, which is when it would leave, be it given up or not. Words that a sink has left standing when 0
 // turns to 1 are looked at first, one a clock: for that, and for nothing else, en is low with 1, for one clock.
-// Cycle-accurate model: models/depth_gate.py.
+// Cycle-accurate model: models/tactile_depth/frame/depth_gate.py.
 
 module depth_gate #(
   parameter int Width = 24

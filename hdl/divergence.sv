@@ -5,7 +5,7 @@
 //
 // A gradient belongs to its pixel's centre, so this places the depth half a pixel up and left.
 // Stream in: pixels in raster order, gaps anywhere, their place in the frame with them. Stream out: the same
-// pixels. Latency: 2 cycles; one line of gy is stored. Bit-accurate model: models/divergence.py.
+// pixels. Latency: 2 cycles; one line of gy is stored. Bit-accurate model: models/tactile_depth/gradient/divergence.py.
 
 module divergence #(
   parameter int Width   = 21,   // of a slope

@@ -2,7 +2,7 @@
 // dot_product: a0 b0 + a1 b1, exact. Latency: 4 cycles.
 //
 // Registered and staggered as two cascaded DSP48E2 take it: operands, product (multiply), sum. No reset on the way.
-// Bit-accurate model: models/dot_product.py.
+// Bit-accurate model: models/tactile_depth/common/dot_product.py.
 
 module dot_product #(
   parameter int AWidth = 27,

@@ -9,7 +9,7 @@
 //
 //   sign (-1)^n  ->  sdf_fft  ->  turn by exp(-j pi k / 2N), real part
 //
-// Bit-accurate model: models/dst_forward.py.
+// Bit-accurate model: models/tactile_depth/transform/dst_forward.py.
 
 module dst_forward #(
   parameter int Size       = 128,

@@ -8,7 +8,7 @@
 //
 //   mode_pairs  ->  turn C[N-k] + j C[k] by exp(j pi k / 2N) / j  ->  inverse sdf_fft  ->  sign (-1)^n
 //
-// Bit-accurate model: models/dst_inverse.py.
+// Bit-accurate model: models/tactile_depth/transform/dst_inverse.py.
 
 module dst_inverse #(
   parameter int Size       = 128,

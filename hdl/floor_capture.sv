@@ -8,7 +8,8 @@
 // auto_zero that is not in use. `done` is high for one clock after the last, and asks for the change-over. While busy
 // nobody else writes that bank, nor asks for a change-over.
 // Stream in: frames of depth before the floor is taken off, whole but for a reset; gaps and en low change no floor.
-// From the last word of the last row of blocks to done: 6 clocks, en or not. Model: models/floor_capture.py.
+// From the last word of the last row of blocks to done: 6 clocks, en or not. Model:
+// models/tactile_depth/calibration/floor_capture.py.
 
 module floor_capture #(
   parameter int Rows      = 128,

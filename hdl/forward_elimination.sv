@@ -7,7 +7,8 @@
 //
 // Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of
 // d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier; between dependent
-// values lie at least Size clocks, so it pipelines freely. Bit-accurate model: models/forward_elimination.py.
+// values lie at least Size clocks, so it pipelines freely. Bit-accurate model:
+// models/tactile_depth/poisson/forward_elimination.py.
 
 module forward_elimination #(
   parameter int Width          = 27,

@@ -4,7 +4,8 @@
 // Stream in: bursts of Columns words, Rows of them a frame, one after another. in_due: now a frame's first word is due;
 // in_bad belongs to that frame. Stream out: the words of good frames with user (first of a frame), last (last of a
 // row). The side-bands count from in_due, so a frame has its form whatever comes in; where bursts and frames do not
-// begin as they should, out_of_step is high. Combinational. Bit-accurate model: models/frame_output.py.
+// begin as they should, out_of_step is high. Combinational. Bit-accurate model:
+// models/tactile_depth/frame/frame_output.py.
 
 module frame_output #(
   parameter int Width   = 24,

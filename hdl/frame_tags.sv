@@ -4,7 +4,7 @@
 // A tag is pushed with the last pixel of a frame. Latency enabled clocks later `due` is high for one enabled clock,
 // with the tag on due_tag. No order is kept: each place compares the clock with its own, so an upset costs the frame it
 // hits and no other. Pushes lie at least Pixels enabled clocks apart, so there are never more tags than places.
-// Cycle-accurate model: models/frame_tags.py.
+// Cycle-accurate model: models/tactile_depth/frame/frame_tags.py.
 
 module frame_tags #(
   parameter int Width   = 33,

@@ -12,7 +12,8 @@
 // capture (all gains of a node, read one clock later). Nothing is written while a change-over is due (table_bank is not
 // table_in_use). A table_read stands on table_read_gain from 3 clocks later until the next, en or not; no write until
 // then. What the bus reads while the capture reads is left open. <Name>_0, 1 and 2.hex give both banks at power-up; a
-// memory without contents there must be written before the first frame. Bit-accurate model: models/gain_map.py.
+// memory without contents there must be written before the first frame. Bit-accurate model:
+// models/tactile_depth/calibration/gain_map.py.
 
 module gain_map #(
   parameter int Rows      = 128,

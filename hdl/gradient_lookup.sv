@@ -8,7 +8,8 @@
 // A frame uses the bank that table_bank names when its first pixel is taken, or in reset; table_in_use says which. The
 // other is written by table_write, whenever no change-over is due (table_bank is table_in_use), and read by table_read:
 // the entry stands on table_read_* from 2 clocks later until the next, en or not. Asked for in the clock of a
-// change-over it is of the bank that comes into use. Bit-accurate model: models/gradient_lookup.py, which also writes
+// change-over it is of the bank that comes into use. Bit-accurate model:
+// models/tactile_depth/gradient/gradient_lookup.py, which also writes
 // the table.
 
 module gradient_lookup #(

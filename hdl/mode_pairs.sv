@@ -7,7 +7,7 @@
 // In bit-reversed order the modes of positions 2^m .. 2^(m+1) - 1 are the odd multiples of N / 2^(m+1): N - k stands in
 // the same group, counted from its other end, so its position is that of k with every bit below the leading one
 // inverted. Half a burst is waited for; a memory of one burst serves, since a place is read before the next burst comes
-// to it. Bit-accurate model: models/mode_pairs.py.
+// to it. Bit-accurate model: models/tactile_depth/transform/mode_pairs.py.
 
 module mode_pairs #(
   parameter int Width = 27,

@@ -3,7 +3,7 @@
 //
 // The one place to put a multiplier of the technology: every product of the design is one of these, its operands and
 // what becomes of it stand in registers without reset, under the same enable.
-// Bit-accurate model: models/multiply.py.
+// Bit-accurate model: models/tactile_depth/common/multiply.py.
 
 module multiply #(
   parameter int AWidth = 27,

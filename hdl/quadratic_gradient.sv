@@ -11,7 +11,8 @@
 // with the calibration at power-up. A frame uses the bank that table_bank names when its first pixel is taken, or in
 // reset; table_in_use says which. The other is written by table_write, whenever no change-over is due (table_bank is
 // table_in_use), and read by table_read: the word stands on table_read_word until the next, en or not. Never both in
-// one clock. Bit-accurate model: models/quadratic_gradient.py; models/rom_files.py writes the words.
+// one clock. Bit-accurate model: models/tactile_depth/gradient/quadratic_gradient.py;
+// models/tactile_depth/rom_files.py writes the words.
 
 module quadratic_gradient #(
   parameter int Width          = 21,  // of a slope

@@ -3,7 +3,7 @@
 //
 // The one place to put a memory macro. Nobody reads a word in the cycle that writes it, so what such a read returns is
 // left open. A File (one line per word, $readmemh) gives the contents at power-up.
-// Bit-accurate model: models/ram.py.
+// Bit-accurate model: models/tactile_depth/common/ram.py.
 
 module ram #(
   parameter int Width = 24,

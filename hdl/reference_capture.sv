@@ -9,7 +9,8 @@
 // gain_map that is not in use; `done` is high for one clock after the last gain is written, and asks for the
 // change-over. While busy nobody else writes that bank, nor asks for a change-over.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that gain_map takes; gaps and en low change no gain.
-// From the last pixel to done: 85 nodes + 2 clocks, en or not. Model: models/reference_capture.py.
+// From the last pixel to done: 85 nodes + 2 clocks, en or not. Model:
+// models/tactile_depth/calibration/reference_capture.py.
 
 module reference_capture #(
   parameter int Rows         = 128,

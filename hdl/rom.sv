@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // rom: read-only memory. Read latency: 1 cycle.
 //
-// Contents come from File (one line per word, $readmemh), written by models/rom_files.py.
-// Bit-accurate model: models/rom.py.
+// Contents come from File (one line per word, $readmemh), written by models/tactile_depth/rom_files.py.
+// Bit-accurate model: models/tactile_depth/common/rom.py.
 
 module rom #(
   parameter int Width = 54,

@@ -10,7 +10,7 @@
 //
 // The chain, forward: [a, Delay = B/2] [b, Delay = B/4, turns, halves] [twiddle, if B > 4] for B = Size, Size/4, ..;
 // with log2(Size) odd a last [Delay = 1]. The inverse is the same chain from its end, where [a] turns and halves in
-// place of [b], and so does the lone one. Bit-accurate model: models/sdf_fft.py.
+// place of [b], and so does the lone one. Bit-accurate model: models/tactile_depth/transform/sdf_fft.py.
 
 module sdf_fft #(
   parameter int Width      = 27,

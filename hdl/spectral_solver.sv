@@ -7,8 +7,9 @@
 //               -> dst_inverse -> transpose -> dst_inverse -> row_reorder
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
-// one burst of Size words a row. Latency: fixed; models/latency.py. Formats: models/configuration.py.
-// Bit-accurate model: models/spectral_solver.py.
+// one burst of Size words a row. Latency: fixed; models/tactile_depth/latency.py. Formats:
+// models/tactile_depth/configuration.py.
+// Bit-accurate model: models/tactile_depth/poisson/spectral_solver.py.
 
 module spectral_solver #(
   parameter int Size             = 128,

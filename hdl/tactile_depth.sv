@@ -11,9 +11,11 @@
 // Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, one pixel per clock sustained.
 // Stream out: depth codes in raster order (tridiagonal: bottom row first), tuser with the first of a frame, tlast with
 // the last of a row, sign-extended to whole bytes; depth_mm = code * depth_lsb_mm, pressed in is positive.
-// Latency: fixed, models/latency.py. Gaps in the input change no result, and not the clocks from the last pixel to the
-// first depth. A stalled sink stops the pipeline. Registers: docs/registers.md. Parameters: models/configuration.py.
-// Bit-accurate model: models/tactile_depth.py.
+// Latency: fixed, models/tactile_depth/latency.py. Gaps in the input change no result, and not the clocks from the
+// last pixel to the
+// first depth. A stalled sink stops the pipeline. Registers: docs/registers.md. Parameters:
+// models/tactile_depth/configuration.py.
+// Bit-accurate model: models/tactile_depth/tactile_depth.py.
 
 module tactile_depth
   import register_map_pkg::*;

@@ -5,7 +5,8 @@
 //
 // A position and a row in, its coefficient out 5 enabled clocks later. Down the rows a coefficient soon settles; what
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
-// shift, since its coefficients exceed 1 under Neumann. Bit-accurate model: models/thomas_table.py, which also writes
+// shift, since its coefficients exceed 1 under Neumann. Bit-accurate model:
+// models/tactile_depth/poisson/thomas_table.py, which also writes
 // the ROMs.
 
 module thomas_table #(

@@ -5,7 +5,8 @@
 //   contact <- 0 when the first depth of a frame leaves, unless hold; setting wins over clearing
 //
 // Stream in: depth codes as they leave (valid and ready together); it never stalls them. A threshold written inside a
-// frame counts from the next one on. Latency: 1 cycle. Bit-accurate model: models/threshold_comparator.py.
+// frame counts from the next one on. Latency: 1 cycle. Bit-accurate model:
+// models/tactile_depth/contact/threshold_comparator.py.
 
 module threshold_comparator #(
   parameter int Width = 24

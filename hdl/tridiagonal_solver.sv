@@ -6,8 +6,10 @@
 //   row_reorder -> dst_forward -> forward_elimination -> frame_stack -> back_substitution -> dst_inverse -> row_reorder
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
-// one burst of Size words a row. Latency: fixed, 3.5 Size and a few registers behind the last pixel; models/latency.py.
-// Formats: models/configuration.py. Bit-accurate model: models/tridiagonal_solver.py.
+// one burst of Size words a row. Latency: fixed, 3.5 Size and a few registers behind the last pixel;
+// models/tactile_depth/latency.py.
+// Formats: models/tactile_depth/configuration.py. Bit-accurate model:
+// models/tactile_depth/poisson/tridiagonal_solver.py.
 
 module tridiagonal_solver #(
   parameter int Rows           = 128,

@@ -5,7 +5,7 @@
 //
 // Stream in: bursts of Size complex words. Stream out: the same. Latency: 7 cycles.
 // A factor of 1 is 2^(CoeffWidth-1) - 1, so with Drop = CoeffWidth - 1 the gain is 1 - 2^(1 - CoeffWidth).
-// Bit-accurate model: models/twiddle_multiply.py, which also says what the ROMs hold.
+// Bit-accurate model: models/tactile_depth/transform/twiddle_multiply.py, which also says what the ROMs hold.
 
 module twiddle_multiply #(
   parameter int InWidth    = 27,

@@ -13,7 +13,7 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from models.frame_guard import Word
+from tactile_depth.frame.frame_guard import Word
 
 VIDEO = ("data", "last", "user")
 

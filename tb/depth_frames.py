@@ -2,6 +2,7 @@
 """Frames of depth as auto_zero and floor_capture take them: words with the marks of frames and rows."""
 
 import numpy as np
+
 from stream import StreamDriver, send_apart
 
 FIELDS = ["user", "last", "frame_end", "data"]

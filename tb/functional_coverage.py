@@ -14,13 +14,13 @@ from itertools import product
 from pathlib import Path
 
 import cocotb
-from axis import PROFILES
 from cocotb.triggers import RisingEdge
 
-from models.configuration import COLUMNS, ROWS, Configuration
-from models.frame_guard import FAULTS
-from models.latency import frame_latency
-from models.register_map import MAP
+from axis import PROFILES
+from tactile_depth.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.frame.frame_guard import FAULTS
+from tactile_depth.latency import frame_latency
+from tactile_depth.registers.register_map import MAP
 
 FILE = "functional_coverage.json"
 

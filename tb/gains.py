@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
-from stream import parameters, places
 
-from models.configuration import GAIN_WIDTH, Format
-from models.flat_field import unit_gains
-from models.gain_map import ENTRIES_PER_NODE, table_entries
+from stream import parameters, places
+from tactile_depth.calibration.flat_field import unit_gains
+from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
+from tactile_depth.configuration import GAIN_WIDTH, Format
 
 READ_CLOCKS = 3  # from table_read to the gain
 PAUSED = 4  # clocks of a pause before its last

@@ -10,8 +10,8 @@ import cocotb
 from cocotb.triggers import RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiStreamBus, AxiStreamFrame, AxiStreamSink, AxiStreamSource
 
-from models.axil_registers import BYTES, Response
-from models.frame_guard import Word
+from tactile_depth.frame.frame_guard import Word
+from tactile_depth.registers.axil_registers import BYTES, Response
 
 
 class SecondSource:

@@ -12,8 +12,8 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from models.configuration import Configuration
-from models.round_saturate import Monitor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
 
 CLOCK_NS = 6
 REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice

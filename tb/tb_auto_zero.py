@@ -6,13 +6,13 @@ from collections import deque
 import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
+
 from depth_frames import DepthDriver, depth_words, random_depths
 from gains import Gains, Grid
 from stream import Bench, places
-
-from models.auto_zero import auto_zero, interpolated_floor
-from models.latency import AUTO_ZERO
-from models.round_saturate import Monitor
+from tactile_depth.calibration.auto_zero import auto_zero, interpolated_floor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import AUTO_ZERO
 
 WORDS = 2048  # that a test sends, at least
 MARKS = ("user", "last", "frame_end")

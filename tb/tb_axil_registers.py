@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/axil_registers.sv against models/axil_registers.py, every output in every clock."""
+"""Checks hdl/axil_registers.sv against its model, every output in every clock."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 from cocotb_bus.drivers.amba import AXI4LiteMaster, AXIProtocolError
-from stream import REGRESS
 
-from models.axil_registers import (
+from stream import REGRESS
+from tactile_depth.registers.axil_registers import (
     BYTES,
     CAPTURES,
     COUNTERS,
@@ -29,7 +29,7 @@ from models.axil_registers import (
     Response,
     strobed_bits,
 )
-from models.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES
+from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES
 
 FLAGS = tuple(dict.fromkeys((*STICKY_EVENTS, *EVENT_COUNTERS)))  # some are both
 LEVELS = ("busy", "contact", "touching")  # live bits of STATUS, and inputs

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axis_skid against models.axis_skid, every output in every clock; gaps, stalls, resets."""
+"""axis_skid against tactile_depth.common.axis_skid, every output in every clock; gaps, stalls, resets."""
 
 import os
 import random
 
 import cocotb
-from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.axis_skid import AxisSkid
+from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, profile
+from stream import CLOCK_NS, parameters
+from tactile_depth.common.axis_skid import AxisSkid
 
 WORDS = 600
 FIELDS = ("data",)

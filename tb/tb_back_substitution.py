@@ -2,10 +2,10 @@
 """back_substitution against its model: codes, latency, saturations; gaps, pauses, reset."""
 
 import cocotb
-from stream import MANY, check_bursts, configuration, corners, uniform
 
-from models.back_substitution import back_substitution
-from models.latency import BACK_SUBSTITUTION
+from stream import MANY, check_bursts, configuration, corners, uniform
+from tactile_depth.latency import BACK_SUBSTITUTION
+from tactile_depth.poisson.back_substitution import back_substitution
 
 
 async def check(dut, amplitude, frames=3, **behaviour):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""burst_counter against models.burst_counter: bursts apart, back to back, begun again; pauses; reset."""
+"""burst_counter against tactile_depth.common.burst_counter: bursts apart, back to back, begun again; pauses; reset."""
 
 import random
 
 import cocotb
-from stream import drive, parameters
 
-from models.burst_counter import burst_counter
+from stream import drive, parameters
+from tactile_depth.common.burst_counter import burst_counter
 
 
 def starts(size, chance):

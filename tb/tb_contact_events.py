@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""contact_events against models.contact_events in every clock, and every field of a record against numpy on the map."""
+"""contact_events against its model in every clock, and every field of a record against numpy on the map."""
 
 import os
 import random
@@ -7,12 +7,12 @@ from fractions import Fraction
 
 import cocotb
 import numpy as np
-from axis import PROFILES, profile
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from stream import CLOCK_NS, REGRESS, parameters
 
-from models.contact_events import CLOCKS_TO_TOUCHING, WORDS, ContactEvents, Packets, Settings, latency
+from axis import PROFILES, profile
+from stream import CLOCK_NS, REGRESS, parameters
+from tactile_depth.contact.contact_events import CLOCKS_TO_TOUCHING, WORDS, ContactEvents, Packets, Settings, latency
 
 FRAMES = {0.0: 1000, 0.1: 1000 if REGRESS else 200}  # by the share of gaps
 WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""delay_line against models.delay_line, with pauses, before and after a reset in mid-stream."""
+"""delay_line against tactile_depth.common.delay_line, with pauses, before and after a reset in mid-stream."""
 
 import random
 
 import cocotb
-from stream import drive, parameters
 
-from models.delay_line import delay_line
+from stream import drive, parameters
+from tactile_depth.common.delay_line import delay_line
 
 
 @cocotb.test()

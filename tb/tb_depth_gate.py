@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""depth_gate against models.depth_gate, every output in every clock; and what it promises, from the pins alone."""
+"""depth_gate against its model, every output in every clock; and what it promises, from the pins alone."""
 
 import os
 import random
 
 import cocotb
-from axis import PROFILES, AxisMonitor, profile
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.depth_gate import DepthGate, Word
+from axis import PROFILES, AxisMonitor, profile
+from stream import CLOCK_NS, parameters
+from tactile_depth.frame.depth_gate import DepthGate, Word
 
 ROWS, COLUMNS = 3, 5
 FIELDS = ("data", "user", "last", "frame_end")

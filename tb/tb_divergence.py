@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""divergence against models.divergence: codes, latency; frame on frame with gaps, pauses, extremes, reset."""
+"""divergence against its model: codes, latency; frame on frame with gaps, pauses, extremes, reset."""
 
 import cocotb
 import numpy as np
+
 from stream import (
     Bench,
     StreamDriver,
@@ -14,9 +15,8 @@ from stream import (
     send_apart,
     uniform,
 )
-
-from models.divergence import divergence
-from models.latency import DIVERGENCE
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.latency import DIVERGENCE
 
 FIELDS = ["gx", "gy", "first_row", "first_column", "last_row", "last_column"]
 

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""dot_product against models.dot_product: every combination of extremes, random words, pauses."""
+"""dot_product against tactile_depth.common.dot_product: every combination of extremes, random words, pauses."""
 
 import itertools
 import random
 
 import cocotb
 import numpy as np
-from stream import drive, parameters
 
-from models.dot_product import dot_product
-from models.latency import DOT_PRODUCT
+from stream import drive, parameters
+from tactile_depth.common.dot_product import dot_product
+from tactile_depth.latency import DOT_PRODUCT
 
 FACTORS = ("a0", "b0", "a1", "b1")
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""dst_forward against models.dst_forward: codes, latency, saturations; gaps, pauses, extremes, reset."""
+"""dst_forward against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
 import cocotb
 import numpy as np
-from stream import MANY, check_bursts, corners, extremes, parameters, uniform
 
-from models.dst_forward import dst_forward
-from models.latency import dst_forward_latency
+from stream import MANY, check_bursts, corners, extremes, parameters, uniform
+from tactile_depth.latency import dst_forward_latency
+from tactile_depth.transform.dst_forward import dst_forward
 
 
 async def check(dut, x, **behaviour):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""dst_inverse against models.dst_inverse: codes, latency, saturations; gaps, pauses, extremes, reset."""
+"""dst_inverse against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
 import cocotb
 import numpy as np
-from stream import MANY, check_bursts, corners, extremes, parameters, uniform
 
-from models.dst_inverse import dst_inverse
-from models.latency import dst_inverse_latency
+from stream import MANY, check_bursts, corners, extremes, parameters, uniform
+from tactile_depth.latency import dst_inverse_latency
+from tactile_depth.transform.dst_inverse import dst_inverse
 
 
 async def check(dut, x, **behaviour):

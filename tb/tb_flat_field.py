@@ -4,12 +4,12 @@
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
+
 from gains import Gains, Grid, random_gains, reads_as_a_pause_ends
 from stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
-
-from models.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
-from models.latency import FLAT_FIELD
-from models.round_saturate import Monitor
+from tactile_depth.calibration.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import FLAT_FIELD
 
 PIXELS = 2048  # that a test sends, at least
 PIXEL = ["pixel", "place"]

@@ -6,11 +6,11 @@ import itertools
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
+
 from depth_frames import DepthDriver, depth_words, random_depths
 from gains import Grid
 from stream import REGRESS, Bench, parameters
-
-from models.floor_capture import CLOCKS, captured_floor
+from tactile_depth.calibration.floor_capture import CLOCKS, captured_floor
 
 WORDS = 2048  # that a test sends, about
 

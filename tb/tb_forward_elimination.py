@@ -5,10 +5,10 @@ import math
 
 import cocotb
 import numpy as np
-from stream import MANY, check_bursts, configuration, corners, uniform
 
-from models.forward_elimination import forward_elimination
-from models.latency import FORWARD_ELIMINATION
+from stream import MANY, check_bursts, configuration, corners, uniform
+from tactile_depth.latency import FORWARD_ELIMINATION
+from tactile_depth.poisson.forward_elimination import forward_elimination
 
 
 async def check(dut, amplitude, frames=3, **behaviour):

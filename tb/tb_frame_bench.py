@@ -10,7 +10,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from cocotb_bus.drivers.amba import AXI4LiteMaster
 
-from models.register_map import REGISTERS
+from tactile_depth.registers.register_map import REGISTERS
 
 CLOCK_NS = 6
 READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "FIRST_DEPTH_LATENCY")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_guard against models.frame_guard: frames, marks and faults of what was seen on the input.
+"""frame_guard against tactile_depth.frame.frame_guard: frames, marks and faults of what was seen on the input.
 
 That the model's frames and faults are the right ones is tests/test_frame_guard.py.
 """
@@ -9,12 +9,12 @@ import random
 from itertools import chain, repeat
 
 import cocotb
-from axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, video
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
-from stream import CLOCK_NS, REGRESS, parameters
 
-from models.frame_guard import FAULTS, frame_guard
+from axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, video
+from stream import CLOCK_NS, REGRESS, parameters
+from tactile_depth.frame.frame_guard import FAULTS, frame_guard
 
 TIMEOUT = 5
 RANDOM_FRAMES = 60

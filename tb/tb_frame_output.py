@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_output against models.frame_output: what leaves, side-bands and marks, in every enabled clock."""
+"""frame_output against tactile_depth.frame.frame_output: what leaves, side-bands and marks, in every enabled clock."""
 
 import os
 import random
@@ -7,9 +7,9 @@ import random
 import cocotb
 from cocotb.clock import Clock as ClockOf
 from cocotb.triggers import RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.frame_output import Clock, frame_output
+from stream import CLOCK_NS, parameters
+from tactile_depth.frame.frame_output import Clock, frame_output
 
 
 class Bench:

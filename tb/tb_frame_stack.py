@@ -3,10 +3,10 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, parameters, places
 
-from models.frame_stack import frame_stack
-from models.latency import FRAME_STACK
+from stream import check_bursts, parameters, places
+from tactile_depth.latency import FRAME_STACK
+from tactile_depth.poisson.frame_stack import frame_stack
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_tags against models.frame_tags: every output in every clock; frames close and apart, pauses, resets."""
+"""frame_tags against its model: every output in every clock; frames close and apart, pauses, resets."""
 
 import os
 import random
@@ -7,9 +7,9 @@ import random
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.frame_tags import FrameTags
+from stream import CLOCK_NS, parameters
+from tactile_depth.frame.frame_tags import FrameTags
 
 
 class Bench:

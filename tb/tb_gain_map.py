@@ -3,11 +3,11 @@
 
 import cocotb
 import numpy as np
+
 from gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
 from stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
-
-from models.flat_field import interpolated_gains
-from models.latency import GAIN_MAP
+from tactile_depth.calibration.flat_field import interpolated_gains
+from tactile_depth.latency import GAIN_MAP
 
 PLACES = 2048  # that a test sends, at least
 

@@ -7,11 +7,11 @@ The reference follows the pins, clock by clock: a pixel's slopes are those that 
 import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
-from stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
 
-from models.calibration import synthetic
-from models.gradient_lookup import Banks, gradient_codes, gradient_lookup
-from models.latency import GRADIENT_LOOKUP
+from stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
+from tactile_depth.gradient.gradient_lookup import Banks, gradient_codes, gradient_lookup
+from tactile_depth.latency import GRADIENT_LOOKUP
+from tactile_depth.sensor import synthetic
 
 PIXEL = ["pixel", "place"]
 SLOPES = ["gx", "gy", "place"]

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mode_pairs against models.mode_pairs: codes, latency; gaps, pauses, reset."""
+"""mode_pairs against tactile_depth.transform.mode_pairs: codes, latency; gaps, pauses, reset."""
 
 import cocotb
 import numpy as np
-from stream import check_bursts, parameters, uniform
 
-from models.latency import mode_pairs_latency
-from models.mode_pairs import mode_pairs
+from stream import check_bursts, parameters, uniform
+from tactile_depth.latency import mode_pairs_latency
+from tactile_depth.transform.mode_pairs import mode_pairs
 
 
 async def check(dut, x, **behaviour):

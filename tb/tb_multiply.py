@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""multiply against models.multiply: every combination of extremes, random words, pauses."""
+"""multiply against tactile_depth.common.multiply: every combination of extremes, random words, pauses."""
 
 import itertools
 import random
 
 import cocotb
 import numpy as np
-from stream import drive, parameters
 
-from models.latency import MULTIPLY
-from models.multiply import multiply
+from stream import drive, parameters
+from tactile_depth.common.multiply import multiply
+from tactile_depth.latency import MULTIPLY
 
 
 @cocotb.test()

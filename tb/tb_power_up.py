@@ -7,6 +7,7 @@ from pathlib import Path
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
+
 from stream import CLOCK_NS
 
 

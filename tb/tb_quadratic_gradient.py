@@ -11,11 +11,11 @@ from pathlib import Path
 import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
-from stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
 
-from models.latency import QUADRATIC_GRADIENT
-from models.quadratic_gradient import coefficients, slope_codes
-from models.round_saturate import Monitor
+from stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.gradient.quadratic_gradient import coefficients, slope_codes
+from tactile_depth.latency import QUADRATIC_GRADIENT
 
 COLOURS = ["red", "green", "blue"]
 DEVIATIONS = [*COLOURS, "place"]

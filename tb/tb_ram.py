@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ram against models.ram: what reads return, with reads and writes in the same clock at different places."""
+"""ram against its model: what reads return, with reads and writes in the same clock at different places."""
 
 import os
 import random
 from pathlib import Path
 
 import cocotb
-from stream import drive, parameters
 
-from models.ram import ram
+from stream import drive, parameters
+from tactile_depth.common.ram import ram
 
 
 @cocotb.test()

@@ -7,10 +7,10 @@ import itertools
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
-from stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, send_apart
 
-from models.configuration import GAIN_FRACTION, GAIN_WIDTH
-from models.reference_capture import reference_capture, reference_capture_clocks
+from stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, send_apart
+from tactile_depth.calibration.reference_capture import reference_capture, reference_capture_clocks
+from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH
 
 PIXELS = 512  # that a test sends, about
 SUM_CLOCKS = 5  # from a pixel to its sum in the memory

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""rom against models.rom: every word, twice over in random order, with pauses."""
+"""rom against tactile_depth.common.rom: every word, twice over in random order, with pauses."""
 
 import random
 from pathlib import Path
 
 import cocotb
-from stream import drive, parameters
 
-from models.latency import MEMORY_READ
-from models.rom import rom
+from stream import drive, parameters
+from tactile_depth.common.rom import rom
+from tactile_depth.latency import MEMORY_READ
 
 
 @cocotb.test()

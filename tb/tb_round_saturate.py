@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""round_saturate against models.round_saturate: every input."""
+"""round_saturate against tactile_depth.common.round_saturate: every input."""
 
 import cocotb
 import numpy as np
 from cocotb.triggers import Timer
-from stream import parameters
 
-from models.round_saturate import Monitor, round_half_even, round_saturate
+from stream import parameters
+from tactile_depth.common.round_saturate import Monitor, round_half_even, round_saturate
 
 
 @cocotb.test()

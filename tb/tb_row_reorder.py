@@ -3,10 +3,10 @@
 
 import cocotb
 import numpy as np
-from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, interrupt, parameters, places, send_apart
 
-from models.latency import ROW_REORDER
-from models.row_reorder import row_reorder
+from stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, interrupt, parameters, places, send_apart
+from tactile_depth.latency import ROW_REORDER
+from tactile_depth.transform.row_reorder import row_reorder
 
 ROWS = 7
 FRAME = 3  # rows

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""sdf_butterfly against models.sdf_butterfly: codes, latency, saturations; gaps, pauses, extremes, reset."""
+"""sdf_butterfly against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
 import cocotb
 import numpy as np
-from stream import check_bursts, corners, extremes, parameters, uniform
 
-from models.latency import BUTTERFLY
-from models.sdf_butterfly import sdf_butterfly
-from models.sdf_fft import Stage
+from stream import check_bursts, corners, extremes, parameters, uniform
+from tactile_depth.latency import BUTTERFLY
+from tactile_depth.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.transform.sdf_fft import Stage
 
 FIELDS = ["re", "im"]
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""sdf_fft against models.sdf_fft: codes, latency, saturations; gaps, pauses, extremes, reset."""
+"""sdf_fft against tactile_depth.transform.sdf_fft: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
 import cocotb
 import numpy as np
-from stream import MANY, check_bursts, corners, extremes, parameters, uniform
 
-from models.latency import sdf_fft_latency
-from models.sdf_fft import sdf_fft
+from stream import MANY, check_bursts, corners, extremes, parameters, uniform
+from tactile_depth.latency import sdf_fft_latency
+from tactile_depth.transform.sdf_fft import sdf_fft
 
 FIELDS = ["re", "im"]
 

@@ -3,10 +3,10 @@
 
 import cocotb
 import numpy as np
-from stream import MANY, check_bursts, configuration, corners, extremes, parameters, uniform
 
-from models.latency import SPECTRAL_DIVIDE
-from models.spectral_divide import spectral_divide
+from stream import MANY, check_bursts, configuration, corners, extremes, parameters, uniform
+from tactile_depth.latency import SPECTRAL_DIVIDE
+from tactile_depth.poisson.spectral_divide import spectral_divide
 
 
 async def check(dut, x, **behaviour):

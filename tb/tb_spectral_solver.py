@@ -3,6 +3,7 @@
 
 import cocotb
 import numpy as np
+
 from stream import (
     MANY,
     Bench,
@@ -15,10 +16,9 @@ from stream import (
     send_apart,
     uniform,
 )
-
-from models.latency import spectral_solver_latency
-from models.round_saturate import Monitor
-from models.spectral_solver import spectral_solver
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import spectral_solver_latency
+from tactile_depth.poisson.spectral_solver import spectral_solver
 
 
 def codes(frames, amplitude):

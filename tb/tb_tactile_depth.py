@@ -11,29 +11,29 @@ import random
 from itertools import pairwise, product, repeat
 
 import cocotb
-import functional_coverage
 import numpy as np
-from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
+
+import functional_coverage
+from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
 from second_client import SecondMaster, SecondSink, SecondSource
 from stream import CLOCK_NS, MANY, configuration
+from tactile_depth.calibration.flat_field import captured_gains
+from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.contact.contact_events import record as record_of
+from tactile_depth.contact.threshold_comparator import ThresholdComparator
+from tactile_depth.frame.frame_guard import FAULTS, frame_guard
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.registers.axil_registers import WORD, Response, strobed_bits
+from tactile_depth.registers.register_map import MAP, REGISTERS, TABLES
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import slope_codes, solve, top_parameters, zeroed
 from tb_axil_registers import master_of, present, read, response_of, take, write
-
-from models.axil_registers import WORD, Response, strobed_bits
-from models.calibration import synthetic
-from models.contact_events import ContactEvents, Settings
-from models.contact_events import record as record_of
-from models.divergence import divergence
-from models.flat_field import captured_gains
-from models.floor_capture import captured_floor
-from models.frame_guard import FAULTS, frame_guard
-from models.gradient_lookup import gradient_codes, gradient_lookup
-from models.latency import first_depth_latency, last_pixel_to_first_depth
-from models.register_map import MAP, REGISTERS, TABLES
-from models.round_saturate import Monitor
-from models.tactile_depth import slope_codes, solve, top_parameters, zeroed
-from models.threshold_comparator import ThresholdComparator
 
 OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL, COMMIT, CAPTURE = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT", "CAPTURE"))
@@ -403,7 +403,7 @@ async def the_configuration_is_that_of_the_models(dut):
 
 @TEST
 async def one_frame(dut):
-    """It drains by itself, nothing follows; latencies are those of models.latency."""
+    """It drains by itself, nothing follows; latencies are those of tactile_depth.latency."""
     pipeline = await started(dut)
     await pipeline.send(pipeline.frame())
     await pipeline.check()

@@ -3,10 +3,10 @@
 
 import cocotb
 import numpy as np
-from stream import configuration, drive
 
-from models.latency import THOMAS_TABLE
-from models.thomas_table import thomas_table
+from stream import configuration, drive
+from tactile_depth.latency import THOMAS_TABLE
+from tactile_depth.poisson.thomas_table import thomas_table
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")

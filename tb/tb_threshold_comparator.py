@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""threshold_comparator against models.threshold_comparator: contact in every clock."""
+"""threshold_comparator against tactile_depth.contact.threshold_comparator: contact in every clock."""
 
 import os
 import random
@@ -7,9 +7,9 @@ import random
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.threshold_comparator import ThresholdComparator
+from stream import CLOCK_NS, parameters
+from tactile_depth.contact.threshold_comparator import ThresholdComparator
 
 CLOCKS = 5000
 WORD_BITS = 32

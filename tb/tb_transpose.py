@@ -3,10 +3,10 @@
 
 import cocotb
 import numpy as np
-from stream import check_bursts, parameters, places
 
-from models.latency import TRANSPOSE
-from models.transpose import transpose
+from stream import check_bursts, parameters, places
+from tactile_depth.latency import TRANSPOSE
+from tactile_depth.transform.transpose import transpose
 
 FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
 

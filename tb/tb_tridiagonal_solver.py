@@ -3,6 +3,7 @@
 
 import cocotb
 import numpy as np
+
 from stream import (
     MANY,
     Bench,
@@ -15,10 +16,9 @@ from stream import (
     send_apart,
     uniform,
 )
-
-from models.latency import tridiagonal_solver_latency
-from models.round_saturate import Monitor
-from models.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import tridiagonal_solver_latency
+from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
 
 
 async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):

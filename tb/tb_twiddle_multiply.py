@@ -5,10 +5,10 @@ import os
 
 import cocotb
 import numpy as np
-from stream import check_bursts, extremes, parameters, uniform
 
-from models.latency import TWIDDLE_MULTIPLY
-from models.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
+from stream import check_bursts, extremes, parameters, uniform
+from tactile_depth.latency import TWIDDLE_MULTIPLY
+from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
 
 FIELDS = ["re", "im"]
 

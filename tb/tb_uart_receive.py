@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""uart_receive against models.uart: bytes at rates that differ, gaps, breaks, noise, resets."""
+"""uart_receive against tactile_depth.boards.uart: bytes at rates that differ, gaps, breaks, noise, resets."""
 
 import os
 import random
@@ -7,9 +7,9 @@ import random
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.uart import receive, transmit
+from stream import CLOCK_NS, parameters
+from tactile_depth.boards.uart import receive, transmit
 
 BYTES = 40
 LEVELS = 120

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""uart_transmit against models.uart: every level of every bit; gaps, a reset."""
+"""uart_transmit against tactile_depth.boards.uart: every level of every bit; gaps, a reset."""
 
 import os
 import random
 from itertools import groupby
 
 import cocotb
-from axis import AxisSource, profile
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
-from stream import CLOCK_NS, parameters
 
-from models.uart import BITS, receive, transmit
+from axis import AxisSource, profile
+from stream import CLOCK_NS, parameters
+from tactile_depth.boards.uart import BITS, receive, transmit
 
 BYTES = 40
 

@@ -12,16 +12,26 @@ import cocotb
 import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge, ReadOnly, RisingEdge, Timer
-from stream import CLOCK_NS, configuration, parameters
 
-from models.calibration import synthetic
-from models.contact_events import ContactEvents, Settings
-from models.frame_guard import frame_guard
-from models.register_map import REGISTERS
-from models.scenes import render
-from models.serial_link import END, ESCAPE, FRAME, frame_packet, packet, packets, serial_link, words_of, write_packet
-from models.tactile_depth import tactile_depth
-from models.uart import BITS, transmit
+from stream import CLOCK_NS, configuration, parameters
+from tactile_depth.boards.serial_link import (
+    END,
+    ESCAPE,
+    FRAME,
+    frame_packet,
+    packet,
+    packets,
+    serial_link,
+    words_of,
+    write_packet,
+)
+from tactile_depth.boards.uart import BITS, transmit
+from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.frame.frame_guard import frame_guard
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.scenes import render
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import tactile_depth
 
 THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD")
 BREAK_BITS = 25

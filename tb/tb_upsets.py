@@ -15,17 +15,17 @@ from pathlib import Path
 
 import cocotb
 import numpy as np
-from axis import video
 from cocotb.clock import Clock
 from cocotb.handle import ArrayObject, HierarchyArrayObject, HierarchyObject, LogicArrayObject, LogicObject
 from cocotb.triggers import FallingEdge, RisingEdge
-from stream import CLOCK_NS, configuration
 
+from axis import video
 from commands.simulator import HDL
-from models.calibration import synthetic
-from models.latency import last_pixel_to_first_depth
-from models.register_map import REGISTERS
-from models.tactile_depth import tactile_depth
+from stream import CLOCK_NS, configuration
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import tactile_depth
 
 FRAMES = 6
 FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency later

@@ -11,18 +11,18 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
 
+from axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
 from commands import bench
-from models.calibration import synthetic
-from models.configuration import Configuration
-from models.divergence import divergence
-from models.frame_guard import FAULTS, Guarded, Word, frame_guard
-from models.gradient_lookup import gradient_codes, gradient_lookup
-from models.latency import first_depth_latency, last_pixel_to_first_depth
-from models.register_map import REGISTERS
-from models.round_saturate import Monitor
-from models.tactile_depth import solve
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.frame.frame_guard import FAULTS, Guarded, Word, frame_guard
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import solve
 
 FOLLOWS = ("at_once", "one_clock", "many_clocks", "broken")
 """What comes after a broken frame: a whole one, after so many clocks; or another broken one and then a whole one."""

@@ -13,10 +13,10 @@ from xml.etree import ElementTree
 
 import pytest
 from hypothesis import settings
-from records import record
-from stream import CLOCK_NS
 
 from commands import simulator as simulation
+from records import record
+from stream import CLOCK_NS
 
 SEED = int(os.environ.get("SEED", "1"))
 POWER_UPS = int(os.environ.get("POWER_UPS", "8"))  # random states to begin from

@@ -15,8 +15,8 @@ from commands.gate_power import Power, power_of, typical
 from commands.gates import Instance, Netlist, part
 from commands.liberty import boolean, groups_of, read
 from commands.memory_model import Range
-from models.configuration import Configuration
-from models.errors import InputError
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
 
 LATENCY = 4  # of dot_product
 
@@ -297,7 +297,7 @@ def test_groups_nest():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["LIB=a.lib"], "NODE_NM is missing"),
+        ([f"LIB={__file__}"], "NODE_NM is missing"),
         (["LIB=a.lib", "NODE_NM=90", "CLOCK_MHZ=fast"], "CLOCK_MHZ=fast: accepted is a number"),
         (["NODE_NM=-1", "LIB=a.lib"], "NODE_NM=-1: accepted is a number"),
         (["LIB=a.lib", "NODE_NM=90", "TIMED=nothing"], "TIMED=nothing: no such core"),
@@ -327,5 +327,5 @@ def test_exit_status():
         check=False,
     )
     assert result.returncode == 2
-    assert result.stderr.startswith("make asic: LIB=none.lib: cannot be read")
+    assert result.stderr.startswith("make asic: LIB=none.lib: no such file")
     assert len(result.stderr.splitlines()) == 1

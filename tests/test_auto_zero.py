@@ -3,13 +3,13 @@
 
 import numpy as np
 import pytest
-from stream import REGRESS, places
 
-from models.auto_zero import auto_zero, exact_zero, interpolated_floor, no_floor
-from models.configuration import Configuration
-from models.floor_capture import captured_floor
-from models.rom_files import write_floor
-from models.round_saturate import Monitor
+from stream import REGRESS, places
+from tactile_depth.calibration.auto_zero import auto_zero, exact_zero, interpolated_floor, no_floor
+from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.rom_files import write_floor
 
 SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/axil_registers.sv against models/axil_registers.py."""
+"""hdl/axil_registers.sv against models/tactile_depth/registers/axil_registers.py."""
 
 import pytest
-from stream import REGRESS
 
-from models.configuration import Configuration
+from stream import REGRESS
+from tactile_depth.configuration import Configuration
 
 SOURCES = ["register_map_pkg.sv", "axil_registers.sv"]
 

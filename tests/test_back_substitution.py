@@ -4,11 +4,11 @@
 import json
 
 import pytest
-from test_thomas_table import THOMAS_SOURCES
 
-from models.configuration import Configuration
-from models.rom_files import write_thomas
-from models.tridiagonal_solver import solver_parameters
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.rom_files import write_thomas
+from test_thomas_table import THOMAS_SOURCES
 
 SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "back_substitution.sv"]
 NAMES = ("Width", "CoeffWidth", "Rows", "Size", "TableWords", "SettledWidth", "LastShiftWidth")

@@ -9,9 +9,10 @@ import pytest
 
 from commands import baselines, report
 from commands.baselines import METHODS, WARM_UPS, Method, Prepared
-from models.configuration import Configuration
-from models.errors import InputError
-from models.latency import first_depth_latency, last_pixel_to_first_depth
+from commands.variables import Mismatch
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 
 
 @pytest.mark.parametrize(
@@ -32,7 +33,7 @@ def test_bad_input(given, says):
 
 def test_out_is_a_file(tmp_path):
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="is a file: give a folder"):
         baselines.run(baselines.parse([f"OUT={tmp_path / 'file'}"]))
 
 
@@ -59,7 +60,7 @@ def test_a_wrong_result_is_not_timed(monkeypatch):
     assert row["problem"] == "wrong result"
     assert "times_us" not in row
     monkeypatch.setattr(baselines, "in_own_process", baselines.measure)
-    with pytest.raises(RuntimeError, match="wrong at 16"):
+    with pytest.raises(Mismatch, match="wrong at 16"):
         baselines.measure_all(baselines.parse(["GRIDS=16"]))
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.burst_counter import burst_counter
+from tactile_depth.common.burst_counter import burst_counter
 
 
 @pytest.mark.structures("size", both=[(16,)], icarus=[(8,), (64,)])

@@ -3,16 +3,27 @@
 
 import io
 import zipfile
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
-from models.calibration import BITS_PER_CHANNEL, BUILT_IN, FOLDER, Calibration, load, synthetic
-from models.configuration import Configuration
-from models.errors import InputError
-from models.scenes import GAIN, LIGHTS, REST
+from tactile_depth.calibration_file import CAMERA_KEYS
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.scenes import GAIN, LIGHTS, REST
+from tactile_depth.sensor import BITS_PER_CHANNEL, BUILT_IN, FOLDER, Camera, Sensor, load, synthetic
 
-GOOD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
+OLD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
+CAMERA = {
+    "format_version": 2,
+    "camera_size": np.array((240, 320)),
+    "pixel_format": "rgb888",
+    "black_level": 0.0,
+    "exposure_us": np.nan,
+    "flat_field": True,
+}
+GOOD = {**OLD, **CAMERA}
 QUADRATIC = {"coefficients": np.zeros((2, 3, 6)), "largest_slope": 0.7}
 
 
@@ -62,14 +73,14 @@ def test_the_rest_colour_of_the_synthetic_sensor_reads_exactly_flat():
 
 def test_a_rounded_slope_never_saturates():
     for largest in (0.2, 0.5, 0.96, 0.999, 1.0, 1.7):
-        limit = Calibration("x", np.full((2, 2, 2, 2), largest), 1.0).gradient_limit
+        limit = Sensor("x", np.full((2, 2, 2, 2), largest), 1.0).gradient_limit
         step = limit / 256
         assert round(largest / step) <= 255
         assert limit / 2 <= largest * (1 + 2**-8)
 
 
 def test_an_all_zero_table_has_a_gradient_limit():
-    assert Calibration("x", GOOD["gradient"], 1.0).gradient_limit == 1.0
+    assert Sensor("x", GOOD["gradient"], 1.0).gradient_limit == 1.0
 
 
 def test_the_fitted_calibration_is_small():
@@ -190,6 +201,91 @@ def test_wrong_contents_are_named(tmp_path, changed, said):
     message = refused(path)
     assert str(path) in message
     assert said in message
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("key", ["pixel_format", "model"])
+def test_characters_that_do_not_exist_are_refused(tmp_path, key, order):
+    text = np.frombuffer(np.array([0x72, 0x110000], f"{order}u4").tobytes(), f"{order}U2")
+    assert f"{key}.npy holds characters that do not exist" in refused(saved(tmp_path, **{key: text}))
+
+
+@pytest.mark.parametrize("key", CAMERA_KEYS)
+def test_a_file_without_a_part_of_its_camera_is_named(tmp_path, key):
+    assert f"no `{key}` in it" in refused(saved(tmp_path, **{key: None}))
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"format_version": 3}, "`format_version` is 3: accepted is 2: a newer file needs a newer package"),
+        ({"format_version": 2.0}, "`format_version` is float64"),
+        ({"camera_size": np.array((0, 320))}, "(0, 320): accepted are rows and columns"),
+        ({"camera_size": np.array((240.0, 320.0))}, "(240.0, 320.0): accepted"),
+        ({"camera_size": 240}, "int64 (): accepted"),
+        ({"pixel_format": "raw10"}, "`pixel_format` is raw10: accepted is rgb888"),
+        ({"black_level": 16}, "`black_level` is 16: accepted is 0: subtract it"),
+        ({"exposure_us": -1.0}, "`exposure_us` is -1"),
+        ({"flat_field": 1}, "`flat_field` is int64 (): accepted is True or False"),
+        ({"fitted_slope_lut": 0.0}, "`fitted_slope_lut` is 0"),
+        ({"cap_height_lut": np.zeros(2)}, "`cap_height_lut` is float64 (2,)"),
+        ({"lighting": np.zeros((2, 2, 3))}, "`lighting` is float64 (2, 2, 3)"),
+    ],
+)
+def test_a_wrong_camera_is_named(tmp_path, changed, said):
+    assert said in refused(saved(tmp_path, **changed))
+
+
+def test_an_old_file_needs_the_size_of_its_camera(tmp_path):
+    path = saved(tmp_path, **dict.fromkeys(CAMERA), **QUADRATIC)
+    assert "give camera_size=(rows, columns)" in refused(path)
+    with pytest.warns(InputWarning, match="a calibration of version 0.1: taken for RGB pictures of 320 x 240 pixels"):
+        sensor = load(path, camera_size=(240, 320))
+    assert (sensor.camera, sensor.flat_field) == (Camera(240, 320), True)
+    assert sensor.fitted_slope == {"quadratic": 0.7}
+
+
+def test_a_camera_size_that_contradicts_the_file_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"contradicts .* 320 x 240 pixels .*: omit camera_size"):
+        load(saved(tmp_path), camera_size=(480, 640))
+
+
+@pytest.mark.parametrize("size", [(240,), 240, (0, 0), (240.0, 320.0), "320x240"])
+def test_a_camera_size_that_is_none_is_refused_without_a_warning(tmp_path, size):
+    with pytest.raises(InputError, match="accepted are rows and columns"):
+        load(saved(tmp_path, **dict.fromkeys(CAMERA), **QUADRATIC), camera_size=size)
+
+
+def test_names_and_sizes_that_mean_nothing_are_refused():
+    with pytest.raises(InputError, match="takes pictures of any size: omit camera_size"):
+        load("synthetic", camera_size=(240, 320))
+    for name in (None, 3):
+        with pytest.raises(InputError, match="accepted is a name or a path"):
+            load(name)
+
+
+def test_what_is_saved_is_read_again(tmp_path):
+    sensor = load("gelsight-mini")
+    sensor.save(tmp_path / "copy.npz")
+    again = load(tmp_path / "copy.npz")
+    assert [path.name for path in tmp_path.iterdir()] == ["copy.npz"]
+    for part in fields(sensor):
+        old, new = getattr(sensor, part.name), getattr(again, part.name)
+        if part.name != "name":
+            assert np.array_equal(old, new) if isinstance(old, np.ndarray) else old == new, part.name
+
+
+def test_a_calibration_without_a_camera_is_not_saved(tmp_path):
+    with pytest.raises(InputError, match="no camera in it"):
+        synthetic().save(tmp_path / "copy.npz")
+
+
+def test_a_path_that_cannot_be_written_is_named(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be written"):
+        load("gelsight-mini").save(tmp_path / "file" / "copy.npz")
+    with pytest.raises(InputError, match=r"give the name of an \.npz file"):
+        load("gelsight-mini").save(tmp_path / "copy.npy")
 
 
 # Files that are made to harm.

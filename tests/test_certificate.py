@@ -8,13 +8,14 @@ import pytest
 
 from commands import certify as command
 from commands import sim
-from models import reference
-from models.certificate import certify, deepest, node_format, slope_response
-from models.configuration import DEPTH_HEADROOM, Configuration, Format, difference_bounds
-from models.divergence import divergence
-from models.errors import InputError
-from models.round_saturate import Monitor
-from models.tactile_depth import solve
+from tactile_depth import reference
+from tactile_depth.certificate import certify, deepest, node_format, slope_response
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format, difference_bounds
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.sensor import Camera, Sensor, load
+from tactile_depth.tactile_depth import solve
 
 WHOLE = [
     {"columns": 16},
@@ -158,7 +159,8 @@ def test_depths_at_their_bounds_through_rtl(tmp_path, solver):
     gradient = np.zeros((patterns_held * size**2, 2))
     slopes = slopes_of_field(config.depth_range_px * patterns)
     gradient[: patterns.size] = slopes.reshape(-1, 2)
-    np.savez(tmp_path / "c.npz", gradient=gradient.reshape((1 << bits,) * 3 + (2,)), pixel_pitch_mm=0.1)
+    table = Sensor("patterns", gradient.reshape((1 << bits,) * 3 + (2,)), 0.1, camera=Camera(size, size))
+    table.save(tmp_path / "c.npz")
     index = np.arange(patterns.size).reshape(patterns.shape)
     colours = np.stack([index >> 2 * bits, index >> bits & 15, index & 15], axis=-1) << (8 - bits)
     np.save(tmp_path / "patterns.npy", colours.astype(np.uint8))
@@ -171,7 +173,7 @@ def test_depths_at_their_bounds_through_rtl(tmp_path, solver):
     np.testing.assert_allclose(reached, config.depth_range_px * patterns, rtol=1e-3)
 
     peaks = command.Peaks({name: node_format(name, config).width for name in words}, len(patterns))
-    command.tactile_depth(colours.astype(np.uint8), command.load(str(tmp_path / "c.npz")), config, peaks)
+    command.tactile_depth(colours.astype(np.uint8), load(str(tmp_path / "c.npz")), config, peaks)
     nodes = {node.name: node for node in certify(config)}
     for frame, name in enumerate(meant[:patterns_held]):
         bound = np.abs(from_depth @ words[name]).sum(axis=0).max() * config.depth_range_px / config.depth_lsb_px
@@ -276,7 +278,7 @@ def test_the_worst_depth_range_and_its_price(tmp_path, capsys, solver):
 def test_a_certificate_that_is_wrong_is_found_out(tmp_path):
     config = Configuration(columns=16)
     nodes = certify(config)
-    calibration = command.load("synthetic")
+    calibration = load("synthetic")
     frames, attempts = command.worst_frames(nodes, calibration, config)
     peaks = command.Peaks({node.name: node.form.width for node in nodes}, len(frames))
     command.tactile_depth(frames, calibration, config, peaks)

@@ -9,18 +9,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from commands.simulator import ROOT
-from models import tridiagonal_solver
-from models.configuration import DEPTH_HEADROOM, Configuration, Format, bounds
-from models.divergence import divergence
-from models.dst_forward import dst_forward
-from models.dst_inverse import dst_inverse
-from models.errors import InputError
-from models.orders import makhoul
-from models.round_saturate import Monitor
-from models.row_reorder import row_reorder
-from models.spectral_solver import solver_parameters, spectral_solver
-from models.tactile_depth import top_parameters
-from models.transpose import transpose
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format, bounds
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson import tridiagonal_solver
+from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
+from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.transform.dst_forward import dst_forward
+from tactile_depth.transform.dst_inverse import dst_inverse
+from tactile_depth.transform.orders import makhoul
+from tactile_depth.transform.row_reorder import row_reorder
+from tactile_depth.transform.transpose import transpose
 
 # Inputs that attain the bounds. Everything is linear, so a node's value is the sum of its responses to single
 # words, and the input of the largest value has the signs of those responses.
@@ -201,14 +201,14 @@ def test_a_format_is_the_finest_that_holds_its_bound(bound, width):
 @pytest.mark.parametrize(
     ("choices", "message"),
     [
-        ({"columns": 8}, "N=8 .* 16 to 512"),
-        ({"columns": 1024}, "N=1024 .* 16 to 512"),
-        ({"columns": 0}, "N=0 "),
-        ({"columns": 100}, "N=100 is not a power of two: try N=64 or N=128"),
-        ({"data_width": 11}, "DATA_WIDTH=11 .* 12 to 32"),
-        ({"data_width": 33}, "DATA_WIDTH=33 .* 12 to 32"),
-        ({"coefficient_width": 9}, "COEFF_WIDTH=9 .* 10 to 24"),
-        ({"coefficient_width": 25}, "COEFF_WIDTH=25 .* 10 to 24"),
+        ({"columns": 8}, "columns=8 .* 16 to 512"),
+        ({"columns": 1024}, "columns=1024 .* 16 to 512"),
+        ({"columns": 0}, "columns=0 "),
+        ({"columns": 100}, "columns=100 is not a power of two: try columns=64 or columns=128"),
+        ({"data_width": 11}, "data_width=11 .* 12 to 32"),
+        ({"data_width": 33}, "data_width=33 .* 12 to 32"),
+        ({"coefficient_width": 9}, "coefficient_width=9 .* 10 to 24"),
+        ({"coefficient_width": 25}, "coefficient_width=25 .* 10 to 24"),
         ({"depth_range_px": 0.0}, "depth range of 0 pixels"),
         ({"depth_range_px": -1.0}, "depth range of -1 pixels"),
         ({"depth_range_px": float("nan")}, "depth range of nan pixels"),
@@ -219,9 +219,9 @@ def test_a_format_is_the_finest_that_holds_its_bound(bound, width):
         ({"gradient_limit": float("nan")}, "largest slope"),
         (
             {"columns": 32, "data_width": 12, "depth_range_px": 200.0},
-            "DATA_WIDTH=12 cannot hold .* try DATA_WIDTH=[0-9]+ or",
+            "data_width=12 cannot hold .* try data_width=[0-9]+ or",
         ),
-        ({"depth_range_px": 1e9}, "DATA_WIDTH=24 cannot hold .* a smaller DEPTH_RANGE"),
+        ({"depth_range_px": 1e9}, "data_width=24 cannot hold .* a smaller depth range"),
     ],
     ids=str,
 )
@@ -234,7 +234,7 @@ def test_what_cannot_be_built_is_refused_in_one_line(choices, message):
 def test_the_width_that_an_error_asks_for_is_accepted():
     with pytest.raises(InputError) as caught:
         Configuration(columns=32, data_width=12, depth_range_px=200.0)
-    wanted = int(re.search(r"try DATA_WIDTH=(\d+)", str(caught.value))[1])
+    wanted = int(re.search(r"try data_width=(\d+)", str(caught.value))[1])
     assert Configuration(columns=32, data_width=wanted, depth_range_px=200.0).data_width == wanted
 
 

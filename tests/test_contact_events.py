@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from stream import REGRESS
 
-from models.calibration import load
-from models.configuration import COLUMNS, Configuration
-from models.contact_events import FRACTION, WORDS, ContactEvents, Record, Settings, centroid, record
-from models.frames import load_frames
-from models.tactile_depth import tactile_depth
+from stream import REGRESS
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.contact.contact_events import FRACTION, WORDS, ContactEvents, Record, Settings, centroid, record
+from tactile_depth.frames import load_frames
+from tactile_depth.sensor import load
+from tactile_depth.tactile_depth import tactile_depth
 
 SOURCES = ["round_saturate.sv", "contact_events.sv"]
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
@@ -47,7 +47,7 @@ def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver):
     """Neumann: what is not above has the mean -volume / (pixels - area)."""
     config = Configuration(columns=32, solver=solver, neumann=True)
     frames = load_frames("bench", (32, 32))
-    depths = tactile_depth(frames.pixels, load("synthetic").on_grid(frames.pixel_scale), config)
+    depths = tactile_depth(frames.pixels, load("synthetic").on_grid(frames), config)
     for depth in depths:
         threshold = int(depth.max() // 4)
         settings = Settings(threshold, threshold, 1, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cost of a configuration against the RTL, elaborated and counted by Yosys, and against the README's formulas."""
+"""Cost of a configuration against the RTL, elaborated and counted by Yosys, and against formulas of docs/results.md."""
 
 import json
 from collections import Counter
@@ -8,11 +8,11 @@ import pytest
 
 from commands import simulator as simulation
 from commands import yosys
-from models.calibration import synthetic
-from models.configuration import Configuration
-from models.cost import KINDS, Multiplier, cost
-from models.sdf_fft import twiddle_stages
-from models.tactile_depth import top_parameters, write_roms
+from tactile_depth.configuration import Configuration
+from tactile_depth.cost import KINDS, Multiplier, cost
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.transform.sdf_fft import twiddle_stages
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},

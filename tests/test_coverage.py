@@ -2,11 +2,11 @@
 """`make coverage`: merging of Verilator's counts, waivers, gates, bins."""
 
 import pytest
-from axis import positions
-from functional_coverage import PLACES, bins, impossible, place_of
 
+from axis import positions
 from commands.coverage import GATES, WAIVERS, Judged, Point, Waiver, gate, judge, judge_bins, load_waivers, read, table
-from models.frame_guard import FAULTS
+from functional_coverage import PLACES, bins, impossible, place_of
+from tactile_depth.frame.frame_guard import FAULTS
 
 SOURCES = {"a.sv": ["assign x = y & z;", "if (bad) $fatal;", "logic [1:0] q;"]}
 

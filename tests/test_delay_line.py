@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.delay_line import delay_line
+from tactile_depth.common.delay_line import delay_line
 
 
 @pytest.mark.structures(

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.divergence import divergence
+from tactile_depth.gradient.divergence import divergence
 
 SOURCES = ["divergence.sv", "ram.sv"]
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.dot_product import dot_product
+from tactile_depth.common.dot_product import dot_product
 
 A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the widest that occur
 

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.fft import dst
-from test_sdf_fft import FFT_SOURCES, coefficient_noise
 
-from models.dst_forward import dst_forward
-from models.orders import bit_reversed, makhoul
-from models.rom_files import write_transform
-from models.sdf_fft import halvings, twiddle_stages
-from models.twiddle_multiply import coefficient_gain
+from tactile_depth.rom_files import write_transform
+from tactile_depth.transform.dst_forward import dst_forward
+from tactile_depth.transform.orders import bit_reversed, makhoul
+from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
+from tactile_depth.transform.twiddle_multiply import coefficient_gain
+from test_sdf_fft import FFT_SOURCES, coefficient_noise
 
 SOURCES = [*FFT_SOURCES, "dst_forward.sv"]
 

@@ -4,9 +4,9 @@
 import subprocess
 
 import pytest
-from stream import REGRESS
 
 from commands import simulator
+from stream import REGRESS
 
 INVALID = {
     "burst_counter": ["Size=1"],

@@ -9,8 +9,8 @@ import pytest
 
 from commands import extremes
 from commands.extremes import EXTREMES, compliance, drift, faults, largest, measure, model_drift, smallest, transforms
-from models.configuration import COLUMNS, Configuration
-from models.round_saturate import Monitor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import COLUMNS, Configuration
 
 SIZE = 16
 SOLVERS = tuple(COLUMNS)

@@ -16,12 +16,12 @@ import time
 from itertools import groupby
 
 import pytest
+
 from attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
 from conftest import SEED
 from records import record
 from stream import REGRESS
-
-from models.configuration import COLUMNS, Configuration
+from tactile_depth.configuration import COLUMNS, Configuration
 
 TIMEOUT = 100
 GRIDS = {

@@ -3,11 +3,10 @@
 
 import numpy as np
 import pytest
+
 from gains import Grid
 from stream import REGRESS
-
-from models.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration, Format
-from models.flat_field import (
+from tactile_depth.calibration.flat_field import (
     captured_gains,
     deviations,
     flat_codes,
@@ -15,7 +14,8 @@ from models.flat_field import (
     interpolated_gains,
     unit_gains,
 )
-from models.rom_files import write_gains
+from tactile_depth.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration, Format
+from tactile_depth.rom_files import write_gains
 
 SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
 

@@ -5,10 +5,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from stream import REGRESS
 
-from models.configuration import Configuration
-from models.floor_capture import LARGEST_LOG2, captured_floor
+from stream import REGRESS
+from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
+from tactile_depth.configuration import Configuration
 
 SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
 

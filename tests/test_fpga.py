@@ -10,8 +10,8 @@ import pytest
 
 from commands import ecp5, fpga, synthesis, yosys
 from commands import simulator as simulation
-from models.configuration import Configuration
-from models.errors import InputError
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
 
 A_WIDTH, B_WIDTH = 27, 18
 

@@ -2,10 +2,10 @@
 """frame_guard: RTL against the model, the model against the table of its header."""
 
 import pytest
+
 from axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
 from stream import REGRESS
-
-from models.frame_guard import Word, frame_guard
+from tactile_depth.frame.frame_guard import Word, frame_guard
 
 TIMEOUT = 5
 ROWS, COLUMNS = 4, 8  # of the model's frames

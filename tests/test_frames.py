@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 from PIL import Image
 from skimage import io
 
-from models.calibration import synthetic
-from models.errors import InputError
-from models.frames import LARGEST_CAMERA, load_frames, resampling
-from models.scenes import SCENES, render, scene_pixel_pitch_mm
+from tactile_depth.errors import InputError
+from tactile_depth.frames import EXIF_ORIENTATION, LARGEST_CAMERA, load_frames, read_picture
+from tactile_depth.resampling import resampling
+from tactile_depth.scenes import SCENES, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import synthetic
 
 
 def noise(*shape, seed=1):
@@ -74,6 +75,22 @@ def test_averages_of_a_ratio_that_is_not_whole():
     plan = resampling((3, 3), (2, 2))
     found = plan.average(np.repeat(image, 3, axis=0))[:, :, 0]
     np.testing.assert_allclose(found, [[(10 + 20 / 2) / 1.5, (20 / 2 + 60) / 1.5]] * 2)
+
+
+def test_many_images_are_averaged_as_one_by_one():
+    images = noise(2, 3, 24, 20, 3)
+    plan = resampling((24, 20), (11, 9))
+    want = [[plan.average(image) for image in row] for row in images]
+    np.testing.assert_array_equal(plan.average(images), want)
+
+
+def test_averages_are_the_exact_quotients():
+    """Sums of whole numbers have no rounding: each average is the fraction that is nearest in double precision."""
+    image = noise(24, 20, 1)
+    plan = resampling((24, 20), (11, 9))
+    rows, columns = plan.rows.astype(int), plan.columns.astype(int)
+    want = rows @ image[..., 0].astype(int) @ columns.T / plan.numerator**2
+    np.testing.assert_array_equal(plan.average(image)[..., 0], want)
 
 
 def test_the_gelsight_camera_keeps_its_middle_square():
@@ -229,11 +246,39 @@ def test_a_picture_that_is_not_8_bit_colour_is_named(tmp_path, bits, colour, nam
     assert named in message
 
 
-@pytest.mark.parametrize("suffix", ["gif", "bmp", "tif", "jpg"])
-def test_a_picture_that_is_not_a_png_is_named(tmp_path, suffix):
+@pytest.mark.parametrize("suffix", ["gif", "bmp", "tif"])
+def test_a_picture_of_another_kind_is_named(tmp_path, suffix):
     path = tmp_path / f"p.{suffix}"
     Image.fromarray(noise(20, 20, 3)).save(path)
-    assert f"{path}: not a readable picture (it does not begin as a PNG does)" in refused(path)
+    assert f"{path}: not a readable picture (it does not begin as a PNG or a JPEG does)" in refused(path)
+
+
+def test_a_jpeg_is_read(tmp_path):
+    path = tmp_path / "p.jpg"
+    image = Image.new("RGB", (24, 16), (90, 120, 150))
+    image.save(path, quality=95)
+    assert np.abs(read_picture(path).astype(int) - (90, 120, 150)).max() <= 2
+    assert load_frames(str(tmp_path), (16, 16)).labels == ("p.jpg",)
+
+
+def test_a_jpeg_that_viewers_rotate_is_refused(tmp_path):
+    path = tmp_path / "p.jpg"
+    exif = Image.Exif()
+    exif[EXIF_ORIENTATION] = 6
+    Image.new("RGB", (24, 16)).save(path, exif=exif)
+    assert "asks viewers to rotate it" in refused(path)
+
+
+def test_a_jpeg_without_colour_is_named(tmp_path):
+    path = tmp_path / "p.jpg"
+    Image.new("L", (24, 16)).save(path)
+    assert "a JPEG of mode L" in refused(path)
+
+
+def test_a_jpeg_too_large_is_refused_by_its_header(tmp_path):
+    path = tmp_path / "p.jpg"
+    Image.new("RGB", (LARGEST_CAMERA + 1, 16)).save(path)
+    assert f"{LARGEST_CAMERA + 1}" in refused(path)
 
 
 def test_a_palette_is_looked_up(tmp_path):

@@ -9,8 +9,8 @@ import pytest
 import yaml
 
 from commands import simulator as simulation
-from models.configuration import Configuration
-from models.tactile_depth import top_parameters
+from tactile_depth.configuration import Configuration
+from tactile_depth.tactile_depth import top_parameters
 
 CORE = simulation.ROOT / "tactile_depth.core"
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from commands import fuzz
-from models.errors import InputError
+from tactile_depth.errors import InputError
 
 SEED = 1
 RUNS = 60

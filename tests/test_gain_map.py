@@ -2,11 +2,11 @@
 """gain_map: RTL against the model."""
 
 import pytest
+
 from gains import first_gains
 from stream import REGRESS
-
-from models.gain_map import ENTRIES_PER_NODE, table_entries
-from models.rom_files import write_gains
+from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
+from tactile_depth.rom_files import write_gains
 
 SOURCES = ["gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
 

@@ -5,13 +5,13 @@ import json
 
 import numpy as np
 import pytest
-from stream import REGRESS
 
-from models import reference
-from models.calibration import Calibration, synthetic
-from models.configuration import Configuration
-from models.gradient_lookup import gradient_codes, gradient_lookup
-from models.rom_files import write_gradient
+from stream import REGRESS
+from tactile_depth import reference
+from tactile_depth.configuration import Configuration
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.rom_files import write_gradient
+from tactile_depth.sensor import Sensor, synthetic
 
 SOURCES = ["gradient_lookup.sv", "ram.sv"]
 
@@ -34,7 +34,7 @@ def test_rtl(run_tb, bits, data_width):
 def test_codes_are_the_slopes_within_half_a_step(bits):
     """The bins of a random table differ everywhere, so a wrong order of colours or bits shows."""
     gradient = np.random.default_rng(bits).uniform(-0.9, 0.9, (*[1 << bits] * 3, 2))
-    calibration = Calibration("random", gradient, 0.1)
+    calibration = Sensor("random", gradient, 0.1)
     config = Configuration(columns=16, bits_per_channel=bits)
     frames = np.random.default_rng(1).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8)
     codes = gradient_lookup(frames, gradient_codes(calibration, config), bits)
@@ -45,11 +45,11 @@ def test_codes_are_the_slopes_within_half_a_step(bits):
 
 @pytest.mark.parametrize("gradient_limit", [0.25, 1.0, 4.0])
 def test_codes_of_slopes_up_to_the_limit_fit_their_width(gradient_limit):
-    largest = gradient_limit / (1 + 2.0**-8)  # what Calibration.gradient_limit leaves room for
+    largest = gradient_limit / (1 + 2.0**-8)  # what Sensor.gradient_limit leaves room for
     gradient = np.full((2, 2, 2, 2), largest)
     gradient[0] *= -1
     config = Configuration(columns=16, gradient_limit=gradient_limit, bits_per_channel=1)
-    codes = gradient_codes(Calibration("full", gradient, 0.1), config)
+    codes = gradient_codes(Sensor("full", gradient, 0.1), config)
     limit = 2 ** (config.gradient.width - 1)
     assert limit / 2 < codes.max() < limit
     assert codes.min() == -codes.max()

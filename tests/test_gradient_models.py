@@ -6,22 +6,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import reference
-from models.calibration import Calibration
-from models.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
-from models.divergence import divergence
-from models.errors import InputError
-from models.flat_field import (
+from tactile_depth import reference
+from tactile_depth.calibration.flat_field import (
     captured_gains,
     dark_pixels,
     deviations,
     flat_codes,
     interpolated_gains,
+    pixel_gains,
     unit_gains,
 )
-from models.quadratic_gradient import DROPPED, coefficient_map, polynomial_words, quadratic_gradient
-from models.round_saturate import Monitor
-from models.tactile_depth import solve
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.quadratic_gradient import DROPPED, coefficient_map, polynomial_words, quadratic_gradient
+from tactile_depth.sensor import Sensor, synthetic
+from tactile_depth.tactile_depth import slope_codes, slope_tables, solve
 
 SHAPES = [
     {"columns": 16},
@@ -42,10 +43,48 @@ def lit(config: Configuration, seed: int, count: int = 1) -> np.ndarray:
     return np.clip(np.rint(frame + chance.normal(size=(count, *frame.shape))), 20, 255).astype(np.uint8)
 
 
-def quadratics(seed: int, largest: float = 0.9) -> Calibration:
+def quadratics(seed: int, largest: float = 0.9) -> Sensor:
     scale = np.array([1, 0.1, 0.1, 0.01, 0.01, 0.01])
     coefficients = np.random.default_rng(seed).uniform(-1, 1, (2, 3, 6)) * scale
-    return Calibration("any", None, 0.1, coefficients, largest, "quadratic")
+    return Sensor("any", None, 0.1, coefficients, largest, "quadratic")
+
+
+# Tables that are computed once.
+
+MODELS = [{}, {"flat_field": True}, {"flat_field": True, "gradient_model": "quadratic"}]
+
+
+@pytest.mark.parametrize("choices", MODELS, ids=str)
+def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices):
+    config = Configuration(columns=32, **choices)
+    frames = lit(config, 1, 3)
+    calibration = synthetic().scaled(4.0, frames[0] if choices else None)
+    tables = slope_tables(calibration, config)
+    for level in (0, 90):
+        want = slope_codes(frames, calibration, config, dark_level=level)
+        found = slope_codes(frames, calibration, config, dark_level=level, tables=tables)
+        np.testing.assert_array_equal(found, want)
+
+
+@pytest.mark.parametrize("choices", MODELS, ids=str)
+def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision(choices):
+    config = Configuration(columns=32, **choices)
+    frames = lit(config, 2, 3)
+    calibration = synthetic().scaled(4.0, frames[0] if choices else None)
+    tables = reference.slope_tables(calibration, config)
+    want = reference.depth_of(frames, calibration, config)
+    np.testing.assert_array_equal(reference.depth_of(frames, calibration, config, tables), want)
+
+
+def test_gains_of_pixels_stand_for_those_of_nodes():
+    config = Configuration(columns=32)
+    frames = lit(config, 5, 2)
+    gains = captured_gains(frames, config)
+    gains[0, 3, 1] = (1 << 24) - 1  # dead
+    prepared = pixel_gains(gains, config)
+    assert prepared.dead.any()
+    for function in (dark_pixels, flat_codes, deviations):
+        np.testing.assert_array_equal(function(frames, prepared, config, 90), function(frames, gains, config, 90))
 
 
 # Flat-fielding.
@@ -215,8 +254,8 @@ def test_slopes_saturate_and_are_counted():
 
 def test_coefficients_beyond_the_words_are_named():
     config = Configuration(columns=16)
-    steep = Calibration("steep", None, 0.1, np.full((2, 3, 6), 9.0), 0.9, "quadratic")
+    steep = Sensor("steep", None, 0.1, np.full((2, 3, 6), 9.0), 0.9, "quadratic")
     with pytest.raises(InputError, match=r"steep: `coefficients` reach .* accepted is less than 8"):
         polynomial_words(steep, config, 0.1)
     with pytest.raises(InputError, match="no `coefficients`"):
-        polynomial_words(Calibration("table", np.zeros((2, 2, 2, 2)), 0.1), config, 0.1)
+        polynomial_words(Sensor("table", np.zeros((2, 2, 2, 2)), 0.1), config, 0.1)

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from models.mode_pairs import mode_pairs
-from models.orders import bit_reversed, mirror
+from tactile_depth.transform.mode_pairs import mode_pairs
+from tactile_depth.transform.orders import bit_reversed, mirror
 
 SOURCES = ["burst_counter.sv", "delay_line.sv", "mode_pairs.sv", "ram.sv"]
 

@@ -2,34 +2,45 @@
 """What holds of the models on any input: of those whose own tests state no property of this kind."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.fft import dctn, dstn
 from scipy.linalg import solve_banded
 
-from models import latency, reference
-from models.axil_registers import COUNTERS, WORD, AxilRegisters, Build, Events, Live, Response, strobed_bits
-from models.axis_skid import CAPACITY, AxisSkid
-from models.back_substitution import back_substitution
-from models.calibration import Calibration, load, synthetic
-from models.configuration import COLUMNS, Configuration
-from models.forward_elimination import forward_elimination
-from models.frame_guard import Word, frame_guard
-from models.frame_output import Clock, frame_output
-from models.frame_stack import frame_stack
-from models.frame_tags import FrameTags
-from models.gradient_lookup import gradient_codes, gradient_lookup
-from models.mode_pairs import mode_pairs
-from models.orders import bit_reversed, eigenvalues, makhoul, mirror
-from models.register_map import ADDRESS_WIDTH, MAP, REGISTERS
-from models.rom import rom
-from models.rom_files import pack, write_words
-from models.row_reorder import row_reorder
-from models.tactile_depth import solve, tactile_depth
-from models.thomas_table import thomas_table
-from models.threshold_comparator import ThresholdComparator
-from models.transpose import transpose
-from models.tridiagonal_solver import tridiagonal_solver
+from tactile_depth import latency, reference
+from tactile_depth.common.axis_skid import CAPACITY, AxisSkid
+from tactile_depth.common.rom import rom
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.contact.threshold_comparator import ThresholdComparator
+from tactile_depth.frame.frame_guard import Word, frame_guard
+from tactile_depth.frame.frame_output import Clock, frame_output
+from tactile_depth.frame.frame_tags import FrameTags
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.poisson.back_substitution import back_substitution
+from tactile_depth.poisson.forward_elimination import forward_elimination
+from tactile_depth.poisson.frame_stack import frame_stack
+from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
+from tactile_depth.registers.axil_registers import (
+    COUNTERS,
+    WORD,
+    AxilRegisters,
+    Build,
+    Events,
+    Live,
+    Response,
+    strobed_bits,
+)
+from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS
+from tactile_depth.rom_files import pack, write_words
+from tactile_depth.sensor import Sensor, load, synthetic
+from tactile_depth.tactile_depth import solve, tactile_depth
+from tactile_depth.transform.mode_pairs import mode_pairs
+from tactile_depth.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
+from tactile_depth.transform.row_reorder import row_reorder
+from tactile_depth.transform.transpose import transpose
+from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors
 
 SEED = st.integers(0, 2**32 - 1)
 SIZE = st.sampled_from([8, 16, 32, 64])
@@ -51,6 +62,13 @@ def noise(seed, *shape, limit=1 << 12):
 def test_orders_are_permutations(size):
     for order in (bit_reversed(size), makhoul(size), mirror(size)):
         assert sorted(order) == list(range(size))
+
+
+def test_a_shared_table_cannot_be_changed():
+    tables = (bit_reversed(16), makhoul(16), mirror(16), twiddle_factors(16, False, 18), phase_factors(16, True, 18))
+    for table in tables:
+        with pytest.raises(ValueError, match="read-only"):
+            table[0] = 1
 
 
 @given(SIZE, st.booleans())
@@ -242,7 +260,7 @@ def test_latency_counts_pixels_and_nothing_else(columns, rows, neumann):
 def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed, bits, largest):
     chance = np.random.default_rng(seed)
     table = chance.uniform(-0.9 * largest, 0.9 * largest, (1 << bits, 1 << bits, 1 << bits, 2))
-    calibration = Calibration("any", table, 0.1)
+    calibration = Sensor("any", table, 0.1)
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, bits_per_channel=bits)
     frames = chance.integers(0, 256, (2, 5, 7, 3)).astype(np.uint8)
     found = gradient_lookup(frames, gradient_codes(calibration, config), bits) * config.gradient_lsb
@@ -254,7 +272,9 @@ def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed, bits, l
 def test_a_saved_calibration_is_loaded_as_it_was(tmp_path_factory, seed, bits, pitch, dtype, packed):
     table = np.random.default_rng(seed).uniform(-2, 2, (1 << bits, 1 << bits, 1 << bits, 2)).astype(dtype)
     path = tmp_path_factory.mktemp("calibration") / "mine.npz"
-    (np.savez_compressed if packed else np.savez)(path, gradient=table, pixel_pitch_mm=pitch)
+    camera = {"format_version": 2, "camera_size": (240, 320), "pixel_format": "rgb888", "black_level": 0.0}
+    camera |= {"exposure_us": np.nan, "flat_field": False}
+    (np.savez_compressed if packed else np.savez)(path, gradient=table, pixel_pitch_mm=pitch, **camera)
     found = load(str(path))
     np.testing.assert_array_equal(found.gradient, table.astype(np.float64))
     assert found.pixel_pitch_mm == pitch

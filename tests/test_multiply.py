@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.multiply import multiply
+from tactile_depth.common.multiply import multiply
 
 
 @pytest.mark.structures("a_width b_width", both=[(27, 18)], icarus=[(35, 24), (15, 10), (2, 3)])

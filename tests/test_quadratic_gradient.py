@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.configuration import Configuration
-from models.quadratic_gradient import coefficients, gradient_parameters, slope_codes
-from models.rom_files import write_quadratic
-from models.round_saturate import Monitor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.gradient.quadratic_gradient import coefficients, gradient_parameters, slope_codes
+from tactile_depth.rom_files import write_quadratic
 
 SOURCES = ["quadratic_gradient.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
 WORDS = (2, 3, 6)

@@ -8,8 +8,8 @@ from cocotb_tools.runner import as_sv_literal
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.ram import ram
-from models.rom_files import write_words
+from tactile_depth.common.ram import ram
+from tactile_depth.rom_files import write_words
 
 DISTRIBUTED, BLOCK, ULTRA = range(3)
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.calibration import Calibration, synthetic
-from models.divergence import divergence
-from models.reference import depth, eigenvalues, slopes, solve
-from models.scenes import dome, photograph
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.reference import depth, eigenvalues, slopes, solve
+from tactile_depth.scenes import dome, photograph
+from tactile_depth.sensor import Sensor, synthetic
 
 
 def second_difference(z: np.ndarray, axis: int) -> np.ndarray:
@@ -47,7 +47,7 @@ def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits):
     bins = 1 << bits
     gradient = np.random.default_rng(2).normal(size=(bins, bins, bins, 2))
     frames = np.random.default_rng(3).integers(0, 256, (3, 5, 7, 3), dtype=np.uint8)
-    found = slopes(frames, Calibration("random", gradient, 0.1))
+    found = slopes(frames, Sensor("random", gradient, 0.1))
     assert found.shape == (3, 5, 7, 2)
     assert found.dtype == np.float64
     for place in np.ndindex(3, 5, 7):
@@ -57,7 +57,7 @@ def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits):
 
 def test_depth_is_the_chain_and_frames_do_not_mix():
     gradient = np.random.default_rng(4).normal(size=(4, 4, 4, 2))
-    calibration = Calibration("random", gradient, 0.1)
+    calibration = Sensor("random", gradient, 0.1)
     frames = np.random.default_rng(5).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8)
     whole = depth(frames, calibration)
     for frame, z in zip(frames, whole, strict=True):

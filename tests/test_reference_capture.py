@@ -5,10 +5,14 @@ import json
 
 import numpy as np
 import pytest
-from stream import REGRESS
 
-from models.configuration import GAIN_WIDTH, Configuration
-from models.reference_capture import largest_log2_frames, reference_capture, reference_capture_parameters
+from stream import REGRESS
+from tactile_depth.calibration.reference_capture import (
+    largest_log2_frames,
+    reference_capture,
+    reference_capture_parameters,
+)
+from tactile_depth.configuration import GAIN_WIDTH, Configuration
 
 
 @pytest.mark.structures(

@@ -9,9 +9,9 @@ import pytest
 from PIL import Image
 
 from commands import bench, reflex, reflex_pictures, report
-from models.configuration import COLUMNS, Configuration
-from models.errors import InputError
-from models.latency import last_pixel_to_first_depth
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.latency import last_pixel_to_first_depth
 
 SMALL = ("N=16", "SIM=icarus", "CLOCK_MHZ=0.5", "TRIALS=2")
 TRIALS = 20_000
@@ -46,7 +46,7 @@ def test_an_unknown_simulator(tmp_path):
 
 def test_out_is_a_file(tmp_path):
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="is a file: give a folder"):
         reflex.run(reflex.parse([*SMALL, f"OUT={tmp_path / 'file'}"]))
 
 

@@ -3,13 +3,13 @@
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 
 from commands import registers
-from models.axil_registers import RECORD, AxilRegisters, Build, Live
-from models.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, ROOT, TABLES, WORD_BITS
+from commands.simulator import ROOT
+from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Live
+from tactile_depth.registers.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD_BITS
 
 BUILD = Build(16, 32, 24, 21, 20, 2)
 RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
@@ -89,12 +89,12 @@ def test_the_c_header(tmp_path):
     assert subprocess.run([tmp_path / "program"]).returncode == 0
 
 
-def test_the_python_layer(tmp_path, monkeypatch, root):
+def test_the_python_layer(tmp_path, monkeypatch):
     """It reads and writes fields by name; behind it the model of the registers in place of a device."""
-    registers.python_layer(root, tmp_path)
+    registers.python_layer(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    from tactile_depth.lib import NormalCallbackSet
-    from tactile_depth.reg_model import RegModel
+    from tactile_depth_registers.lib import NormalCallbackSet
+    from tactile_depth_registers.reg_model import RegModel
 
     model = AxilRegisters(BUILD, entry=lambda table, index: (0x1000 + index, 0x2000 + index))
 
@@ -120,5 +120,3 @@ def test_the_python_layer(tmp_path, monkeypatch, root):
     assert model.table_writes == [(TABLES["gradient"], 3, 5, 6)]
     assert (device.TABLE_HIGH.read(), device.TABLE_LOW.read()) == (0x1004, 0x2004)
     assert device.TABLE_INDEX.read() == 5
-    for name in [name for name in sys.modules if name.split(".")[0] == "tactile_depth"]:
-        del sys.modules[name]

@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from models.rom import rom
-from models.rom_files import pack, write_words
+from tactile_depth.common.rom import rom
+from tactile_depth.rom_files import pack, write_words
 
 
 @pytest.mark.structures("width depth", both=[(54, 128)], icarus=[(10, 36), (72, 33)])

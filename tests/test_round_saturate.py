@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.round_saturate import Monitor, round_half_even, round_saturate
+from tactile_depth.common.round_saturate import Monitor, round_half_even, round_saturate
 
 
 @pytest.mark.structures(

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from models.row_reorder import row_reorder
+from tactile_depth.transform.row_reorder import row_reorder
 
 SOURCES = ["burst_counter.sv", "ram.sv", "row_reorder.sv"]
 

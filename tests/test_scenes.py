@@ -6,11 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import reference
-from models.calibration import synthetic
-from models.divergence import divergence
-from models.errors import InputError
-from models.scenes import (
+from tactile_depth import reference
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.scenes import (
     BENCH,
     NOISE,
     REST,
@@ -24,6 +23,7 @@ from models.scenes import (
     scene_pixel_pitch_mm,
     slopes_of,
 )
+from tactile_depth.sensor import synthetic
 
 SIZES = (16, 64, 128, 256)
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.round_saturate import Monitor
-from models.sdf_butterfly import sdf_butterfly
-from models.sdf_fft import Stage
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.transform.sdf_fft import Stage
 
 SOURCES = ["burst_counter.sv", "delay_line.sv", "ram.sv", "round_saturate.sv", "sdf_butterfly.sv"]
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.orders import bit_reversed
-from models.rom_files import write_transform
-from models.sdf_fft import halvings, sdf_fft, twiddle_stages
-from models.twiddle_multiply import coefficient_gain
+from tactile_depth.rom_files import write_transform
+from tactile_depth.transform.orders import bit_reversed
+from tactile_depth.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
+from tactile_depth.transform.twiddle_multiply import coefficient_gain
 
 FFT_SOURCES = [
     "burst_counter.sv",

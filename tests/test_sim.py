@@ -3,18 +3,23 @@
 
 import json
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from skimage import io
-from stream import REGRESS
 
 from commands import sim
-from models.auto_zero import auto_zero
-from models.calibration import load
-from models.configuration import COLUMNS, Configuration
-from models.floor_capture import captured_floor
-from models.latency import first_depth_latency, last_pixel_to_first_depth
+from commands.draw import painted
+from commands.flags import Flags
+from stream import REGRESS
+from tactile_depth.calibration.auto_zero import auto_zero
+from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.samples import sample
+from tactile_depth.sensor import load
 
 PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
 
@@ -182,7 +187,72 @@ def test_pictures_with_a_reference(tmp_path):
         "CALIBRATION=gelsight-mini",
     )
     assert report["frames"] == 2
-    assert report["pixel_pitch_mm"] == pytest.approx(48 / 32 * load("gelsight-mini").pixel_pitch_mm)
+    assert report["pixel_pitch_mm"] == pytest.approx(240 / 32 * load("gelsight-mini").pixel_pitch_mm)
+
+
+def _press(tmp_path, name="ball"):
+    """Variables that give a drawn press, its reference and its calibration."""
+    drawn = sample(name)
+    drawn.sensor.save(tmp_path / "sensor.npz")
+    for file, image in (("press.png", drawn.image), ("background.png", drawn.reference)):
+        io.imsave(tmp_path / file, image, check_contrast=False)
+    given = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
+    small = ["ROWS=24", "COLS=32", "SOLVER=tridiagonal", "BOUNDARY=neumann", "SIM=icarus"]
+    return [*small, *(f"{key}={tmp_path / file}" for key, file in given.items())]
+
+
+def test_the_rtl_computes_what_the_python_interface_returns(tmp_path):
+    """Depth in mm is codes times unit, and the codes are those of the RTL."""
+    report = run(tmp_path, *_press(tmp_path), f"FLOOR={tmp_path / 'background.png'}")
+    drawn = sample("ball")
+    result = Pipeline(drawn.sensor, drawn.reference, grid=(24, 32))(drawn.image)
+    codes = np.load(tmp_path / "out" / "depth.npy")[0]
+    np.testing.assert_array_equal(result.codes, codes)
+    np.testing.assert_array_equal(result.depth_mm, codes * report["depth_lsb_mm"])
+
+
+def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path):
+    given = _press(tmp_path)
+    report = run(tmp_path, *given)
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    for name in ("press.png", "background.png"):
+        io.imsave(tmp_path / name, io.imread(tmp_path / name).repeat(2, 0).repeat(2, 1), check_contrast=False)
+    twice = run(tmp_path, *given)
+    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), codes)
+    assert twice["depth_lsb_mm"] == report["depth_lsb_mm"]
+
+
+def test_dark_pixels_are_reported_and_warned_of(tmp_path, capsys):
+    given = _press(tmp_path)
+    assert run(tmp_path, *given)["dark_pixels"] == [0]
+    background = io.imread(tmp_path / "background.png")
+    background[:80, :80] = 0
+    io.imsave(tmp_path / "background.png", background, check_contrast=False)
+    report = run(tmp_path, *given)
+    assert 64 <= report["dark_pixels"][0] <= 81  # the gains of neighbouring blocks are interpolated
+    assert any("pixels are dark in REFERENCE" in line for line in report["warnings"])
+    assert "pixels are dark in REFERENCE" in capsys.readouterr().err
+
+
+def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(tmp_path, capsys):
+    given = _press(tmp_path)
+    assert run(tmp_path, *given)["slopes_outside_calibration"] == [0]
+    replace(sample("ball").sensor, fitted_slope={"quadratic": 0.4}).save(tmp_path / "sensor.npz")
+    report = run(tmp_path, *given)
+    assert report["slopes_outside_calibration"][0] > 10
+    assert any("steeper than any in the fit" in line for line in report["warnings"])
+    assert "steeper than any in the fit" in capsys.readouterr().err
+
+
+def test_flagged_pixels_are_painted():
+    frame = np.full((2, 3, 3), 50, np.uint8)
+    dark, outside = np.zeros((1, 2, 3), bool), np.zeros((1, 2, 3), bool)
+    dark[0, 0, 0] = outside[0, 1, 2] = True
+    picture = painted(frame, Flags(dark, outside), 0)
+    assert picture[0, 0].tolist() == [255, 0, 255]
+    assert picture[1, 2].tolist() == [255, 165, 0]
+    assert (np.delete(picture.reshape(6, 3), (0, 5), axis=0) == 50).all()
+    assert (frame == 50).all()
 
 
 @pytest.mark.parametrize("solver", sim.SOLVERS)
@@ -191,6 +261,7 @@ def test_a_floor_is_subtracted(tmp_path, solver):
     rest = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
     every = _npy(tmp_path / "every.npy", np.concatenate((rest, rest[:1, ::-1])))
     chosen = ["N=16", "BOUNDARY=neumann", f"SOLVER={solver}", f"FRAMES={every}", "SIM=icarus"]
+    chosen.append("CALIBRATION=synthetic")
     report = run(tmp_path, *chosen, f"FLOOR={_npy(tmp_path / 'rest.npy', rest)}")
     assert report["auto_zero"]
     down = -1 if solver == "tridiagonal" else 1  # blocks are counted as depth leaves
@@ -221,7 +292,14 @@ def _npy(path, array):
 
 
 def _calibration(path, **change):
-    np.savez(path, **{"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.1, **change})
+    camera = {"format_version": 2, "camera_size": (48, 64), "pixel_format": "rgb888", "black_level": 0.0}
+    table = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.1, "exposure_us": np.nan, "flat_field": True}
+    np.savez(path, **{key: value for key, value in {**camera, **table, **change}.items() if value is not None})
+    return path
+
+
+def _picture(path, rows, columns, level=100):
+    io.imsave(path, np.full((rows, columns, 3), level, np.uint8), check_contrast=False)
     return path
 
 
@@ -243,12 +321,35 @@ def _mixed(folder):
 
 
 BAD_INPUT = {
-    "shape": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16), np.uint8))}",
-    "type": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.float32))}",
-    "truncated frames": lambda t: f"FRAMES={_cut(_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.uint8)))}",
-    "small frames": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 8, 16, 3), np.uint8))}",
-    "mixed frames": lambda t: f"FRAMES={_mixed(t / 'mixed')}",
+    "shape": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16), np.uint8))} CALIBRATION=synthetic",
+    "type": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.float32))} CALIBRATION=synthetic",
+    "truncated frames": lambda t: (
+        f"FRAMES={_cut(_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.uint8)))} CALIBRATION=synthetic"
+    ),
+    "small frames": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 8, 16, 3), np.uint8))} CALIBRATION=synthetic",
+    "mixed frames": lambda t: f"FRAMES={_mixed(t / 'mixed')} CALIBRATION=synthetic",
     "unknown scene": lambda t: "FRAMES=cube",
+    "a picture without a calibration": lambda t: f"FRAMES={_picture(t / 'a.png', 48, 64)}",
+    "a reference without a calibration": lambda t: f"REFERENCE={_picture(t / 'a.png', 48, 64)}",
+    "a floor without a calibration": lambda t: f"FLOOR={_picture(t / 'a.png', 48, 64)}",
+    "a real sensor without a reference": lambda t: f"CALIBRATION=gelsight-mini FRAMES={_picture(t / 'a.png', 48, 64)}",
+    "a real sensor and a scene": lambda t: "CALIBRATION=gelsight-mini REFERENCE=flat",
+    "a picture of another aspect ratio": lambda t: (
+        f"FRAMES={_picture(t / 'a.png', 48, 60)} CALIBRATION=gelsight-mini REFERENCE={t / 'a.png'}"
+    ),
+    "an old calibration without a camera size": lambda t: (
+        f"CALIBRATION={_calibration(t / 'c.npz', format_version=None)}"
+    ),
+    "a reference too dark to read": lambda t: (
+        f"REFERENCE={_picture(t / 'a.png', 48, 64, 4)} FRAMES={t / 'a.png'} CALIBRATION=gelsight-mini"
+    ),
+    "a camera size with other signs": lambda t: "CAMERA_SIZE=-320x240",
+    "a camera size out of range": lambda t: (
+        f"CAMERA_SIZE=4x4 CALIBRATION={_calibration(t / 'c.npz', format_version=None)}"
+    ),
+    "a camera size with the synthetic sensor": lambda t: "CAMERA_SIZE=320x240",
+    "a camera size that is none": lambda t: "CAMERA_SIZE=320",
+    "a camera size that contradicts the file": lambda t: "CALIBRATION=gelsight-mini CAMERA_SIZE=640x480",
     "not a power of two": lambda t: "N=100",
     "N too small": lambda t: "N=8",
     "N too large": lambda t: "N=1024",
@@ -270,6 +371,8 @@ BAD_INPUT = {
     "gaps": lambda t: "GAPS=1",
     "stalls": lambda t: "STALLS=often",
     "repeat": lambda t: "REPEAT=0",
+    "a position that is no number": lambda t: "AT=0,nan",
+    "a position without an end": lambda t: "AT=inf,0",
     "unknown variable": lambda t: "SIZE=16",
     "no configuration file": lambda t: f"CONFIG={t / 'c.json'}",
     "configuration that is no JSON": lambda t: _config(t / "c.json", "SOLVER=spectral"),
@@ -279,9 +382,11 @@ BAD_INPUT = {
     "unknown variable in a configuration": lambda t: _config(t / "c.json", '{"WIDTH": 24}'),
     "configuration in a configuration": lambda t: _config(t / "c.json", '{"CONFIG": "c.json"}'),
     "a list in a configuration": lambda t: _config(t / "c.json", '{"DATA_WIDTH": [24]}'),
-    "reference with a scene": lambda t: "REFERENCE=background.png",
-    "no floor": lambda t: f"FLOOR={t / 'rest.png'}",
-    "floor of another camera": lambda t: f"FLOOR={_npy(t / 'rest.npy', np.zeros((1, 32, 32, 3), np.uint8))}",
+    "reference with a scene": lambda t: "REFERENCE=background.png CALIBRATION=synthetic",
+    "no floor": lambda t: f"FLOOR={t / 'rest.png'} CALIBRATION=synthetic",
+    "floor of another camera": lambda t: (
+        f"FLOOR={_npy(t / 'rest.npy', np.zeros((1, 32, 32, 3), np.uint8))} CALIBRATION=synthetic"
+    ),
 }
 
 

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models import reference
-from models.configuration import Configuration
-from models.orders import bit_reversed
-from models.rom_files import write_solver
-from models.round_saturate import Monitor
-from models.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
+from tactile_depth import reference
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
+from tactile_depth.rom_files import write_solver
+from tactile_depth.transform.orders import bit_reversed
 
 SOURCES = ["burst_counter.sv", "rom.sv", "multiply.sv", "round_saturate.sv", "spectral_divide.sv"]
 

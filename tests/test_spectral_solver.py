@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_sdf_fft import FFT_SOURCES
 
-from models import reference
-from models.configuration import Configuration
-from models.divergence import divergence
-from models.rom_files import write_solver
-from models.round_saturate import Monitor
-from models.scenes import dome, slopes_of
-from models.spectral_solver import solver_parameters, spectral_solver
+from tactile_depth import reference
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
+from tactile_depth.rom_files import write_solver
+from tactile_depth.scenes import dome, slopes_of
+from test_sdf_fft import FFT_SOURCES
 
 SOLVER_SOURCES = [
     *FFT_SOURCES,

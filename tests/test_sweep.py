@@ -15,10 +15,10 @@ import pytest
 
 from commands import sim, sweep
 from commands import simulator as simulation
-from models import accuracy
-from models.configuration import COLUMNS, Configuration
-from models.cost import cost
-from models.latency import first_depth_latency
+from tactile_depth import accuracy
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.cost import cost
+from tactile_depth.latency import first_depth_latency
 
 SMALL = [{"columns": 16, "solver": solver, "data_width": width} for solver in COLUMNS for width in (12, 18, 24) * 1] + [
     {"columns": 16, "neumann": True}
@@ -112,7 +112,7 @@ def test_a_row_is_what_the_rtl_does(tmp_path, solver, data_width, coefficient_wi
 
 def test_a_configuration_that_cannot_be_built_is_a_row(tmp_path):
     (row,) = sweep.sweep([{"columns": 512, "data_width": 12}], tmp_path)
-    assert "DATA_WIDTH=12 cannot hold the formats" in row["problem"]
+    assert "data_width=12 cannot hold the formats" in row["problem"]
     assert row["rms_percent_mean"] == ""
     assert table(tmp_path) == [row]
 

@@ -10,9 +10,9 @@ import pytest
 
 from commands import simulator as simulation
 from commands import synth
-from models.calibration import load
-from models.configuration import Configuration
-from models.cost import cost
+from tactile_depth.configuration import Configuration
+from tactile_depth.cost import cost
+from tactile_depth.sensor import synthetic
 
 TINY = Configuration(columns=16, rows=8, solver="tridiagonal", bits_per_channel=1)
 XCZU7EV = synth.TARGETS["xczu7ev"]
@@ -23,7 +23,7 @@ def memory(depth, width, style="block"):
 
 
 def test_memories_and_cores_are_those_of_the_rtl(tmp_path):
-    _, modules = synth.elaborate(TINY, load("synthetic"), tmp_path)
+    _, modules = synth.elaborate(TINY, synthetic(TINY.bits_per_channel), tmp_path)
     found = synth.memories(tmp_path / "design.json")
     behind_wrapper = Counter((memory.width, memory.depth) for memory in found if memory.style)
     assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(TINY).memories)

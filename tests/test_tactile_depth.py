@@ -6,13 +6,13 @@ import time
 from itertools import product
 
 import pytest
+
 from attack import PROFILES
 from stream import REGRESS
-
-from models.calibration import synthetic
-from models.configuration import COLUMNS, ULTRA, Configuration
-from models.scenes import render
-from models.tactile_depth import tactile_depth, top_parameters, write_roms
+from tactile_depth.configuration import COLUMNS, ULTRA, Configuration
+from tactile_depth.scenes import render
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
 
 # What is run in other formats than the first of each solver, and on a larger grid; on the first everything is.
 FORMATS = (

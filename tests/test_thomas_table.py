@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from models.configuration import Configuration
-from models.orders import eigenvalues
-from models.rom_files import write_thomas
-from models.thomas_table import thomas_table
-from models.tridiagonal_solver import solver_parameters
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.rom_files import write_thomas
+from tactile_depth.transform.orders import eigenvalues
 
 THOMAS_SOURCES = ["rom.sv", "thomas_table.sv"]
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from models.orders import makhoul
-from models.transpose import transpose
+from tactile_depth.transform.orders import makhoul
+from tactile_depth.transform.transpose import transpose
 
 SOURCES = ["burst_counter.sv", "ram.sv", "transpose.sv"]
 

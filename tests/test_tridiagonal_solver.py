@@ -5,23 +5,24 @@ import json
 
 import numpy as np
 import pytest
+
+from tactile_depth import reference
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import ULTRA, Configuration
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson import spectral_solver
+from tactile_depth.poisson.tridiagonal_solver import solver_parameters, tridiagonal_solver
+from tactile_depth.rom_files import write_solver
+from tactile_depth.scenes import dome, slopes_of
 from test_spectral_solver import PEAKS, SOLVER_SOURCES
 from test_thomas_table import THOMAS_SOURCES
-
-from models import reference, spectral_solver
-from models.configuration import ULTRA, Configuration
-from models.divergence import divergence
-from models.rom_files import write_solver
-from models.round_saturate import Monitor
-from models.scenes import dome, slopes_of
-from models.tridiagonal_solver import solver_parameters, tridiagonal_solver
 
 SOURCES = sorted(
     {*SOLVER_SOURCES, *THOMAS_SOURCES, "tridiagonal_solver.sv", "frame_stack.sv"}
     | {"forward_elimination.sv", "back_substitution.sv"}
 )
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/configuration.py
+PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/configuration.py
 
 
 @pytest.mark.structures(

@@ -11,9 +11,9 @@ import pytest
 
 from commands import sim, tune
 from commands.tune import Limits, Search, Widths
-from models.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
-from models.cost import cost
-from models.frames import load_frames
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.cost import cost
+from tactile_depth.frames import load_frames
 
 NONE = math.inf
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.orders import bit_reversed
-from models.rom_files import write_factors
-from models.round_saturate import Monitor
-from models.twiddle_multiply import (
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.rom_files import write_factors
+from tactile_depth.transform.orders import bit_reversed
+from tactile_depth.transform.twiddle_multiply import (
     coefficient,
     coefficient_gain,
     phase_factors,

@@ -3,12 +3,11 @@
 
 import json
 
-from stream import REGRESS
-
 from commands.fpga import SOURCES, threshold
-from models.calibration import synthetic
-from models.configuration import Configuration
-from models.tactile_depth import top_parameters, write_roms
+from stream import REGRESS
+from tactile_depth.configuration import Configuration
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
 
 CLOCK_MHZ = 100
 CLOCKS_A_BIT = 4

@@ -2,10 +2,10 @@
 """A sample of the soft errors that `make upsets` counts: no hang, and the frames sent after one are right."""
 
 import pytest
-from conftest import SEED
-from stream import REGRESS
 
 from commands.upsets import CASES, run
+from conftest import SEED
+from stream import REGRESS
 
 
 @pytest.mark.parametrize("case", CASES if REGRESS else list(CASES)[-1:])

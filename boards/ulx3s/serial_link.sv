@@ -7,7 +7,7 @@
 // Out: each packet of words on s_event as one packet of bytes. After a reset `threshold` is written to THRESHOLD and
 // OFF_THRESHOLD by itself. What is neither is dropped up to the next End, and so is what follows a broken byte; a frame
 // that lacks bytes leaves as it is, and frame_guard drops it. Pixels wait here while the guard fills such a one up.
-// Model: models/serial_link.py.
+// Model: models/tactile_depth/boards/serial_link.py.
 
 module serial_link
   import register_map_pkg::*;

@@ -6,7 +6,8 @@
 // Packets: serial_link.sv. led[0]: contact; led[1] changes with every record; led[7]: the clock is locked.
 // btn[1]: reset.
 // Depth leaves the pipeline at full rate and is not sent; its record is. Parameters of the pipeline come from
-// models/configuration.py; Threshold is a depth code. Model: models/serial_link.py around models/tactile_depth.py.
+// models/tactile_depth/configuration.py; Threshold is a depth code. Model: models/tactile_depth/boards/serial_link.py
+// around models/tactile_depth/tactile_depth.py.
 
 module ulx3s
   import register_map_pkg::*;

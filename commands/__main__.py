@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`python -m commands <command> NAME=value ..`: runs a command as make does, with its own exit status.
+
+docs/exit-status.md lists the statuses; make itself knows only 0 and 2.
+"""
+
+from __future__ import annotations
+
+import importlib
+import io
+import sys
+
+from commands import variables
+from tactile_depth.errors import InputError
+
+COMMANDS = (
+    *("asic", "baselines", "benchmark", "calibrate", "certify", "coverage", "extremes", "formal", "fpga", "frontends"),
+    *("fuzz", "lint", "mutate", "netlists", "reflex", "registers", "regress", "report", "sim", "sweep", "synth"),
+    *("tune", "upsets"),
+)
+
+
+def main() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a path may hold bytes that are no text
+    command = sys.argv[1] if len(sys.argv) > 1 else ""
+    if command not in COMMANDS:
+        unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(COMMANDS)}")
+        print(f"python -m commands: {unknown}", file=sys.stderr)
+        sys.exit(variables.BAD_INPUT)
+    with variables.reported(command):  # from here on, because imports take seconds
+        sys.argv = sys.argv[1:]
+        importlib.import_module(f"commands.{command}").main()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Comparison of depth codes from the RTL with those of the model, and warnings about a run that is bit-exact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactile_depth.configuration import DATA_WIDTHS, Configuration
+
+WARNED_RMS_PERCENT = 1.0  # mean RMS error to double precision, of the peak; the default widths stay below 0.001
+OF_COLOURS = ("flat_field", "quadratic_gradient")  # nodes before the solver, which no depth range widens
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Codes that differ, in the order of depth.npy: frames, rows and columns count from 0.
+
+    Attributes
+    ----------
+    differing : bool array (frames, rows, columns)
+    codes, expected : int
+        The first differing code, and the one of the model; 0 when all are equal.
+    """
+
+    differing: np.ndarray
+    code: int
+    expected: int
+
+    @property
+    def count(self) -> int:
+        return int(np.count_nonzero(self.differing))
+
+    def sentence(self) -> str:
+        """Return the verdict: the number of differing codes and the first of them."""
+        frames, total = len(self.differing), self.differing.size
+        if not self.count:
+            return f"RTL equals the model on every code: {total:,} codes in {frames:,} frames"
+        frame, row, column = np.argwhere(self.differing)[0]
+        return (
+            f"RTL differs from the model in {self.count:,} of {total:,} codes; first at frame {frame}, row {row}, "
+            f"column {column}: {self.code}, expected {self.expected}. Frames, rows and columns count from 0."
+        )
+
+
+def compare(codes: np.ndarray, expected: np.ndarray) -> Difference:
+    """Compare codes (repeats, frames, rows, columns) with those expected of each repeat (frames, rows, columns)."""
+    differing = (codes != expected).reshape(-1, *expected.shape[1:])
+    if not differing.any():
+        return Difference(differing, 0, 0)
+    first = int(differing.argmax())  # of the flat array
+    return Difference(differing, int(codes.reshape(-1)[first]), int(expected.reshape(-1)[first % expected.size]))
+
+
+def warnings(config: Configuration, rms_percent: Sequence[float | None], saturations: Mapping[str, int]) -> list[str]:
+    """Return a line when the mean RMS error exceeds `WARNED_RMS_PERCENT`, with the variable that reduces it.
+
+    The error halves with each bit of DATA_WIDTH, until COEFF_WIDTH limits it; clipped values need a larger range.
+    """
+    errors = [error for error in rms_percent if error is not None]
+    mean = sum(errors) / len(errors) if errors else 0.0
+    if mean <= WARNED_RMS_PERCENT:
+        return []
+    width = config.data_width + math.ceil(math.log2(mean / WARNED_RMS_PERCENT)) + 1
+    if colours := [node for node in saturations if node in OF_COLOURS]:
+        change = (
+            f"values saturate in {', '.join(colours)}: colours differ too much from REFERENCE; take it with the frames"
+        )
+    elif saturations:
+        change = "values saturate; give a larger DEPTH_RANGE"
+    elif config.data_width < config.coefficient_width and width <= DATA_WIDTHS[1]:
+        change = f"words of {config.data_width} bits are too short for this grid; try DATA_WIDTH={width}"
+    else:
+        change = "give a larger DATA_WIDTH or COEFF_WIDTH"
+    return [f"the mean RMS error is {mean:.2f} % of peak, above {WARNED_RMS_PERCENT:g} %: {change}"]

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Interruption by SIGINT, SIGTERM or SIGHUP: child processes end, and the command cleans up behind itself."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+SIGNALS = {
+    signal.SIGINT: "interrupted",
+    signal.SIGTERM: "terminated by SIGTERM",
+    signal.SIGHUP: "terminated by SIGHUP",
+}
+GRACE_S = 2.0  # between the request to end and the kill
+PROC = Path("/proc")
+_handled: dict[int, Any] = {}  # signals that `stoppable` handles now, and the handlers before
+_stopping = threading.Event()  # set from a signal until the command has cleaned up
+
+
+class Stopped(KeyboardInterrupt):
+    """A signal that ends the command; a KeyboardInterrupt, because libraries clean up after that one."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+@contextmanager
+def stoppable() -> Iterator[None]:
+    """Turn the first of `SIGNALS` into `Stopped`, after the child processes have ended; ignore those that follow.
+
+    A signal that the caller ignores (nohup) stays ignored. A forked worker that gets a signal exits without a word.
+    """
+    if _handled or threading.current_thread() is not threading.main_thread():
+        yield  # the outermost handles the signals
+        return
+    owner = os.getpid()
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        _stopping.set()
+        for other in _handled:
+            signal.signal(other, signal.SIG_IGN)  # make passes SIGTERM on a second time: cleaning up goes on
+        end_children()
+        if os.getpid() != owner:
+            os._exit(128 + number)
+        raise Stopped(number)
+
+    for number in SIGNALS:
+        if (handler := signal.getsignal(number)) != signal.SIG_IGN:
+            _handled[number] = handler
+            signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number, handler in _handled.items():
+            signal.signal(number, handler)
+        _handled.clear()
+        _stopping.clear()
+
+
+def children() -> list[int]:
+    """Process ids of all living descendants of this process; none where there is no /proc.
+
+    Trackers of multiprocessing are left out: they delete what the workers shared, and end by themselves.
+    """
+    parents: dict[int, list[int]] = {}
+    for entry in PROC.glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # it has ended meanwhile
+            state, parent = (entry / "stat").read_text().rpartition(")")[2].split()[:2]
+            if state != "Z" and b"resource_tracker" not in (entry / "cmdline").read_bytes():
+                parents.setdefault(int(parent), []).append(int(entry.name))
+    descendants = parents.get(os.getpid(), [])
+    for process in descendants:  # grows while it is read
+        descendants.extend(parents.get(process, []))
+    return descendants
+
+
+def end_children() -> None:
+    """End all descendants: SIGTERM first, and SIGKILL for those that are left after `GRACE_S`."""
+    processes = children()
+    deadline = time.monotonic() + GRACE_S
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        for process in processes:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, number)
+        while (processes := living(processes)) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        deadline += GRACE_S
+
+
+def living(processes: list[int]) -> list[int]:
+    """Processes of the list that have neither ended nor wait as zombies for their parent; and their new children."""
+    left = []
+    for process in processes:
+        with contextlib.suppress(OSError):
+            if (PROC / str(process) / "stat").read_text().rpartition(")")[2].split()[0] != "Z":
+                left.append(process)
+    return list(dict.fromkeys([*left, *children()]))
+
+
+class Pool(ThreadPoolExecutor):
+    """Threads that begin no call after a signal."""
+
+    def submit(self, call: Callable, /, *arguments: Any, **named: Any) -> Future:
+        return super().submit(_begin, call, *arguments, **named)
+
+
+def _begin(call: Callable, *arguments: Any, **named: Any) -> Any:
+    if _stopping.is_set():
+        raise CancelledError
+    return call(*arguments, **named)
+
+
+@contextmanager
+def threads(workers: int) -> Iterator[Pool]:
+    """Yield a pool of threads; an exception cancels the calls that have not begun, and a signal ends those that run."""
+    pool = Pool(workers)
+    try:
+        yield pool
+    except BaseException as error:
+        pool.shutdown(wait=False, cancel_futures=True)
+        if isinstance(error, Stopped):
+            end_children()  # also what a call has started since the signal came
+        raise
+    finally:
+        pool.shutdown()

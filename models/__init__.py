@@ -1,1 +1,0 @@
-"""Numpy models of the pipeline: the double-precision reference and the bit-accurate model of each core."""

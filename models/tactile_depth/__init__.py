@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Depth in millimetres from visuotactile fingertips, bit for bit as the hardware of this repository computes it.
+
+    import tactile_depth as td
+
+    pipeline = td.Pipeline(td.load("gelsight-mini"), reference="background.png")
+    result = pipeline("press.png")
+    result.height_mm, result.contact.touching
+
+`sample()` returns drawn pictures for users without a sensor. The models of the cores are in the subpackages, one for
+each folder of hdl/.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tactile_depth.errors import InputError, InputWarning
+    from tactile_depth.evaluation import Evaluation, evaluate
+    from tactile_depth.fitting import fit
+    from tactile_depth.pipeline import Pipeline
+    from tactile_depth.presses import BallPress
+    from tactile_depth.result import Contact, Result
+    from tactile_depth.samples import Sample, sample
+    from tactile_depth.sensor import Camera, HeightError, Sensor, identify, load
+
+__all__ = [
+    "BallPress",
+    "Camera",
+    "Contact",
+    "Evaluation",
+    "HeightError",
+    "InputError",
+    "InputWarning",
+    "Pipeline",
+    "Result",
+    "Sample",
+    "Sensor",
+    "evaluate",
+    "fit",
+    "identify",
+    "load",
+    "sample",
+]
+
+_MODULES = {
+    "errors": ("InputError", "InputWarning"),
+    "evaluation": ("Evaluation", "evaluate"),
+    "fitting": ("fit",),
+    "pipeline": ("Pipeline",),
+    "presses": ("BallPress",),
+    "result": ("Contact", "Result"),
+    "samples": ("Sample", "sample"),
+    "sensor": ("Camera", "HeightError", "Sensor", "identify", "load"),
+}
+_PLACES = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name on first use, so that a testbench that needs one model does not wait for the others."""
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_PLACES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

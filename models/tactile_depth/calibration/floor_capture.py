@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/floor_capture.sv: computes the floor of auto_zero from depth without contact."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.calibration.auto_zero import auto_zero_parameters, block_sums
+from tactile_depth.common.round_saturate import round_half_even
+from tactile_depth.configuration import Configuration
+
+LARGEST_LOG2 = 8
+"""Base-2 logarithm of the most frames in a capture; it equals that of reference_capture."""
+CLOCKS = 6
+"""Cycles from the last word of the last row of blocks to `done`."""
+
+
+def floor_capture_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/floor_capture.sv."""
+    return {**auto_zero_parameters(config), "MaxLog2": LARGEST_LOG2}
+
+
+def captured_floor(codes: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return the mean of each block over frames, rounded with ties to even.
+
+    Parameters
+    ----------
+    codes : int64 array (2**k, rows, columns)
+        Depth before a floor is subtracted.
+
+    Returns
+    -------
+    int64 array (node rows, node columns)
+    """
+    count = len(codes)
+    assert count.bit_count() == 1, "a power of two of frames"
+    log2 = count.bit_length() - 1
+    return round_half_even(block_sums(codes, config).sum(axis=0), 2 * config.reference_block_log2 + log2)

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tactile-depth depth`: height maps of pictures, as arrays, pictures, meshes and a report."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from tactile_depth.cli.options import add_pipeline_arguments, choose_sensor, make_pipeline, read_reference
+from tactile_depth.cli.overview import draw_overview
+from tactile_depth.cli.ply import write_ply
+from tactile_depth.errors import InputError
+from tactile_depth.files import new_files
+from tactile_depth.frames import read_pictures
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.result import Result
+
+NAME = "depth"
+HELP = "Write the height maps of pictures: arrays, pictures, meshes and a report."
+REPORT = "report.json"
+HEIGHTS = "depth_mm.npy"
+MICROMETRES = 1000  # of a millimetre
+LARGEST_UM = 2**16 - 1
+UNITS = {
+    HEIGHTS: "height above the untouched surface in mm, float32; rows from the picture's top; with several pictures "
+    "the first axis counts them",
+    "depth_um.png": f"the same in micrometres, 16 bits, clipped at 0 and {LARGEST_UM}",
+    "depth.ply": "the same as a mesh, mm",
+    "peak_height_mm": "largest height",
+    "peak_mm": "largest depth above the threshold, mm; depth is height before the mean of the untouched surface is "
+    "subtracted",
+    "peak_px, centroid_px": "row, column on the grid",
+    "area_mm2": "area above the threshold",
+    "volume_mm3": "sum of the depths above the threshold times the area of a pixel",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the subcommand."""
+    parser.add_argument("pictures", nargs="+", metavar="PICTURE", help="PNG, JPEG, a .npy of frames, or a folder")
+    parser.add_argument("--reference", required=True, metavar="BACKGROUND", help="the sensor without contact")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="default: <name of the first picture>-depth")
+    add_pipeline_arguments(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
+    """Write all files of all pictures, or none.
+
+    Raises
+    ------
+    InputError
+    """
+    out: Path = options.out or Path(f"{Path(options.pictures[0]).resolve().stem}-depth")
+    reference = read_reference(Path(options.reference))
+    sensor = choose_sensor(options, reference)
+    pipeline = make_pipeline(options, sensor, reference)
+    with new_files(out, REPORT, "files") as folder:
+        frames, heights = [], []
+        for label, image in _pictures(options.pictures):
+            try:
+                result = pipeline(image)
+            except InputError as error:
+                raise InputError(f"{label}: {error}") from error
+            heights.append(result.height_mm.astype(np.float32))
+            frames.append((label, image, result))
+        digits = len(str(len(frames) - 1))
+        described = []
+        for index, (label, image, result) in enumerate(frames):
+            suffix = f"_{index:0{digits}d}" if len(frames) > 1 else ""
+            names = _write_frame(folder, suffix, label, image, result)
+            described.append({"picture": label, **_describe(result), "files": names})
+        np.save(folder / HEIGHTS, heights if len(heights) > 1 else heights[0])
+        files = [HEIGHTS, REPORT, *(name for frame in described for name in frame["files"])]
+        report = {**_describe_pipeline(pipeline, options), "pictures": described, "warnings": list(warned)}
+        text = json.dumps({**report, "units": UNITS, "files": files}, indent=1, allow_nan=False)
+        (folder / REPORT).write_text(text + "\n")
+    print(f"grid: {pipeline.grid[1]} x {pipeline.grid[0]} pixels of {pipeline.pixel_pitch_mm:.4f} mm")
+    for label, _, result in frames:
+        print(f"{label}: {summary(result)}")
+    print(f"results: {out}")
+
+
+def _pictures(sources: Sequence[str]) -> Iterator[tuple[str, np.ndarray]]:
+    for source in sources:
+        labels, images = read_pictures(source, f"PICTURE {source}")
+        for label, image in zip(labels, images, strict=True):
+            yield (source if len(labels) == 1 else f"{source}: {label}"), image
+
+
+def summary(result: Result) -> str:
+    """Return one line on a picture: height with its error, area, and what is doubtful."""
+    contact = result.contact
+    if contact.touching:
+        peak, error = float(result.height_mm.max()), result.height_error
+        spread = "" if error is None else f" +- {peak * error.relative:.2f}"
+        parts = [f"peak height {peak:.2f}{spread} mm, contact area {contact.area_mm2:.1f} mm2"]
+        if error is None:
+            parts.append("error of the calibration not measured")
+    else:
+        parts = [f"no contact above {result.threshold_mm:.3g} mm"]
+    for count, what in (
+        (int(result.outside.sum()), "pixels steeper than the calibration has seen"),
+        (int(result.dark.sum()), "pixels without light"),
+        (sum(result.saturations.values()), "values clipped"),
+    ):
+        if count:
+            parts.append(f"{count:,} {what}")
+    return "; ".join(parts)
+
+
+def _write_frame(folder: Path, suffix: str, label: str, image: np.ndarray, result: Result) -> list[str]:
+    """Write the files of one picture; return their names."""
+    picture, mesh, overview = (f"depth_um{suffix}.png", f"depth{suffix}.ply", f"overview{suffix}.png")
+    micrometres = np.rint(result.height_mm * MICROMETRES).clip(0, LARGEST_UM).astype(np.uint16)
+    unit = PngInfo()
+    unit.add_text("Description", "height above the untouched surface in micrometres")
+    Image.fromarray(micrometres).save(folder / picture, pnginfo=unit)
+    write_ply(folder / mesh, result.height_mm, result.pixel_pitch_mm)
+    draw_overview(image, result, f"{label}: {summary(result)}").save(folder / overview)
+    return [picture, mesh, overview]
+
+
+def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[str, Any]:
+    config, model = pipeline.config, pipeline.config.gradient_model
+    assert config.depth_range_px is not None  # it is filled in
+    error = pipeline.sensor.height_errors.get(model)
+    return {
+        "calibration": pipeline.sensor.name,
+        "calibration_named": options.calibration is not None,
+        "gradient_model": model,
+        "calibration_error": None
+        if error is None
+        else {
+            "height_recovered_over_true": error.mean,
+            "spread": error.spread,
+            "presses": error.presses,
+            "relative": error.relative,
+        },
+        "calibrated_slope": pipeline.sensor.fitted_slope.get(model),
+        "reference": options.reference,
+        "arithmetic": pipeline.arithmetic,
+        "solver": config.solver,
+        "boundary": "neumann" if config.neumann else "dirichlet",
+        "zero_offset": config.auto_zero,
+        "grid": {"rows": pipeline.grid[0], "columns": pipeline.grid[1]},
+        "pixel_pitch_mm": pipeline.pixel_pitch_mm,
+        "depth_lsb_mm": pipeline.depth_lsb_mm,
+        "depth_range_mm": config.depth_range_px * pipeline.pixel_pitch_mm,
+        "threshold_mm": pipeline.threshold_mm,
+    }
+
+
+def _describe(result: Result) -> dict[str, Any]:
+    contact = result.contact
+    return {
+        "peak_height_mm": float(result.height_mm.max()),
+        "contact": {
+            "touching": contact.touching,
+            "peak_mm": contact.peak_mm,
+            "peak_px": list(contact.peak_px),
+            "area_mm2": contact.area_mm2,
+            "volume_mm3": contact.volume_mm3,
+            "centroid_px": list(contact.centroid_px),
+        },
+        "saturations": result.saturations,
+        "dark_pixels": int(result.dark.sum()),
+        "outside_pixels": int(result.outside.sum()),
+    }

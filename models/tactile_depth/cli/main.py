@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `tactile-depth`: its subcommands, its exit status, and one line for each error and warning.
+
+Exit status: 0 success, 2 input that cannot be used, 3 a failure on the way, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+import traceback
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import NoReturn
+
+from tactile_depth.cli import depth, live
+from tactile_depth.cli.failure import Failure
+from tactile_depth.errors import InputError, InputWarning
+
+PROGRAM = "tactile-depth"
+BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 130
+DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
+
+
+# Errors of the package name arguments; a user of the command gave options.
+OPTIONS = {
+    r"\bcamera_size=\(rows, columns\)": "--camera-size <columns>x<rows>",
+    r"\bcamera_size=\((\d+), (\d+)\)": r"--camera-size \2x\1",
+    r"\bcamera_size\b": "--camera-size",
+    r"\bcolumns=(\d+)": r"--grid \1x..",
+    r"\brows=(\d+)": r"--grid ..x\1",
+    r"\bthreshold_mm=": "--threshold-mm ",
+    r"\bgradient_model=": "--model ",
+    r"\breference=": "--reference ",
+}
+
+
+def named(message: str) -> str:
+    """Name options in a message of the package, which names arguments."""
+    for argument, option in OPTIONS.items():
+        message = re.sub(argument, option, message)
+    return message
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line, as all others of this command are."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}: see `{self.prog} --help`")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog=PROGRAM, description=DESCRIPTION, allow_abbrev=False)
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command in (depth, live):
+        command.add_arguments(
+            commands.add_parser(command.NAME, help=command.HELP, description=command.HELP, allow_abbrev=False)
+        )
+    return parser
+
+
+@contextmanager
+def _warnings_in_lines() -> Iterator[list[str]]:
+    """Print each InputWarning as one line; the list that it gives holds them."""
+    lines: list[str] = []
+    with warnings.catch_warnings():
+        show = warnings.showwarning
+
+        def line(message: Warning | str, category: type[Warning], *place: object, **more: object) -> None:
+            if not issubclass(category, InputWarning):
+                show(message, category, *place, **more)  # type: ignore[arg-type]
+                return
+            lines.append(named(str(message)))
+            print(f"{PROGRAM}: warning: {lines[-1]}", file=sys.stderr)
+
+        warnings.showwarning = line
+        warnings.simplefilter("always", InputWarning)
+        yield lines
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command and return its exit status."""
+    try:
+        parsed = _parser().parse_args(arguments)
+        with _warnings_in_lines() as lines:
+            parsed.run(parsed, lines)
+    except InputError as error:
+        print(f"{PROGRAM}: {named(str(error))}", file=sys.stderr)
+        return BAD_INPUT
+    except Failure as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        print(f"{PROGRAM}: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except Exception:
+        traceback.print_exc()
+        print(f"{PROGRAM}: an error of this program, not of the input: please report the lines above", file=sys.stderr)
+        return FAILED
+    return 0

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options that the subcommands share, and the pipeline that they describe."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.configuration import GRADIENT_MODELS
+from tactile_depth.errors import InputError
+from tactile_depth.frames import read_pictures
+from tactile_depth.pipeline import ARITHMETICS, Pipeline
+from tactile_depth.sensor import BUILT_IN, Sensor, identify, load
+
+
+def size(text: str) -> tuple[int, int]:
+    """Read columns x rows, as 320x240; return (rows, columns)."""
+    match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text)
+    if not match:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size: accepted is columns x rows, as 320x240")
+    return int(match[2]), int(match[1])
+
+
+def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what `make_pipeline` reads, but for the reference."""
+    parser.add_argument(
+        "--calibration",
+        metavar="NAME_OR_FILE",
+        help=f"{', '.join(BUILT_IN)}, or an .npz; by default the built-in one whose lighting the reference has",
+    )
+    parser.add_argument(
+        "--camera-size", type=size, metavar="WxH", help="pictures that a calibration of format 1 was made from"
+    )
+    parser.add_argument("--grid", type=size, metavar="WxH", help="of the depth map, 128x96 by default for 4:3")
+    parser.add_argument(
+        "--arithmetic",
+        choices=ARITHMETICS,
+        default=ARITHMETICS[0],
+        help="chip: every bit as in hardware (default); float: double precision",
+    )
+    parser.add_argument(
+        "--threshold-mm", type=float, default=0.1, metavar="MM", help="depth above which a pixel touches (default 0.1)"
+    )
+    parser.add_argument(
+        "--model", choices=GRADIENT_MODELS, default="", help="gradient model; by default the better of the calibration"
+    )
+    parser.add_argument(
+        "--no-zero-offset", action="store_true", help="keep what depth reads without contact, do not subtract it"
+    )
+
+
+def read_reference(path: Path) -> np.ndarray:
+    """Read pictures without contact, uint8 (frames, rows, columns, 3).
+
+    Raises
+    ------
+    InputError
+    """
+    images = list(read_pictures(path, f"--reference {path}")[1])
+    if len({image.shape for image in images}) > 1:
+        raise InputError(f"--reference {path}: pictures of several sizes: give pictures of one camera")
+    return np.stack(images)
+
+
+def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:
+    """Return the calibration that is named, else the built-in one that a reference looks like, and say so.
+
+    Raises
+    ------
+    InputError
+    """
+    if options.calibration is not None:
+        sensor = load(options.calibration, options.camera_size)
+        print(f"calibration: {sensor.name}")
+        return sensor
+    if options.camera_size is not None:
+        raise InputError("--camera-size without --calibration: it goes with a calibration file of version 0.1")
+    sensor = identify(reference[0])
+    print(f"calibration: {sensor.name}: the reference looks like it; --calibration names another")
+    return sensor
+
+
+def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.ndarray) -> Pipeline:
+    """Return the pipeline that the options describe.
+
+    Raises
+    ------
+    InputError
+    """
+    return Pipeline(
+        sensor,
+        reference,
+        grid=options.grid,
+        model=options.model,
+        zero_offset=not options.no_zero_offset,
+        arithmetic=options.arithmetic,
+        threshold_mm=options.threshold_mm,
+    )

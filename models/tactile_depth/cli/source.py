@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames of a camera, a video or pictures, read ahead by a thread; each that is lost is counted."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import sys
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.cli.failure import Failure
+from tactile_depth.errors import InputError
+from tactile_depth.frames import PICTURE_SUFFIXES, read_pictures
+from tactile_depth.npy import is_file
+
+QUEUED = 4  # frames that wait between the reader and the pipeline
+DEAD_AFTER = 30  # failed reads in a row of a camera
+DEVICES = "/dev/"
+INSTALL = "pip install '.[live]' in the repository"
+
+Item = np.ndarray | InputError  # a frame, or why one could not be read
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame of a source.
+
+    Attributes
+    ----------
+    index : int
+        Its number in the source, from 0, dropped and unreadable ones included.
+    image : uint8 array (rows, columns, 3), RGB
+    """
+
+    index: int
+    image: np.ndarray
+
+
+@dataclass
+class Counts:
+    """Numbers of frames by outcome; `read` is the sum of captured, shown, dropped, failed and unfinished.
+
+    Attributes
+    ----------
+    taken : int
+        Came to the consumer, readable or not.
+    captured : int
+        Became the reference before anything was shown.
+    shown : int
+    dropped : int
+        The camera was faster than the pipeline.
+    failed : int
+        Could not be read or processed.
+    """
+
+    taken: int = 0
+    captured: int = 0
+    shown: int = 0
+    dropped: int = 0
+    failed: int = 0
+
+    @property
+    def read(self) -> int:
+        """All frames but those that still wait when the source is closed."""
+        return self.taken + self.dropped
+
+    @property
+    def unfinished(self) -> int:
+        """Frames that were in work when the user ended it: at most one."""
+        return self.taken - self.captured - self.shown - self.failed
+
+    def fail(self, reason: InputError) -> None:
+        """Count a frame that could not be read or processed; say why for the first."""
+        self.failed += 1
+        if self.failed == 1:
+            print(f"tactile-depth: a frame is left out; others are counted at the end: {reason}", file=sys.stderr)
+
+
+class Source:
+    """Frames in the order of their arrival, for one consumer.
+
+    A camera does not wait: when the queue is full the oldest frame is dropped. Files wait: none is dropped.
+
+    Parameters
+    ----------
+    name : str
+        Number or device of a camera, a video file, a picture, a `.npy` of frames, or a folder of pictures.
+
+    Attributes
+    ----------
+    counts : Counts
+        `taken`, `dropped` and the unreadable among `failed` are counted here, the others by the consumer.
+
+    Raises
+    ------
+    InputError
+        There is no such source.
+    Failure
+        OpenCV is missing, or the camera cannot be opened.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name, self.counts = name, Counts()
+        self.is_camera = name.isdecimal() or name.startswith(DEVICES)
+        items = _camera(name) if self.is_camera else _files(name)
+        self._queue: queue.Queue[Frame | InputError | Failure | None] = queue.Queue(QUEUED)
+        self._stopped = threading.Event()
+        self._thread = threading.Thread(target=self._read, args=(items,), daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Source:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stopped.set()
+        self._thread.join()
+
+    def frames(self, patience_s: float = 0.1) -> Iterator[Frame | None]:
+        """Give the frames to the end; None when none has arrived for a while.
+
+        Raises
+        ------
+        Failure
+            The camera gives no frames any more.
+        """
+        while True:
+            try:
+                item = self._queue.get(timeout=patience_s)
+            except queue.Empty:
+                yield None
+                continue
+            if item is None:
+                return
+            if isinstance(item, Failure):
+                raise item
+            self.counts.taken += 1
+            if isinstance(item, InputError):
+                self.counts.fail(item)
+            else:
+                yield item
+
+    def _read(self, items: Iterator[Item]) -> None:
+        end: Failure | None = None
+        try:
+            for index, item in enumerate(items):
+                self._put(item if isinstance(item, InputError) else Frame(index, item))
+                if self._stopped.is_set():
+                    return
+        except Failure as error:
+            end = error
+        self._put(end)
+
+    def _put(self, item: Frame | InputError | Failure | None) -> None:
+        while not self._stopped.is_set():
+            try:
+                self._queue.put(item, timeout=0.01 if self.is_camera else 0.1)
+                return
+            except queue.Full:
+                if self.is_camera:
+                    self._drop_oldest()
+
+    def _drop_oldest(self) -> None:
+        with contextlib.suppress(queue.Empty):  # the consumer was quicker
+            self._queue.get_nowait()
+            self.counts.dropped += 1
+
+
+def load_opencv() -> Any:
+    """Return the module cv2.
+
+    Raises
+    ------
+    Failure
+        It is not installed.
+    """
+    try:
+        import cv2
+    except ImportError as error:
+        raise Failure(f"cameras and videos are read by OpenCV, which is not installed: {INSTALL}") from error
+    return cv2
+
+
+def _files(name: str) -> Iterator[Item]:
+    """Open a file or a folder at once, and give its frames later."""
+    path = Path(name)
+    is_video = is_file(path) and path.suffix.lower() not in (".npy", *PICTURE_SUFFIXES)
+    if not is_video and not path.exists():
+        raise InputError(
+            f"{name}: no such source: give the number of a camera, a video, a .npy of frames or a folder of pictures"
+        )
+    return _video(name) if is_video else _images(iter(read_pictures(path)[1]))
+
+
+def _images(images: Iterator[np.ndarray]) -> Iterator[Item]:
+    while True:
+        try:
+            yield next(images)
+        except StopIteration:
+            return
+        except InputError as error:
+            yield error
+
+
+def _video(name: str) -> Iterator[Item]:
+    cv2 = load_opencv()
+    video = cv2.VideoCapture(name)
+    if not video.isOpened():
+        raise InputError(
+            f"{name}: not a readable video: give one that OpenCV reads, as an MP4, or a folder of pictures"
+        )
+    return _video_frames(cv2, video, name)
+
+
+def _video_frames(cv2: Any, video: Any, name: str) -> Iterator[Item]:
+    claimed = round(video.get(cv2.CAP_PROP_FRAME_COUNT))
+    count = 0
+    try:
+        while True:
+            is_read, image = video.read()
+            if not is_read:
+                break
+            count += 1
+            yield cv2.cvtColor(image, cv2.COLOR_BGR2RGB)
+    finally:
+        video.release()
+    for _ in range(claimed - count):
+        yield InputError(f"{name}: it claims {claimed} frames, {count} could be read: give an intact video")
+
+
+def _camera(name: str) -> Iterator[Item]:
+    cv2 = load_opencv()
+    camera = cv2.VideoCapture(int(name) if name.isdecimal() else name)
+    if not camera.isOpened():
+        raise Failure(f"camera {name} cannot be opened: look for its number with `v4l2-ctl --list-devices`")
+    return _camera_frames(cv2, camera, name)
+
+
+def _camera_frames(cv2: Any, camera: Any, name: str) -> Iterator[Item]:
+    failed = 0
+    try:
+        while failed < DEAD_AFTER:
+            is_read, image = camera.read()
+            if is_read:
+                failed = 0
+                yield cv2.cvtColor(image, cv2.COLOR_BGR2RGB)
+            else:
+                failed += 1
+                yield InputError(f"camera {name}: a frame could not be read")
+    finally:
+        camera.release()
+    raise Failure(f"camera {name} gives no frames any more: plug it in again")

@@ -1,0 +1,471 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The configuration of a pipeline, the only source of its numbers.
+
+Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats
+follow from two bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Every step from
+slope to depth is linear, so the largest value of a node is an L1 norm. The norm is computed by the
+bit-accurate model, run on unit vectors of floats (models/tactile_depth/common/round_saturate.py).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.errors import InputError
+from tactile_depth.transform.dst_forward import dst_forward
+from tactile_depth.transform.dst_inverse import dst_inverse
+from tactile_depth.transform.orders import eigenvalues, makhoul
+from tactile_depth.transform.sdf_fft import twiddle_stages
+from tactile_depth.transform.twiddle_multiply import coefficient_gain
+
+GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits at the cost of 24
+DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: margin for depth errors
+DEEPEST = 0.67  # largest depth over N pixels for slopes up to 1 (L1 norm of the linear map), as a fraction of N
+COARSEST_LSB = 1 / 32  # of a mode's word, as a fraction of the deepest depth: coarser words lose the shape
+SMALLEST_DEPTH_RANGE_PX = 1 / 16
+
+# Styles of hdl/ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
+BLOCK, ULTRA = 1, 2
+ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
+
+COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
+ROWS = (8, 1024)
+DATA_WIDTHS = (12, 32)
+COEFFICIENT_WIDTHS = (10, 24)
+GRADIENT_MODELS = ("lut", "quadratic")
+GRADIENT_LIMITS = (2.0**-6, 2.0**6)
+
+# Flat-fielding. The reference is smooth, as the lighting is. A grid of 16 block means across the picture causes no
+# visible error in the gradients of real presses; a grid of 8 does.
+REFERENCE_NODES = 16
+SMALLEST_BLOCK = 2
+GAIN_WIDTH, GAIN_FRACTION = 24, 27  # unsigned gain word: a reference of 8 grey levels gives full scale
+
+
+@dataclass(frozen=True)
+class Format:
+    """A signed fixed-point word: value = code * 2**-fraction."""
+
+    width: int
+    fraction: int
+
+    @classmethod
+    def holding(cls, bound: float, width: int) -> Format:
+        """Return the finest format of `width` bits that holds every magnitude up to `bound`."""
+        return cls(width, width - 1 - math.ceil(math.log2(bound * (1 + 2.0 ** (2 - width)))))
+
+    @property
+    def limit(self) -> float:
+        """Full scale, exclusive."""
+        return 2.0 ** (self.width - 1 - self.fraction)
+
+    @property
+    def lsb(self) -> float:
+        return 2.0**-self.fraction
+
+
+DEVIATION = Format(14, 12)
+"""Format of a colour relative to the reference, I / ref - 1, finer than 8-bit pixels."""
+POLYNOMIAL = Format(32, 28)
+"""Format of a coefficient of the quadratic model along the raster, as wide as a register of the AXI4-Lite map."""
+COLOUR_COEFFICIENT = Format(18, 14)
+"""Format of the upper bits of a coefficient, which are multiplied, as wide as the narrow port of a DSP48E2."""
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """The choices that define a pipeline, and the numbers that follow from them.
+
+    Raises InputError if the pipeline cannot be built.
+
+    Attributes
+    ----------
+    columns : int
+        Columns of the grid, a power of two.
+    rows : int
+        Rows of the grid; 0: as many as columns. Only the tridiagonal solver accepts a different number.
+    solver : str
+        `spectral` or `tridiagonal`.
+    neumann : bool
+        Zero slope at the frame's edge instead of zero depth.
+    data_width, coefficient_width : int
+        Bits of a stored word and of a coefficient.
+    depth_range_px : float
+        Largest depth that formats are sized for, in grid pixels; None: a quarter of the grid.
+    gradient_limit : float
+        Largest slope, a power of two.
+    bits_per_channel : int
+        Bits of each colour that index the gradient table.
+    flat_field : bool
+        Colours are taken relative to a reference frame.
+    gradient_model : str
+        `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
+    auto_zero : bool
+        The depth that is read without contact is subtracted.
+    """
+
+    columns: int = 128
+    rows: int = 0
+    solver: str = "spectral"
+    neumann: bool = False
+    data_width: int = 24
+    coefficient_width: int = 18
+    depth_range_px: float | None = None
+    gradient_limit: float = 1.0
+    bits_per_channel: int = 4
+    flat_field: bool = False
+    gradient_model: str = "lut"
+    auto_zero: bool = False
+
+    def __post_init__(self) -> None:
+        def within(name: str, value: int, accepted: tuple[int, int]) -> None:
+            if not accepted[0] <= value <= accepted[1]:
+                raise InputError(f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}")
+
+        if self.gradient_model not in GRADIENT_MODELS:
+            raise InputError(
+                f"gradient_model={self.gradient_model} is unknown: accepted are {', '.join(GRADIENT_MODELS)}"
+            )
+        if self.gradient_model == "quadratic" and not self.flat_field:
+            raise InputError("gradient_model=quadratic without a reference: it takes colours relative to one: give one")
+        if self.solver not in COLUMNS:
+            raise InputError(f"solver={self.solver} is unknown: accepted are {', '.join(COLUMNS)}")
+        within("columns", self.columns, COLUMNS[self.solver])
+        if self.columns & (self.columns - 1):
+            lower = 1 << (self.columns.bit_length() - 1)
+            raise InputError(
+                f"columns={self.columns} is not a power of two: try columns={lower} or "
+                f"columns={min(2 * lower, COLUMNS[self.solver][1])}"
+            )
+        if not self.rows:
+            object.__setattr__(self, "rows", self.columns)
+        if self.solver == "spectral" and self.rows != self.columns:
+            raise InputError(
+                f"solver=spectral with rows={self.rows} and columns={self.columns}: it takes square grids: "
+                "set both the same, or solver=tridiagonal"
+            )
+        within("rows", self.rows, ROWS)
+        within("data_width", self.data_width, DATA_WIDTHS)
+        within("coefficient_width", self.coefficient_width, COEFFICIENT_WIDTHS)
+        if self.depth_range_px is None:
+            object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
+        if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
+            raise InputError(
+                f"a depth range of {self.depth_range_px:g} pixels: accepted are {SMALLEST_DEPTH_RANGE_PX:g} "
+                f"pixels and more"
+            )
+        lowest, highest = GRADIENT_LIMITS
+        if not lowest <= self.gradient_limit <= highest or math.log2(self.gradient_limit) % 1:
+            raise InputError(
+                f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are "
+                f"{lowest:g} to {highest:g} pixels per pixel: correct its unit"
+            )
+        deepest = min(
+            self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit
+        )
+        modes = self.column_inverse if self.solver == "spectral" else self.elimination_store
+        step = modes.lsb * self.depth_limit_px
+        if step > COARSEST_LSB * deepest:
+            enough = self.data_width + math.ceil(math.log2(step / (COARSEST_LSB * deepest)))
+            mend = f"data_width={enough} or " if enough <= DATA_WIDTHS[1] else ""
+            raise InputError(
+                f"data_width={self.data_width} cannot hold the formats of columns={self.columns} and a depth range of "
+                f"{self.depth_range_px:g} pixels (the step of a mode would be {step:.3g} pixels, the largest depth is "
+                f"{deepest:.3g}): try {mend}a smaller depth range"
+            )
+        for node, (bound, form) in self.bounds_within_range().items():
+            if bound > form.limit - form.lsb:
+                raise InputError(
+                    f"{node} of columns={self.columns}, data_width={self.data_width} holds up to {form.limit:g} and a "
+                    f"depth within the range of {self.depth_range_px:g} pixels can ask for {bound:.4g}: a fault in the "
+                    "derivation of formats, please report it"
+                )
+
+    # Widths.
+
+    @property
+    def arithmetic_width(self) -> int:
+        """Bits inside the transforms and the divide."""
+        return self.data_width + GUARD_BITS
+
+    @property
+    def depth_limit_px(self) -> float:
+        """Full scale of the depth code, in grid pixels."""
+        assert self.depth_range_px is not None
+        return DEPTH_HEADROOM * self.depth_range_px
+
+    @property
+    def depth_limit_log2(self) -> int:
+        """Full scale of the depth code, in units of `unit_px`, as a power of two."""
+        return math.ceil(math.log2(self.depth_limit_px)) if self.solver == "tridiagonal" else 0
+
+    @property
+    def unit_px(self) -> float:
+        """Unit of length of slopes, divergence and forward modes, in grid pixels.
+
+        The spectral divide changes units. The tridiagonal solver cannot, so slopes already have the unit of its depth.
+        """
+        return self.depth_limit_px / 2.0**self.depth_limit_log2 if self.solver == "tridiagonal" else 1.0
+
+    @property
+    def reference_block_log2(self) -> int:
+        """Base-2 logarithm of the rows and columns of a block of pixels that share a gain."""
+        block = min(max(self.columns // REFERENCE_NODES, SMALLEST_BLOCK), self.rows)
+        return block.bit_length() - 1
+
+    @property
+    def reference_nodes(self) -> tuple[int, int]:
+        """Rows and columns of the grid of gains; an incomplete last row of blocks has no gains of its own."""
+        return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
+
+    @property
+    def store_style(self) -> int:
+        """Style of the memory of a frame store, BLOCK or ULTRA."""
+        return ULTRA if self.rows * self.columns * self.data_width >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
+
+    @property
+    def words_per_row(self) -> int:
+        """Stored words side by side in a row of the tridiagonal solver's frame store: as many as fit an UltraRAM's row.
+
+        The rows of a block RAM are as wide as one word. The spectral solver stores one word in a row, because it reads
+        columns.
+        """
+        return ULTRA_WIDTH // self.data_width if self.store_style == ULTRA and self.solver == "tridiagonal" else 1
+
+    # Formats, in the order of the stream. Slopes, divergence and forward modes have the unit `unit_px`; all values
+    # after the solve along the columns have the unit `depth_limit_px`.
+
+    @cached_property
+    def row_forward(self) -> Format:
+        return Format.holding(self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width)
+
+    @property
+    def gradient(self) -> Format:
+        """Format of a slope, with the fraction bits of the row transform, so that no bits are dropped between them."""
+        fraction = self.row_forward.fraction
+        largest = self.gradient_limit / self.gradient_lsb
+        return Format(math.ceil(math.log2(largest)) + 1, fraction)
+
+    @property
+    def gradient_lsb(self) -> float:
+        """Slope of code 1. For the tridiagonal solver it compensates the gain of the coefficients."""
+        gain = self.transform_gain if self.solver == "tridiagonal" else 1.0
+        return self.row_forward.lsb * self.unit_px * gain
+
+    @property
+    def divergence(self) -> Format:
+        return Format(self.gradient.width + 2, self.gradient.fraction)
+
+    @cached_property
+    def row_modes(self) -> Format:
+        """Format of the first frame store."""
+        return Format.holding(self._bounds.row_modes * self.gradient_limit, self.data_width)
+
+    @cached_property
+    def column_forward(self) -> Format:
+        return Format.holding(self._bounds.column_forward * self.gradient_limit, self.arithmetic_width)
+
+    @cached_property
+    def column_inverse(self) -> Format:
+        return Format.holding(self._bounds.column_inverse / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @cached_property
+    def depth_modes(self) -> Format:
+        """Format of the second frame store."""
+        return Format.holding(self._bounds.depth_modes / DEPTH_HEADROOM, self.data_width)
+
+    @cached_property
+    def elimination(self) -> Format:
+        """Format of the running rows of the tridiagonal solver, and of the modes at its input."""
+        return Format.holding(max(self._elimination_bounds.values()), self.arithmetic_width)
+
+    @property
+    def elimination_store(self) -> Format:
+        """Format of the frame store of the tridiagonal solver."""
+        return Format(self.data_width, self.elimination.fraction - GUARD_BITS)
+
+    @property
+    def moment_drop(self) -> int:
+        """Fraction bits that rows * mean drops before the division by rows (Neumann)."""
+        return (self.rows - 1).bit_length()
+
+    @cached_property
+    def row_inverse(self) -> Format:
+        return Format.holding(self._bounds.row_inverse / DEPTH_HEADROOM, self.arithmetic_width)
+
+    @property
+    def depth(self) -> Format:
+        return Format(self.data_width, self.data_width - 1)
+
+    @property
+    def depth_lsb_px(self) -> float:
+        """Depth of code 1, in grid pixels."""
+        return self.depth.lsb * self.depth_limit_px
+
+    # HDL parameters.
+
+    def transform_parameters(self) -> dict[str, int]:
+        """Return the HDL parameters that all transforms share."""
+        return {"Size": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
+
+    def stream_parameters(self) -> dict[str, int]:
+        """Return the parameters of spectral_solver.sv; poisson/spectral_solver.py adds those of its divide."""
+        return {
+            **self.transform_parameters(),
+            "InWidth": self.divergence.width,
+            "DataWidth": self.data_width,
+            "RowForwardOut": self.row_forward.fraction - self.row_modes.fraction,
+            "ColumnForwardIn": self.row_modes.fraction - self.column_forward.fraction,
+            "ColumnInverseOut": self.column_inverse.fraction - self.depth_modes.fraction,
+            "RowInverseIn": self.depth_modes.fraction - self.row_inverse.fraction,
+            "RowInverseOut": self.row_inverse.fraction - self.depth.fraction,
+            "StoreStyle": self.store_style,
+        }
+
+    # Gain.
+
+    @property
+    def transform_gain(self) -> float:
+        """Gain of the coefficients over all forward and inverse transforms, slightly below 1."""
+        transforms = 4 if self.solver == "spectral" else 2
+        return coefficient_gain(self.coefficient_width) ** (transforms * (twiddle_stages(self.columns) + 1))
+
+    # Bounds.
+
+    @property
+    def _bounds(self) -> Bounds:
+        return bounds(self.columns, self.neumann)
+
+    @property
+    def _elimination_bounds(self) -> dict[str, float]:
+        """Bounds of the nodes with format `elimination`; |d| = |z[i] + c z[i+1]| <= twice the largest depth mode."""
+        by_slopes, by_depths = difference_bounds(self.rows, self.columns, self.neumann)
+        slope = self.gradient_limit / self.depth_limit_px
+        difference = float(np.minimum(by_slopes * slope, by_depths / DEPTH_HEADROOM).max())
+        depth = self._bounds.depth_modes / DEPTH_HEADROOM
+        return {
+            "forward_elimination.difference": difference,
+            "forward_elimination.state": 2 * depth,
+            "back_substitution": depth,
+        }
+
+    def bounds_within_range(self) -> dict[str, tuple[float, Format]]:
+        """Return the largest magnitude at each group of nodes for inputs within gradient limit and depth range."""
+        steep, deep = self.gradient_limit / self.unit_px, 1 / DEPTH_HEADROOM
+        found = {
+            "row_forward": (self._bounds.row_forward * steep, self.row_forward),
+            "row_inverse": (self._bounds.row_inverse * deep, self.row_inverse),
+            "row_inverse.output": (deep, self.depth),
+        }
+        if self.solver == "tridiagonal":
+            running = {node: (bound, self.elimination) for node, bound in self._elimination_bounds.items()}
+            stored = (self._elimination_bounds["forward_elimination.state"], self.elimination_store)
+            return found | running | {"forward_elimination.store": stored}
+        return found | {
+            "row_forward.phase.re": (self._bounds.row_modes * steep, self.row_modes),
+            "column_forward": (self._bounds.column_forward * steep, self.column_forward),
+            "spectral_divide": (self._bounds.column_inverse * deep, self.column_inverse),
+            "column_inverse.output": (self._bounds.depth_modes * deep, self.depth_modes),
+        }
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Largest magnitudes at the nodes of each core, for slopes up to 1 (first three) or depths up to 1 (others)."""
+
+    row_forward: float
+    row_modes: float
+    column_forward: float
+    column_inverse: float
+    depth_modes: float
+    row_inverse: float
+
+
+def _variation(response: np.ndarray) -> np.ndarray:
+    """Return the L1 norm over axis 0 of the response to slopes, from the response to the divergence."""
+    return np.abs(np.diff(response, axis=0, append=0)).sum(axis=0)
+
+
+def wide_arithmetic(neumann: bool) -> dict[str, Any]:
+    """Return the arguments of a nearly ideal transform of floats."""
+    return {
+        "alternate": not neumann,
+        "input_drop": 0,
+        "width": 62,
+        "coefficient_width": 50,
+        "output_drop": 0,
+        "output_width": 62,
+    }
+
+
+@cache
+def difference_bounds(rows: int, columns: int, neumann: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest f[i] - d[i-1] of each mode, for slopes up to 1 and for depths up to 1, float64 (columns,).
+
+    This difference is the sum over rows r <= i of f[r] times the product of |c| over the rows from r up to i. These
+    weights rise to 1 at r = i, so their variation is below 2. In terms of depth the difference is z[i] / c[i] + z[i+1],
+    and 1 / |c| is largest in the first row. The bounds hold for f alone too, the modes at the input.
+    """
+    eigenvalue = eigenvalues(columns, neumann)
+    modes = dst_forward(np.eye(columns)[:, makhoul(columns)], **wide_arithmetic(neumann))
+    length = np.abs(modes).sum(axis=0)
+    inner = np.diff(modes, axis=0, append=modes[-1:] if neumann else 0)  # Neumann: no slope across the edge
+    variation = np.abs(inner).sum(axis=0)
+    end = eigenvalue - (1 if neumann else 3)
+    weights = largest = np.ones(columns)
+    c = 1 / end
+    for _ in range(rows - 1):
+        weights = 1 + np.abs(c) * weights
+        largest = np.maximum(largest, weights)
+        c = 1 / (eigenvalue - 2 - c)
+    return 2 * length + variation * largest, (4 - eigenvalue) * length
+
+
+class _Responses(Monitor):
+    """Monitor that keeps the response of each node instead of its norm."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.responses: dict[str, np.ndarray] = {}
+
+    def linear(self, node: str, response: np.ndarray) -> None:
+        self.responses[node] = response.reshape(response.shape[0], -1)
+
+
+@cache
+def bounds(size: int, neumann: bool = False) -> Bounds:
+    """Return the largest L1 norms of the nodes of the spectral solver, from the models run on unit vectors."""
+    wide = wide_arithmetic(neumann)
+    unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
+    forward, inverse = _Responses(), _Responses()
+    modes = dst_forward(unit, monitor=forward, node="forward", **wide)
+    dst_inverse(modes, monitor=inverse, node="inverse", **wide)
+
+    def largest(nodes: _Responses, norm) -> float:  # type: ignore[no-untyped-def]
+        return max(float(norm(response).max()) for response in nodes.responses.values())
+
+    def l1(response: np.ndarray) -> np.ndarray:
+        return np.abs(response).sum(axis=0)
+
+    def row(response: np.ndarray) -> np.ndarray:  # gx along the row, gy of this row and of the row before
+        return _variation(response) + 2 * l1(response)
+
+    def column(response: np.ndarray) -> np.ndarray:  # outer product with every row mode
+        along, across = l1(response), _variation(response)
+        return np.maximum.reduce([v * along + u * across for u, v in zip(l1(modes), _variation(modes), strict=True)])
+
+    largest_mode = float(l1(modes).max())
+    return Bounds(
+        row_forward=largest(forward, row),
+        row_modes=float(row(modes).max()),
+        column_forward=largest(forward, column),
+        column_inverse=largest_mode * max(largest(inverse, l1), largest_mode),
+        depth_modes=largest_mode,
+        row_inverse=largest(inverse, l1),
+    )

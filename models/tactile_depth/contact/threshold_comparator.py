@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/threshold_comparator.sv."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass
+class ThresholdComparator:
+    """State of the `contact` output, beat by beat.
+
+    Attributes
+    ----------
+    contact : bool
+        Value of the output from the cycle after the last beat to the cycle after the next beat.
+    threshold : int or None
+        Threshold of the current frame; None before the first frame.
+    """
+
+    contact: bool = False
+    threshold: int | None = None
+
+    def beat(self, data: int, user: bool, threshold: int, hold: bool) -> None:
+        """Take a depth code that leaves.
+
+        Parameters
+        ----------
+        user : bool
+            True for the first code of a frame.
+        threshold, hold : int, bool
+            Registers in that cycle. The threshold takes effect only with the first code of a frame.
+
+        Raises
+        ------
+        ValueError
+            No frame has begun, so the threshold of the device is unknown.
+        """
+        if user:
+            self.threshold = threshold
+        if self.threshold is None:
+            raise ValueError("a depth code left before the first of any frame")
+        if data > self.threshold:
+            self.contact = True
+        elif user and not hold:
+            self.contact = False
+
+    def reset(self) -> None:
+        """Advance by one clock edge in reset, which clears `contact` and keeps the threshold, as the device does."""
+        self.contact = False

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Loads frames from scenes and files, and resamples them to the grid: crop, area average, one rounding."""
+
+from __future__ import annotations
+
+import math
+import re
+import struct
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from PIL import Image
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.npy import is_file, read_header
+from tactile_depth.resampling import resampling
+from tactile_depth.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor
+
+LARGEST_CAMERA = 4096  # largest rows and columns of a frame, so that a damaged header cannot take all memory
+PNG_SIGNATURE, JPEG_SIGNATURE = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
+EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
+PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
+REST_SCENE = "flat"  # the scene without contact
+PICTURES = "a picture (PNG or JPEG), a folder of pictures, a .npy of uint8 (frames, rows, cols, 3)"
+ACCEPTED = f"a scene ({', '.join(SCENES)}), {PICTURES}"
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Frames on the grid.
+
+    Attributes
+    ----------
+    pixels : uint8 array (frames, rows, cols, 3), RGB
+    pixel_scale : float
+        Pixels of the picture per grid pixel.
+    name : str
+        Name of the source.
+    labels : tuple of str
+        One label per frame.
+    reference : uint8 array (rows, cols, 3), or None
+        The sensor without contact.
+    picture_size : (rows, columns), or None
+        Size of the pictures before resampling; None for a scene, which is drawn on the grid.
+    no_contact : uint8 array (rows, columns, 3), or None
+        Full picture that `reference` was made from.
+    """
+
+    pixels: np.ndarray
+    pixel_scale: float
+    name: str
+    labels: tuple[str, ...]
+    reference: np.ndarray | None = None
+    picture_size: tuple[int, int] | None = None
+    no_contact: np.ndarray | None = None
+
+
+def read_picture(path: Path) -> np.ndarray:
+    """Read an 8-bit colour PNG or JPEG; transparency is dropped.
+
+    Returns
+    -------
+    uint8 array (rows, cols, 3)
+
+    Raises
+    ------
+    InputError
+        The file is missing, truncated, too large, or not an 8-bit colour picture.
+    """
+    if not is_file(path):
+        raise InputError(f"{path}: no such file: give an 8-bit RGB picture, PNG or JPEG")
+    try:
+        with path.open("rb") as file:
+            head = file.read(26)
+            if head.startswith(JPEG_SIGNATURE):
+                return _read_jpeg(path, file)
+            if head[:8] != PNG_SIGNATURE or head[12:16] != b"IHDR" or len(head) < 26:
+                raise ValueError("it does not begin as a PNG or a JPEG does")
+            width, height, bits, colour = struct.unpack(">IIBB", head[16:])
+            # The header is checked first: the reader converts 16 bits to 8, and allocates memory before it reads.
+            if (bits, colour) not in ((8, 2), (8, 6)) and not (bits <= 8 and colour == 3):
+                raise InputError(
+                    f"{path}: a PNG of {bits} bits, {PNG_COLOURS.get(colour, f'colour type {colour}')}, {height} x "
+                    f"{width}: save it as 8-bit RGB"
+                )
+            _check_camera(str(path), height, width)
+            file.seek(0)
+            with Image.open(file, formats=["PNG"]) as picture:
+                if getattr(picture, "is_animated", False):
+                    raise InputError(f"{path}: an animation: save each of its frames as a PNG, in one folder")
+                return np.array(picture.convert("RGB"))
+    except InputError:
+        raise
+    except Exception as error:  # the reader raises many kinds of errors for a damaged file
+        raise InputError(f"{path}: not a readable picture ({_line(error)}): give an intact PNG or JPEG") from error
+
+
+def _read_jpeg(path: Path, file: BinaryIO) -> np.ndarray:
+    file.seek(0)
+    with Image.open(file, formats=["JPEG"]) as picture:  # reads the header only
+        _check_camera(str(path), picture.height, picture.width)
+        if picture.mode != "RGB":
+            raise InputError(f"{path}: a JPEG of mode {picture.mode}: save it as 8-bit RGB")
+        if picture.getexif().get(EXIF_ORIENTATION, UPRIGHT) != UPRIGHT:
+            raise InputError(f"{path}: its header asks viewers to rotate it: save it as the camera sees it")
+        return np.array(picture)
+
+
+def _check_camera(name: str, height: int, width: int) -> None:
+    if max(height, width) > LARGEST_CAMERA:
+        raise InputError(
+            f"{name}: frames of {height} x {width}: accepted are up to {LARGEST_CAMERA} x {LARGEST_CAMERA}"
+        )
+
+
+def load_frames(
+    source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1, press: Press = AS_EVER
+) -> Frames:
+    """Load the frames that `FRAMES` and `REFERENCE` of make name.
+
+    Parameters
+    ----------
+    source : str
+        A scene's name, a `.npy` of uint8 (frames, rows, cols, 3), a PNG, or a folder of PNGs.
+    size : (rows, cols) of the grid
+    reference : str, optional
+        Picture of the sensor without contact, of the same size as the frames; `flat` for a scene.
+    seed : int
+        Seed of a scene's noise.
+    press : Press
+        Depth, position and noise of a scene.
+
+    Raises
+    ------
+    InputError
+    """
+    if source in SCENES:
+        return _scene(source, size, reference, seed, press)
+    if press != AS_EVER:
+        raise InputError(f"press, position and noise with {source}: they go with scenes: omit them")
+    labels, images = read_pictures(source, accepted=ACCEPTED)
+    return _to_grid(source, labels, images, size, reference)
+
+
+def read_pictures(
+    source: str | Path, name: str = "", accepted: str = PICTURES
+) -> tuple[tuple[str, ...], Iterable[np.ndarray]]:
+    """Return labels and pictures, uint8 (rows, cols, 3) each, of a picture, a folder of pictures or a `.npy`.
+
+    The pictures of a folder are read one by one when the iterable reaches them.
+
+    Parameters
+    ----------
+    name : str
+        Names the source in errors; by default its path.
+    accepted : str
+        Lists in errors what the caller accepts.
+
+    Raises
+    ------
+    InputError
+    """
+    path = Path(source)
+    try:
+        folder = path.is_dir()
+        listed = list(path.iterdir()) if folder else []
+    except OSError as error:
+        raise InputError(f"{name or source}: {error.strerror}: give a file or a folder") from error
+    if folder:
+        files = sorted((p for p in listed if p.suffix.lower() in PICTURE_SUFFIXES), key=_natural)
+        if not files:
+            raise InputError(f"{name or source}: a folder without any PNG or JPEG: accepted is {accepted}")
+        return tuple(p.name for p in files), map(read_picture, files)
+    if is_file(path) and path.suffix.lower() == ".npy":
+        array = _read_array(path)
+        return tuple(str(i) for i in range(len(array))), array
+    if is_file(path):
+        return (path.name,), [read_picture(path)]
+    raise InputError(f"{name or source}: no such file or folder: accepted is {accepted}")
+
+
+def camera_scale(sensor: Sensor, config: Configuration) -> float:
+    """Return the camera pixels per grid pixel, for full pictures of a sensor's camera.
+
+    Raises
+    ------
+    InputError
+        The grid is larger than the pictures.
+    """
+    if sensor.camera is None:
+        return scene_pixel_pitch_mm(min(config.rows, config.columns)) / SYNTHETIC_PIXEL_PITCH_MM
+    camera = (sensor.camera.rows, sensor.camera.columns)
+    _check_grid(sensor.name, camera, (config.rows, config.columns))
+    return resampling(camera, (config.rows, config.columns)).scale
+
+
+def _check_grid(name: str, camera: tuple[int, int], size: tuple[int, int]) -> None:
+    if camera[0] < size[0] or camera[1] < size[1]:
+        raise InputError(
+            f"{name}: frames of {camera[0]} x {camera[1]} are smaller than the grid of {size[0]} x {size[1]}: give "
+            "larger frames or a smaller grid"
+        )
+
+
+def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press) -> Frames:
+    if reference not in (None, REST_SCENE):
+        raise InputError(f"reference={reference} with the scene {name}: accepted is reference={REST_SCENE}, or none")
+    scene = render(name, *size, seed, press)
+    rest = render(REST_SCENE, *size, seed, Press(noise=0)).frames[0] if reference else None
+    scale = scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM
+    return Frames(scene.frames, scale, name, scene.labels, rest)
+
+
+def _to_grid(
+    name: str,
+    labels: tuple[str, ...],
+    images: Iterable[np.ndarray],
+    size: tuple[int, int],
+    reference: str | None,
+) -> Frames:
+    no_contact = None if reference is None else read_picture(Path(reference))
+    pixels = np.empty((len(labels), *size, 3), np.uint8)
+    plan, camera = None, (0, 0)
+    for index, (label, image) in enumerate(zip(labels, images, strict=True)):
+        height, width = image.shape[:2]
+        if plan is None:
+            camera = (height, width)
+            _check_grid(name, camera, size)
+            if no_contact is not None and no_contact.shape[:2] != camera:
+                raise InputError(
+                    f"{reference}: {no_contact.shape[0]} x {no_contact.shape[1]}, but the frames are "
+                    f"{height} x {width}: give the no-contact frame of the same camera"
+                )
+            plan = resampling(camera, size)
+        if (height, width) != camera:
+            raise InputError(
+                f"{name}: {label} is {height} x {width}, {labels[0]} is {camera[0]} x {camera[1]}: "
+                "all frames must be of one size"
+            )
+        pixels[index] = np.rint(plan.average(image))
+    assert plan is not None
+    on_grid = None if no_contact is None else np.rint(plan.average(no_contact)).astype(np.uint8)
+    return Frames(pixels, plan.scale, name, labels, on_grid, camera, no_contact)
+
+
+def _read_array(path: Path) -> np.ndarray:
+    try:
+        with path.open("rb") as file:
+            shape, _, dtype = read_header(file)
+            if dtype != np.uint8 or len(shape) != 4 or shape[3] != 3 or min(shape) < 1:
+                raise InputError(f"{path}: {dtype} {shape}: accepted is uint8 (frames, rows, cols, 3)")
+            _check_camera(str(path), shape[1], shape[2])
+            present = path.stat().st_size - file.tell()
+            if math.prod(shape) > present:  # checked before memory is allocated
+                raise ValueError(f"{present:,} bytes of data for {shape}")
+            file.seek(0)
+            return np.lib.format.read_array(file, allow_pickle=False)
+    except InputError:
+        raise
+    except Exception as error:  # numpy raises many kinds of errors for a damaged header
+        raise InputError(f"{path}: not a readable .npy ({_line(error)}): write it with numpy.save") from error
+
+
+def _natural(path: Path) -> list[tuple[int, str]]:
+    """Return a sorting key that compares digits as numbers: 2.png comes before 12.png."""
+    parts = re.split(r"(\d+)", path.name)
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts]
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

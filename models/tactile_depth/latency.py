@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Latencies in cycles: of each core, from the first word of a burst in to the first word out, and of the pipeline."""
+
+from __future__ import annotations
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.transform.sdf_fft import twiddle_stages
+
+MEMORY_READ = 1
+MULTIPLY = 1
+DOT_PRODUCT = 4
+BUTTERFLY = 2  # without its delay line
+TWIDDLE_MULTIPLY = 7
+SIGN = 2  # sign and rounding
+SPECTRAL_DIVIDE = 6
+ROW_REORDER = 2  # from the last word of a row
+TRANSPOSE = 2  # from the first word of the last row
+DIVERGENCE = 2
+GRADIENT_LOOKUP = 4
+GAIN_MAP = 9
+FLAT_FIELD = GAIN_MAP + 3
+AUTO_ZERO = GAIN_MAP + 1
+QUADRATIC_GRADIENT = 11
+FRAME_GUARD = 1
+AXIS_SKID = 1
+THOMAS_TABLE = 5
+FORWARD_ELIMINATION = 9
+FRAME_STACK = 3  # from the first word of the last row
+BACK_SUBSTITUTION = 8
+
+
+def sdf_fft_latency(size: int) -> int:
+    """Return the latency of sdf_fft; the delay lines of all butterflies add up to size - 1."""
+    return size - 1 + (size.bit_length() - 1) * BUTTERFLY + twiddle_stages(size) * TWIDDLE_MULTIPLY
+
+
+def dst_forward_latency(size: int) -> int:
+    """Return the latency of dst_forward: read of the memory at its input, sign, FFT, phase."""
+    return MEMORY_READ + SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY
+
+
+def mode_pairs_latency(size: int) -> int:
+    """Return the latency of mode_pairs: half a burst, the position of the mirrored mode, and the memory read."""
+    return size // 2 + 2
+
+
+def dst_inverse_latency(size: int) -> int:
+    """Return the latency of dst_inverse: pairs, phase, FFT, sign."""
+    return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + SIGN
+
+
+def spectral_solver_latency(size: int) -> int:
+    """Return the cycles from the last divergence word of a frame to its first depth, for any gaps in the frame."""
+    first_transform = ROW_REORDER + dst_forward_latency(size)
+    # The last column comes size - 1 bursts after the first and is the last row of the second transpose.
+    columns = TRANSPOSE + dst_forward_latency(size) + SPECTRAL_DIVIDE + dst_inverse_latency(size)
+    columns += size * (size - 1)
+    rows = TRANSPOSE + dst_inverse_latency(size) + size - 1 + ROW_REORDER
+    return first_transform + columns + rows
+
+
+def tridiagonal_solver_latency(size: int) -> int:
+    """Return the cycles from the last divergence word of a frame to its first depth, for any gaps; rows of `size`."""
+    down = ROW_REORDER + dst_forward_latency(size) + FORWARD_ELIMINATION
+    up = FRAME_STACK + BACK_SUBSTITUTION + dst_inverse_latency(size) + size - 1 + ROW_REORDER
+    return down + up
+
+
+def frame_latency(config: Configuration) -> int:
+    """Return the cycles from the last pixel of a frame out of the guard to its first depth out of the solver."""
+    tridiagonal = config.solver == "tridiagonal"
+    solver = (tridiagonal_solver_latency if tridiagonal else spectral_solver_latency)(config.columns)
+    colour = FLAT_FIELD if config.flat_field else 0
+    slope = QUADRATIC_GRADIENT if config.gradient_model == "quadratic" else GRADIENT_LOOKUP
+    return colour + slope + DIVERGENCE + solver
+
+
+def last_pixel_to_first_depth(config: Configuration) -> int:
+    """Return the cycles of the pipeline from the last pixel of a frame to its first depth, for any gaps."""
+    zero = AUTO_ZERO if config.auto_zero else 0
+    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero + AXIS_SKID
+
+
+def first_depth_latency(config: Configuration) -> int:
+    """Return the cycles of the pipeline from the first pixel of a frame without gaps to its first depth."""
+    return config.rows * config.columns - 1 + last_pixel_to_first_depth(config)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of a file before it is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from tactile_depth.errors import InputError
+
+
+def is_file(path: Path) -> bool:
+    """Return True if a path is a file; raise InputError if the system does not accept the path."""
+    try:
+        return path.is_file()
+    except OSError as error:  # the path is too long, or its folder may not be read
+        raise InputError(f"{path}: {error.strerror}: give the path of a file") from error
+
+
+def read_header(file: BinaryIO) -> tuple[tuple[int, ...], bool, np.dtype]:
+    """Return shape, order and type from the header of a .npy, and leave the file at the start of its data."""
+    version = np.lib.format.read_magic(file)
+    if version == (1, 0):
+        return np.lib.format.read_array_header_1_0(file)
+    raise ValueError(f"version {version[0]}.{version[1]}, which arrays of numbers do not need")

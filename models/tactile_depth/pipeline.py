@@ -1,0 +1,380 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Computes depth maps in millimetres from camera pictures, as the hardware does or in double precision."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactile_depth import reference as exact
+from tactile_depth.calibration.auto_zero import exact_zero, no_floor
+from tactile_depth.calibration.flat_field import captured_gains, dark_pixels, require_light, unit_gains
+from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
+from tactile_depth.calibration.reference_capture import largest_log2_frames
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.errors import InputError
+from tactile_depth.files import new_files
+from tactile_depth.frames import camera_scale, read_pictures
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.resampling import Resampling, resampling
+from tactile_depth.result import Result
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import slope_codes, slope_tables, solve, top_parameters, write_roms, zeroed
+
+LARGEST_DEFAULT_COLUMNS = 128
+SYNTHETIC_GRID = (128, 128)
+ARITHMETICS = ("chip", "float")
+BOUNDARIES = ("neumann", "dirichlet")
+PARAMETERS = "parameters.json"
+PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
+
+Pictures = np.ndarray | str | Path
+
+
+def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
+    """Return rows and columns of the grid that covers the full picture: 96 x 128 for a camera of 4:3.
+
+    Columns are the largest power of two up to 128 that the camera has. For the spectral solver the grid is square.
+    """
+    if sensor.camera is None:
+        return SYNTHETIC_GRID
+    rows, columns = sensor.camera.rows, sensor.camera.columns
+    most = min(LARGEST_DEFAULT_COLUMNS, columns if solver == "tridiagonal" else min(rows, columns))
+    across = 1 << (most.bit_length() - 1)
+    return (round(across * rows / columns) if solver == "tridiagonal" else across), across
+
+
+class Pipeline:
+    """Pipeline for one sensor; a call with pictures returns their depth maps.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        See `load`, `fit` and `sample`.
+    reference : uint8 array (rows, columns, 3) or (2**k, rows, columns, 3), or a path, optional
+        Pictures of the sensor without contact. A real sensor needs them.
+    grid : (rows, columns), optional
+        Size of the depth map, columns a power of two; by default `default_grid`, which covers the full picture.
+    solver : str
+        `tridiagonal` or `spectral`.
+    boundary : str
+        `neumann`, zero slope at the edge, or `dirichlet`, zero depth at the edge.
+    model : str
+        Gradient model, `lut` or `quadratic`; "": the better model of the sensor.
+    data_width, coefficient_width : int
+        Bits of a stored word and of a coefficient.
+    depth_range_mm : float, optional
+        Depth that the formats are sized for; by default a quarter of the shorter side.
+    zero_offset : bool
+        Subtract the depth that is read without contact. It is first captured from `reference`.
+    arithmetic : str
+        `chip`, bit-accurate as in the hardware, or `float`, double precision.
+    threshold_mm : float
+        Depth above which a pixel touches.
+
+    Attributes
+    ----------
+    sensor : Sensor
+        The sensor on the grid.
+    config : Configuration
+    grid : (int, int)
+        Rows, columns.
+    pixel_pitch_mm, depth_lsb_mm : float
+        Width of a grid pixel; depth of code 1.
+
+    Raises
+    ------
+    InputError
+        An argument is not accepted, or the reference is missing, too dark or of another camera.
+    """
+
+    def __init__(
+        self,
+        sensor: Sensor,
+        reference: Pictures | None = None,
+        *,
+        grid: tuple[int, int] | None = None,
+        solver: str = "tridiagonal",
+        boundary: str = "neumann",
+        model: str = "",
+        data_width: int = 24,
+        coefficient_width: int = 18,
+        depth_range_mm: float | None = None,
+        zero_offset: bool = True,
+        arithmetic: str = "chip",
+        threshold_mm: float = 0.1,
+    ) -> None:
+        if not isinstance(sensor, Sensor):
+            raise InputError(f"sensor is a {type(sensor).__name__}: accepted is a Sensor, as load(..) returns it")
+        if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
+            raise InputError(f"grid={grid!r}: accepted are (rows, columns), whole numbers")
+        for name, number in (("data_width", data_width), ("coefficient_width", coefficient_width)):
+            if not is_whole(number):
+                raise InputError(f"{name}={number!r}: accepted is a whole number")
+        for name, value, accepted in (("arithmetic", arithmetic, ARITHMETICS), ("boundary", boundary, BOUNDARIES)):
+            if value not in accepted:
+                raise InputError(f"{name}={value} is unknown: accepted are {', '.join(accepted)}")
+        if depth_range_mm is not None and not 0 < depth_range_mm < math.inf:
+            raise InputError(f"depth_range_mm={depth_range_mm}: accepted is a depth above 0, in mm")
+        sensor.require_reference(reference is not None)
+        rows, columns = self.grid = default_grid(sensor, solver) if grid is None else grid
+        shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
+        self._camera_sensor, self._plans = sensor, dict[tuple[int, int], Resampling]()
+        self.pixel_pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, Configuration(**shape))
+        rest = None if reference is None else self._read_reference(reference)
+        self.sensor = replace(sensor, pixel_pitch_mm=self.pixel_pitch_mm, reference=rest)
+        self.config = self.sensor.configuration(
+            model,
+            **shape,
+            data_width=data_width,
+            coefficient_width=coefficient_width,
+            depth_range_px=None if depth_range_mm is None else depth_range_mm / self.pixel_pitch_mm,
+            auto_zero=zero_offset,
+        )
+        self.arithmetic = arithmetic
+        self.depth_lsb_mm = self.config.depth_lsb_px * self.pixel_pitch_mm
+        if not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
+            raise InputError(
+                f"threshold_mm={threshold_mm}: accepted is a depth above 0 and within the depth range of "
+                f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
+            )
+        self.threshold_mm = threshold_mm
+        self._threshold = round(threshold_mm / self.depth_lsb_mm)
+        self._events = ContactEvents(rows, columns, bottom_first=solver == "tridiagonal")
+        self._gains = unit_gains(self.config)
+        self._floor = no_floor(self.config)
+        self._exact_floor = np.zeros(self.grid)
+        if rest is None:
+            self._prepare()
+        else:
+            self._use_reference(rest)
+            if zero_offset:
+                self._use_zero(rest)
+
+    def __call__(self, pictures: Pictures) -> Result:
+        """Return the depth of pictures.
+
+        Parameters
+        ----------
+        pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path
+            Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. A path names a picture
+            (PNG, JPEG), a `.npy` of frames or a folder of pictures.
+
+        Returns
+        -------
+        Result
+            Arrays have a first axis of frames if the pictures have one.
+
+        Raises
+        ------
+        InputError
+        """
+        frames, single = self._read(pictures, "pictures")
+        monitor = Monitor()
+        if self.arithmetic == "chip":
+            slopes, stream = self._chip(frames, monitor)
+            stream = zeroed(stream, self.config, monitor, self._floor)
+        else:
+            slopes, stream = self._exact(frames)
+            stream = stream - self._exact_floor
+        codes = np.rint(stream).astype(np.int32)
+        settings = Settings(self._threshold, self._threshold, minimum_area=1, debounce=1)
+        records = tuple(self._events.whole_frame(frame, settings, time=0) for frame in codes)
+        codes, depth_mm = self._upright(codes), self._upright(stream) * self.depth_lsb_mm
+        dark = dark_pixels(frames, self._gains, self.config) if self.config.flat_field else np.zeros(codes.shape, bool)
+        result = Result(
+            codes,
+            depth_mm,
+            slopes,
+            dark,
+            records,
+            dict(monitor.saturations),
+            self._threshold,
+            self.depth_lsb_mm,
+            self.pixel_pitch_mm,
+            self.sensor.fitted_slope.get(self.config.gradient_model, math.inf),
+            self.sensor.height_errors.get(self.config.gradient_model),
+        )
+        return result[0] if single else result
+
+    def capture_reference(self, pictures: Pictures) -> None:
+        """Take the mean of pictures without contact as the reference, as the hardware's capture does.
+
+        The zero offset does not change: call `capture_zero` next.
+
+        Parameters
+        ----------
+        pictures : as for a call
+            1, 2, 4, .. pictures, as many as the hardware can average.
+
+        Raises
+        ------
+        InputError
+            The number of pictures is not accepted, they are too dark, or the pipeline takes colours as sent.
+        """
+        if not self.config.flat_field:
+            raise InputError("pictures: this pipeline takes colours as sent: make it with reference=<picture>")
+        frames, _ = self._read(pictures, "pictures")
+        _power_of_two(len(frames), largest_log2_frames(self.config))
+        self._use_reference(frames)
+
+    def capture_zero(self, pictures: Pictures) -> None:
+        """Take the depth of pictures without contact as the zero offset, as the hardware's capture does.
+
+        Raises
+        ------
+        InputError
+            The number of pictures is not 1, 2, 4, .. 256, or the pipeline has no zero offset.
+        """
+        if not self.config.auto_zero:
+            raise InputError("pictures: this pipeline has no zero offset: make it with zero_offset=True")
+        frames, _ = self._read(pictures, "pictures")
+        _power_of_two(len(frames), LARGEST_LOG2)
+        self._use_zero(frames)
+
+    def hardware(self, folder: str | Path) -> Path:
+        """Write the parameters of the top module and the $readmemh files, with which the RTL computes the same depth.
+
+        Parameters
+        ----------
+        folder : path
+            Created if it is missing. Its `parameters.json` holds the parameters of hdl/tactile_depth.sv, the contact
+            threshold for the register, units, and the names of the tables.
+
+        Returns
+        -------
+        Path of parameters.json
+
+        Raises
+        ------
+        InputError
+            The folder cannot be written.
+        """
+        folder = Path(folder)
+        with new_files(folder, PARAMETERS) as unfinished:
+            write_roms(unfinished, self.sensor, self.config, self._floor, self._gains)
+            description = {
+                "parameters": top_parameters(self.config),
+                "registers": {"THRESHOLD": self._threshold},
+                "grid": list(self.grid),
+                "depth_lsb_mm": self.depth_lsb_mm,
+                "pixel_pitch_mm": self.pixel_pitch_mm,
+                "gradient_lsb": self.config.gradient_lsb,
+                "calibration": self.sensor.name,
+                "gradient_model": self.config.gradient_model,
+                "tables": sorted(path.name for path in unfinished.iterdir()),
+            }
+            (unfinished / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
+        return folder / PARAMETERS
+
+    # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
+
+    def _chip(self, frames: np.ndarray, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
+        """Compute slopes and depth as the RTL does, bit for bit."""
+        step = max(1, PIXELS_AT_ONCE // (self.config.rows * self.config.columns))
+        slopes, depths = [], []
+        for start in range(0, len(frames), step):
+            part = frames[start : start + step]
+            codes = slope_codes(part, self.sensor, self.config, monitor, tables=self._tables)
+            slopes.append(codes * self.config.gradient_lsb)
+            depths.append(solve(divergence(codes, self.config.neumann), self.config, monitor))
+        return np.concatenate(slopes), np.concatenate(depths)
+
+    def _exact(self, frames: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Compute slopes and depth in double precision."""
+        slopes = exact.slopes_of(frames, self.sensor, self.config, self._exact_tables)
+        depth = exact.solve(divergence(slopes, self.config.neumann), self.config.neumann)
+        return slopes, self._upright(depth / self.config.depth_lsb_px)
+
+    def _upright(self, depths: np.ndarray) -> np.ndarray:
+        """Convert between the row orders of stream and picture; the tridiagonal solver starts at the bottom row."""
+        return depths[..., ::-1, :] if self.config.solver == "tridiagonal" else depths
+
+    # Captures.
+
+    def _use_reference(self, frames: np.ndarray) -> None:
+        gains = captured_gains(frames, self.config)
+        require_light(gains, self.config)
+        self._gains, self.sensor = gains, replace(self.sensor, reference=frames)
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Compute the tables that all frames use until the reference changes."""
+        self._tables = slope_tables(self.sensor, self.config, self._gains if self.config.flat_field else None)
+        self._exact_tables = exact.slope_tables(self.sensor, self.config)
+
+    def _use_zero(self, frames: np.ndarray) -> None:
+        self._floor = captured_floor(self._chip(frames, Monitor())[1], self.config)
+        self._exact_floor = -exact_zero(np.zeros(self.grid), self._exact(frames)[1], self.config)
+
+    # Pictures.
+
+    def _read_reference(self, reference: Pictures) -> np.ndarray:
+        images = reference if isinstance(reference, np.ndarray) else _same_size(reference)
+        frames, _ = self._read(images, "reference")
+        _power_of_two(len(frames), LARGEST_LOG2, "reference")
+        self._camera_sensor.check_lighting(images.reshape(-1, *images.shape[-3:])[0])
+        return frames
+
+    def _read(self, pictures: Pictures, name: str) -> tuple[np.ndarray, bool]:
+        """Return frames on the grid, uint8 (frames, rows, columns, 3), and True if the input was a single picture."""
+        if isinstance(pictures, np.ndarray):
+            is_picture = pictures.ndim in (3, 4) and pictures.shape[-1] == 3 and pictures.size
+            if pictures.dtype != np.uint8 or not is_picture:
+                raise InputError(
+                    f"{name} are {pictures.dtype} {pictures.shape}: accepted is uint8 (rows, columns, 3), RGB, or "
+                    "(frames, rows, columns, 3)"
+                )
+            single = pictures.ndim == 3
+            images = pictures[None] if single else pictures
+            return self._on_grid(images, name), single
+        if not isinstance(pictures, str | Path):
+            raise InputError(f"{name} are {type(pictures).__name__}: accepted is a uint8 array or a path")
+        labels, read = read_pictures(pictures)
+        frames = [self._on_grid(image[None], f"{pictures}: {label}") for label, image in zip(labels, read, strict=True)]
+        return np.concatenate(frames), Path(pictures).is_file() and Path(pictures).suffix.lower() != ".npy"
+
+    def _on_grid(self, images: np.ndarray, name: str) -> np.ndarray:
+        size = (images.shape[1], images.shape[2])
+        if size not in self._plans:
+            self._camera_sensor.zoom(size, name)
+            if self._camera_sensor.camera is None and self._plans:
+                raise InputError(
+                    f"{name}: {size[1]} x {size[0]} pixels (columns x rows), but the first picture had "
+                    f"{next(iter(self._plans))[::-1]}: give pictures of one size"
+                )
+            if size[0] < self.grid[0] or size[1] < self.grid[1]:
+                raise InputError(
+                    f"{name}: {size[1]} x {size[0]} pixels (columns x rows) are fewer than the grid's {self.grid[1]} x "
+                    f"{self.grid[0]}: give larger pictures or a smaller grid"
+                )
+            self._plans[size] = resampling(size, self.grid)
+        plan = self._plans[size]
+        return np.stack([np.rint(plan.average(image)).astype(np.uint8) for image in images])
+
+
+def is_whole(number: object) -> bool:
+    """Return True for a whole number."""
+    return isinstance(number, int | np.integer) and not isinstance(number, bool)
+
+
+def _same_size(source: str | Path) -> np.ndarray:
+    """Pictures of a path in one array, uint8 (pictures, rows, columns, 3)."""
+    images = list(read_pictures(source)[1])
+    if len({image.shape for image in images}) > 1:
+        raise InputError(f"{source}: pictures of several sizes: give pictures of one camera")
+    return np.stack(images)
+
+
+def _power_of_two(count: int, largest_log2: int, name: str = "pictures") -> None:
+    if count.bit_count() != 1 or count > 1 << largest_log2:
+        raise InputError(
+            f"{name}: {count} pictures: the hardware averages 1, 2, 4, .. {1 << largest_log2}: give so many"
+        )

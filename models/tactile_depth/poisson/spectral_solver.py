@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/spectral_solver.sv: divergence in, depth codes out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.spectral_divide import reciprocals, spectral_divide
+from tactile_depth.transform.dst_forward import dst_forward
+from tactile_depth.transform.dst_inverse import dst_inverse
+from tactile_depth.transform.row_reorder import row_reorder
+from tactile_depth.transform.transpose import transpose
+
+
+def solver_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/spectral_solver.sv."""
+    table = reciprocals(config)
+    return {
+        **config.stream_parameters(),
+        "DivideShiftWidth": table.shift_width,
+        "DivideDrop": table.drop,
+        "Neumann": int(config.neumann),
+    }
+
+
+def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Solve the Poisson equation for frames of divergence codes.
+
+    Parameters
+    ----------
+    f : int64 array (..., N, N), codes of `config.divergence`
+
+    Returns
+    -------
+    int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
+    """
+    modes = row_forward(f, config, monitor)
+    modes = column_forward(
+        transpose(modes, makhoul_in=False, makhoul_out=True), config, monitor
+    )  # bursts are columns now
+    modes = spectral_divide(modes, config, monitor)
+    modes = column_inverse(modes, config, monitor)
+    return row_inverse(transpose(modes, makhoul_in=True, makhoul_out=False), config, monitor)  # bursts are rows again
+
+
+# The four transforms. Each takes bursts (..., N).
+
+
+def _arithmetic(config: Configuration, monitor: Monitor | None) -> dict[str, Any]:
+    return {
+        "width": config.arithmetic_width,
+        "coefficient_width": config.coefficient_width,
+        "alternate": not config.neumann,
+        "monitor": monitor,
+    }
+
+
+def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return the modes of rows in natural order, for the first frame store."""
+    return dst_forward(
+        row_reorder(rows, to_burst=True),
+        input_drop=config.divergence.fraction - config.row_forward.fraction,
+        output_drop=config.row_forward.fraction - config.row_modes.fraction,
+        output_width=config.row_modes.width,
+        node="row_forward",
+        **_arithmetic(config, monitor),
+    )
+
+
+def column_forward(columns: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return the modes of columns in Makhoul order."""
+    return dst_forward(
+        columns,
+        input_drop=config.row_modes.fraction - config.column_forward.fraction,
+        output_drop=0,
+        output_width=config.arithmetic_width,
+        node="column_forward",
+        **_arithmetic(config, monitor),
+    )
+
+
+def column_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return columns in Makhoul order from their modes, for the second frame store."""
+    return dst_inverse(
+        modes,
+        input_drop=0,
+        output_drop=config.column_inverse.fraction - config.depth_modes.fraction,
+        output_width=config.depth_modes.width,
+        node="column_inverse",
+        **_arithmetic(config, monitor),
+    )
+
+
+def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return rows of depth in natural order from their modes."""
+    depth = dst_inverse(
+        modes,
+        input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
+        output_drop=config.row_inverse.fraction - config.depth.fraction,
+        output_width=config.depth.width,
+        node="row_inverse",
+        **_arithmetic(config, monitor),
+    )
+    return row_reorder(depth, to_burst=False)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/tridiagonal_solver.sv: divergence in, depth codes out, bottom row first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.back_substitution import back_substitution
+from tactile_depth.poisson.forward_elimination import forward_elimination, mean_reciprocal
+from tactile_depth.poisson.frame_stack import frame_stack
+from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.transform.dst_forward import dst_forward
+from tactile_depth.transform.dst_inverse import dst_inverse
+from tactile_depth.transform.row_reorder import row_reorder
+
+
+def solver_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/tridiagonal_solver.sv."""
+    table = thomas_table(config)
+    reciprocal, mean_drop = mean_reciprocal(config)
+    return {
+        **config.transform_parameters(),
+        "Rows": config.rows,
+        "InWidth": config.divergence.width,
+        "DataWidth": config.data_width,
+        "Neumann": int(config.neumann),
+        "RowForwardOut": row_forward_drop(config),
+        "StoreDrop": config.elimination.fraction - config.elimination_store.fraction,
+        "RowInverseIn": row_inverse_drops(config)[0],
+        "RowInverseOut": row_inverse_drops(config)[1],
+        "TableWords": len(table.words),
+        "SettledWidth": table.settled_width,
+        "LastShiftWidth": table.last_shift_width,
+        "MomentDrop": config.moment_drop,
+        "MeanReciprocal": reciprocal,
+        "MeanDrop": mean_drop - config.moment_drop,
+        "StoreStyle": config.store_style,
+        "WordsPerRow": config.words_per_row,
+    }
+
+
+def row_forward_drop(config: Configuration) -> int:
+    """Return the fraction bits that the forward row transform drops at its output; slopes have the unit `unit_px`."""
+    return config.row_forward.fraction + config.depth_limit_log2 - config.elimination.fraction
+
+
+def row_inverse_drops(config: Configuration) -> tuple[int, int]:
+    """Return the fraction bits that the inverse row transform drops at its input and at its output."""
+    return (
+        config.elimination.fraction - config.row_inverse.fraction,
+        config.row_inverse.fraction - config.depth.fraction,
+    )
+
+
+def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Solve the Poisson equation for frames of divergence codes.
+
+    Parameters
+    ----------
+    f : int64 array (..., rows, columns), codes of `config.divergence`
+
+    Returns
+    -------
+    int64 array (..., rows, columns), codes of `config.depth`, bottom row first
+    """
+    d = forward_elimination(row_forward(f, config, monitor), config, monitor)
+    z = back_substitution(frame_stack(d), config, monitor)
+    return row_inverse(z, config, monitor)
+
+
+def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return the modes of rows (..., columns) in natural order, codes of `config.elimination`."""
+    return dst_forward(
+        row_reorder(rows, to_burst=True),
+        input_drop=0,
+        output_drop=row_forward_drop(config),
+        output_width=config.arithmetic_width,
+        node="row_forward",
+        **_arithmetic(config, monitor),
+    )
+
+
+def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return rows of depth in natural order from their modes."""
+    input_drop, output_drop = row_inverse_drops(config)
+    depth = dst_inverse(
+        modes,
+        input_drop=input_drop,
+        output_drop=output_drop,
+        output_width=config.depth.width,
+        node="row_inverse",
+        **_arithmetic(config, monitor),
+    )
+    return row_reorder(depth, to_burst=False)
+
+
+def _arithmetic(config: Configuration, monitor: Monitor | None) -> dict[str, Any]:
+    return {
+        "width": config.arithmetic_width,
+        "coefficient_width": config.coefficient_width,
+        "alternate": not config.neumann,
+        "monitor": monitor,
+    }

@@ -1,0 +1,401 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ball presses: pictures of balls of known diameter pressed into a gel, on the grid, with their true slopes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from tactile_depth.calibration.flat_field import captured_gains, deviations, flat_codes, require_light
+from tactile_depth.circles import find_circle, require_circle_finder
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import read_picture
+from tactile_depth.resampling import Resampling, resampling
+
+LARGEST_GRID, SMALLEST_GRID = 128, 16
+LARGEST_NUMBER = 1e6  # millimetres or pixels
+PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
+FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves the ball
+NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
+LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
+LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
+TOP_PX = 2  # radius of the top of a cap, in grid pixels
+
+
+class Circle(NamedTuple):
+    """Edge of a contact in camera pixels, x along the columns, y down the rows."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class BallPress:
+    """Picture of a ball that is pressed into the gel.
+
+    Attributes
+    ----------
+    image : uint8 array (rows, columns, 3), RGB, or the path of a picture
+    diameter_mm : float
+        Diameter of the ball.
+    circle : (x, y, radius) in pixels of the picture, optional
+        Edge of the contact, x along the columns, y down the rows. None: the picture is searched for it.
+    name : str
+        Name in tables and messages; by default the path, or the number of the press.
+    ball_radius_px : float, optional
+        Radius of the ball in pixels of the picture, from which the pixel pitch follows.
+
+    Raises
+    ------
+    InputError
+        A number is not accepted.
+    """
+
+    image: np.ndarray | str | Path
+    diameter_mm: float
+    circle: tuple[float, float, float] | None = None
+    name: str = ""
+    ball_radius_px: float | None = None
+
+    def __post_init__(self) -> None:
+        for key, length in (("diameter_mm", self.diameter_mm), ("ball_radius_px", self.ball_radius_px)):
+            if length is not None and not 0 < length < LARGEST_NUMBER:
+                raise InputError(f"{key} is {length:g}: accepted is a number above 0")
+        if self.circle is None:
+            return
+        try:
+            x, y, radius = (float(value) for value in self.circle)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"circle={self.circle!r}: accepted are x, y and radius in pixels") from error
+        if not (abs(x) < LARGEST_NUMBER and abs(y) < LARGEST_NUMBER and 0 < radius < LARGEST_NUMBER):
+            raise InputError(f"the circle has x={x:g}, y={y:g}, radius={radius:g}: accepted are pixels, radius above 0")
+        if self.ball_radius_px is not None and radius >= self.ball_radius_px:
+            raise InputError(f"a contact of {radius:g} pixels does not lie on a ball of {self.ball_radius_px:g}")
+
+
+@dataclass(frozen=True)
+class GridPress:
+    """Geometry of a press on a square grid; lengths are in grid pixels, x along the columns, y down the rows."""
+
+    name: str
+    x: float
+    y: float
+    contact_radius: float
+    ball_radius: float
+
+    @property
+    def cap_height(self) -> float:
+        """Height of the ball's cap above its contact circle."""
+        return self.ball_radius - math.sqrt(self.ball_radius**2 - self.contact_radius**2)
+
+    @property
+    def largest_slope(self) -> float:
+        """Slope of the ball at the contact circle."""
+        return self.contact_radius / math.sqrt(self.ball_radius**2 - self.contact_radius**2)
+
+    def margin(self, size: int) -> float:
+        """Return the distance from the contact circle to the nearest edge of a square grid; negative if it is cut."""
+        return min(self.x, self.y, size - 1 - self.x, size - 1 - self.y) - self.contact_radius
+
+    def distance(self, size: int) -> np.ndarray:
+        """Return the distance of each pixel from the centre in contact radii, float64 (size, size)."""
+        rows, columns = np.indices((size, size))
+        return np.hypot(columns - self.x, rows - self.y) / self.contact_radius
+
+    def slopes(self, size: int) -> np.ndarray:
+        """Return the slopes of the depth, float64 (size, size, 2): those of the ball in the contact, 0 elsewhere."""
+        rows, columns = np.indices((size, size), dtype=np.float64)
+        offset = np.stack((columns - self.x, rows - self.y), axis=-1)
+        squared = (offset**2).sum(axis=-1)
+        touches = squared < self.contact_radius**2
+        drop = np.sqrt(np.where(touches, self.ball_radius**2 - squared, 1))
+        return np.where(touches[..., None], -offset / drop[..., None], 0)
+
+    def edge(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return points of the contact circle in a depth map: columns, rows, float64 (360,) each.
+
+        A depth map is shifted by half a pixel up and to the left (divergence.py). The points include this shift.
+        """
+        angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+        return (
+            self.x + 0.5 + self.contact_radius * np.cos(angle),
+            self.y + 0.5 + self.contact_radius * np.sin(angle),
+        )
+
+    def edge_depth(self, depth: np.ndarray) -> float:
+        """Return the mean of a depth map (rows, columns) on the contact circle."""
+        x, y = self.edge()
+        return float(map_coordinates(depth, [y, x], order=1, mode="nearest").mean())
+
+    def recovered(self, depth: np.ndarray) -> float:
+        """Return the ratio of recovered to true height of the cap, from a depth map (rows, columns) in grid pixels.
+
+        The recovered height is the mean depth within `TOP_PX` of the centre minus that on the contact circle.
+        """
+        rows, columns = np.indices(depth.shape)
+        top = depth[np.hypot(columns - self.x - 0.5, rows - self.y - 0.5) <= TOP_PX].mean()
+        return float((top - self.edge_depth(depth)) / self.cap_height)
+
+
+@dataclass(frozen=True)
+class View:
+    """A press on the grid: its geometry, its picture, and the colours from the hardware's flat field.
+
+    Attributes
+    ----------
+    press : GridPress
+    frame, codes : uint8 array (size, size, 3)
+    deviations : int64 array (size, size, 3), in units of `DEVIATION.lsb`
+    """
+
+    press: GridPress
+    frame: np.ndarray
+    codes: np.ndarray
+    deviations: np.ndarray
+
+    @property
+    def is_whole(self) -> bool:
+        """True if the contact lies completely on the grid."""
+        return self.press.margin(len(self.frame)) >= 0
+
+
+@dataclass(frozen=True)
+class PressPictures:
+    """Presses before resampling, and the picture without contact.
+
+    Attributes
+    ----------
+    name : str
+    presses : tuple of BallPress
+        Presses with distinct names.
+    background : uint8 array (rows, columns, 3)
+    notes : tuple of str
+        One line for each column or line of presses.csv that was left out.
+    """
+
+    name: str
+    presses: tuple[BallPress, ...]
+    background: np.ndarray
+    notes: tuple[str, ...] = ()
+
+    @property
+    def pitches(self) -> list[float]:
+        """Millimetres per pixel, from each ball whose radius in pixels is known."""
+        return [press.diameter_mm / 2 / press.ball_radius_px for press in self.presses if press.ball_radius_px]
+
+
+@dataclass(frozen=True)
+class GridPresses:
+    """Presses on the grid.
+
+    Attributes
+    ----------
+    name : str
+    views : tuple of View
+    background : uint8 array (rows, columns, 3)
+        Picture of the sensor without contact, in camera pixels.
+    background_on_grid : uint8 array (size, size, 3)
+    pitch_mm : float
+        Millimetres per camera pixel.
+    scale : float
+        Camera pixels per grid pixel.
+    notes : tuple of str
+        One line for each press, column or line that was left out.
+    agreement : float64 array (n, 3)
+        Detected minus given circles in camera pixels: x, y, radius.
+    """
+
+    name: str
+    views: tuple[View, ...]
+    background: np.ndarray
+    background_on_grid: np.ndarray
+    pitch_mm: float
+    scale: float
+    notes: tuple[str, ...]
+    agreement: np.ndarray
+
+    @property
+    def size(self) -> int:
+        """Rows and columns of the grid."""
+        return len(self.background_on_grid)
+
+    @property
+    def grid_pitch_mm(self) -> float:
+        """Millimetres per grid pixel."""
+        return self.pitch_mm * self.scale
+
+
+def gather(
+    presses: str | Path | Sequence[BallPress], background: np.ndarray | str | Path | None = None
+) -> PressPictures:
+    """Return presses from a folder or from memory.
+
+    Parameters
+    ----------
+    presses : path of a folder, or sequence of BallPress
+        A folder holds pictures, presses.csv (press_folder.py) and background.png or .jpg.
+    background : uint8 array (rows, columns, 3) or path, optional
+        Picture without contact; by default that of the folder.
+
+    Raises
+    ------
+    InputError
+    """
+    from tactile_depth.press_folder import background_path, read_presses
+
+    notes: list[str] = []
+    if isinstance(presses, (str, Path)):
+        folder = Path(presses)
+        if background is None:
+            background = background_path(folder)
+        listed, notes = read_presses(folder)
+        name = folder.resolve().name
+    else:
+        if background is None:
+            raise InputError("background is missing: give a picture of the sensor without contact")
+        if not all(isinstance(press, BallPress) for press in presses):
+            raise InputError("presses: accepted are the path of a folder, or a sequence of BallPress")
+        listed, name = [_named(press, number) for number, press in enumerate(presses, 1)], "fitted"
+    names = [press.name for press in listed]
+    if repeated := next((one for one in names if names.count(one) > 1), None):
+        raise InputError(f"presses: the name {repeated} stands twice: give each press a name of its own")
+    return PressPictures(name, tuple(listed), _picture(background, "background"), tuple(notes))
+
+
+def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
+    """Return millimetres per camera pixel: `pitch_mm`, or the pitch from the balls' radii in pixels.
+
+    Raises
+    ------
+    InputError
+        Both are missing, or they disagree.
+    """
+    if not pictures.pitches:
+        if pitch_mm is None:
+            raise InputError(
+                "pitch_mm is needed: mm per camera pixel, which presses without ball_radius_px do not give"
+            )
+        return pitch_mm
+    by_balls = float(np.median(pictures.pitches))
+    if pitch_mm is None:
+        return float(f"{by_balls:.3g}")  # diameters and radii have no more digits
+    if abs(by_balls / pitch_mm - 1) > PITCHES_AGREE:
+        raise InputError(
+            f"pitch_mm={pitch_mm:g} contradicts {pictures.name}, whose ball radii give {by_balls:.4g} mm/pixel. Omit "
+            "pitch_mm or correct ball_radius_px."
+        )
+    return pitch_mm
+
+
+def to_grid(
+    pictures: PressPictures, pitch_mm: float, find_circles: bool = False, compare_circles: bool = False
+) -> GridPresses:
+    """Resample presses to the largest square grid within their pictures; `notes` names the presses left out and why.
+
+    Parameters
+    ----------
+    pitch_mm : float
+        Millimetres per camera pixel.
+    find_circles : bool
+        Detect circles in the pictures even if circles are given, and use the detected circles.
+    compare_circles : bool
+        Detect circles, use the given circles, and return the differences.
+
+    Raises
+    ------
+    InputError
+        The background is too small or too dark, or scikit-image is needed and missing.
+    """
+    background = pictures.background
+    camera = background.shape[:2]
+    size = min(LARGEST_GRID, 1 << (min(camera).bit_length() - 1))
+    if size < SMALLEST_GRID:
+        raise InputError(f"background: {camera[0]} x {camera[1]} pixels: accepted are {SMALLEST_GRID} x or more")
+    if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
+        require_circle_finder()
+    config = Configuration(columns=size)
+    plan = resampling((camera[0], camera[1]), (size, size))
+    rest = _on_grid(background, plan)
+    gains = captured_gains(rest[None], config)
+    require_light(gains, config, "background")
+    notes, agreement = list(pictures.notes), []
+    geometry: list[GridPress] = []
+    frames: list[np.ndarray] = []
+    for press in pictures.presses:
+        try:
+            image = _press_image(press, background)
+            ball = press.diameter_mm / 2 / pitch_mm
+            seen = None
+            if find_circles or compare_circles or press.circle is None:
+                largest = min(LARGEST_CIRCLE * ball, min(camera) / 2)
+                seen = Circle(*circle) if (circle := find_circle(image, background, largest)) else None
+            given = None if press.circle is None else Circle(*press.circle)
+            at = _grid_press(press.name, seen if find_circles else given or seen, ball, plan, size)
+        except InputError as error:
+            notes.append(str(InputError(f"{error}: left out")))
+            continue
+        if given and seen:
+            agreement.append(np.subtract(seen, given))
+        geometry.append(at)
+        frames.append(_on_grid(image, plan))
+    stack = np.array(frames, np.uint8).reshape(-1, size, size, 3)
+    codes, colours = flat_codes(stack, gains, config), deviations(stack, gains, config)
+    views = tuple(View(*parts) for parts in zip(geometry, stack, codes, colours, strict=True))
+    differences = np.array(agreement).reshape(-1, 3)
+    return GridPresses(pictures.name, views, background, rest, pitch_mm, plan.scale, tuple(notes), differences)
+
+
+def _grid_press(name: str, circle: Circle | None, ball: float, plan: Resampling, size: int) -> GridPress:
+    """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
+    if circle is None:
+        raise InputError(f"{name}: no circle to be seen")
+    if circle.radius >= LARGEST_CONTACT * ball:
+        raise InputError(f"{name}: a contact of {circle.radius:.1f} pixels does not lie on a ball of {ball:.1f}")
+    top, left = plan.origin
+    press = GridPress(
+        name,
+        (circle.x - left + 0.5) / plan.scale - 0.5,
+        (circle.y - top + 0.5) / plan.scale - 0.5,
+        circle.radius / plan.scale,
+        ball / plan.scale,
+    )
+    if not (press.distance(size) < FITTED_SHARE).any():
+        raise InputError(f"{name}: the press is outside the picture's middle square")
+    return press
+
+
+def _press_image(press: BallPress, background: np.ndarray) -> np.ndarray:
+    image = _picture(press.image, press.name)
+    if image.shape != background.shape:
+        raise InputError(
+            f"{press.name}: {image.shape[0]} x {image.shape[1]} pixels, but the background has "
+            f"{background.shape[0]} x {background.shape[1]}"
+        )
+    return image
+
+
+def _on_grid(image: np.ndarray, plan: Resampling) -> np.ndarray:
+    return np.clip(np.rint(plan.average(image)), 0, 255).astype(np.uint8)
+
+
+def _named(press: BallPress, number: int) -> BallPress:
+    if press.name:
+        return press
+    return replace(press, name=f"press {number}" if isinstance(press.image, np.ndarray) else str(press.image))
+
+
+def _picture(image: np.ndarray | str | Path, name: str) -> np.ndarray:
+    """Return the pixels of a picture, from an array or a path."""
+    if not isinstance(image, np.ndarray):
+        return read_picture(Path(image))
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
+        raise InputError(f"{name}: {image.dtype} {image.shape}: accepted is uint8 (rows, columns, 3), RGB")
+    return image

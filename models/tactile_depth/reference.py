@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pipeline in double precision, the reference for the errors of the hardware."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from scipy.fft import dctn, dstn, idctn, idstn
+
+from tactile_depth.calibration.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
+from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH, Configuration
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.sensor import Sensor
+from tactile_depth.transform.orders import read_only
+
+
+def eigenvalues(size: int, neumann: bool = False) -> np.ndarray:
+    """Return the eigenvalues 2 (cos(k pi / N) - 1) of the second difference with zero half a pixel outside, k = 1..N.
+
+    Neumann: the slope at the edge is zero, and k = 0..N-1.
+
+    Returns
+    -------
+    float64 array (N,), by mode of scipy's DST-II (Neumann: DCT-II)
+    """
+    first = 0 if neumann else 1
+    return 2 * (np.cos(np.arange(first, size + first) * np.pi / size) - 1)
+
+
+def slopes(frames: np.ndarray, calibration: Sensor) -> np.ndarray:
+    """Look slopes up in the calibration's unrounded table, by the top bits of each colour.
+
+    Parameters
+    ----------
+    frames : uint8 array (..., rows, cols, 3), RGB
+
+    Returns
+    -------
+    float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
+    """
+    red, green, blue = np.moveaxis(frames >> (8 - calibration.bits_per_channel), -1, 0)
+    return calibration.table[red, green, blue]
+
+
+def gains(no_contact: np.ndarray, config: Configuration) -> np.ndarray:
+    """Return 1 / reference at each pixel, interpolated between block means and constant beyond the outer block centres.
+
+    Gains are limited to the full scale of the hardware's gains; `Tables.dead` marks the limited pixels.
+
+    Parameters
+    ----------
+    no_contact : array (..., rows, cols, 3): one or more frames of the grid
+
+    Returns
+    -------
+    float64 array (rows, cols, 3)
+    """
+    block = 1 << config.reference_block_log2
+    rows, columns = config.reference_nodes
+    frame = no_contact.reshape(-1, *no_contact.shape[-3:]).mean(axis=0)[: rows * block, : columns * block]
+    means = frame.reshape(rows, block, columns, block, 3).mean(axis=(1, 3))
+    found = 1 / np.maximum(means, 2.0 ** (GAIN_FRACTION - GAIN_WIDTH))
+    for axis, pixels in ((0, config.rows), (1, config.columns)):
+        nodes = found.shape[axis]
+        at = np.clip((np.arange(pixels) + 0.5) / block - 0.5, 0, nodes - 1)
+        weights = np.maximum(0, 1 - np.abs(at[:, None] - np.arange(nodes)))
+        found = np.moveaxis(np.tensordot(weights, found, (1, axis)), 0, axis)
+    return found
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Tables between colours and slopes, computed once by `slope_tables` for all frames of a configuration.
+
+    Attributes
+    ----------
+    gains : float64 array (rows, cols, 3), or None
+        Model `quadratic`: 1 / reference at each pixel.
+    coefficients : float64 array (2, 3, rows, cols), or None
+        Model `quadratic`: slope of a pixel per deviation of each colour.
+    dead : bool array (rows, cols), or None
+        Model `quadratic`: pixels where the reference is too dark, which repeat the pixel before them; None without
+        such pixels.
+    table_gains : PixelGains, or None
+        Model `lut` with `flat_field`: gains of every pixel.
+    """
+
+    gains: np.ndarray | None = None
+    coefficients: np.ndarray | None = None
+    dead: np.ndarray | None = None
+    table_gains: PixelGains | None = None
+
+
+def slope_tables(calibration: Sensor, config: Configuration) -> Tables:
+    """Compute the tables of a calibration on its grid.
+
+    Raises
+    ------
+    InputError
+        The calibration and the configuration do not agree.
+    """
+    calibration.check(config)
+    if config.gradient_model == "quadratic":
+        assert calibration.reference is not None
+        coefficients = quadratic_coefficients(config.rows, config.columns, calibration, calibration.pixel_pitch_mm)
+        dead = pixel_gains(reference_gains(calibration, config), config).dead
+        return Tables(gains(calibration.reference, config), coefficients, dead if dead.any() else None)
+    if config.flat_field:
+        return Tables(table_gains=pixel_gains(reference_gains(calibration, config), config))
+    return Tables()
+
+
+def slopes_of(
+    frames: np.ndarray, calibration: Sensor, config: Configuration, tables: Tables | None = None
+) -> np.ndarray:
+    """Return slopes by the gradient model of a configuration: from 8-bit colours, or from unrounded deviations.
+
+    Parameters
+    ----------
+    tables : Tables
+        `slope_tables` of the same calibration and configuration, for many calls; by default computed here.
+
+    Returns
+    -------
+    float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
+    """
+    if tables is None:
+        tables = slope_tables(calibration, config)
+    if tables.coefficients is not None:
+        deviation = frames * tables.gains
+        deviation -= 1
+        if tables.dead is not None:
+            deviation = hold_dark(deviation, np.broadcast_to(tables.dead, deviation.shape[:-1]), 0)
+        return _weighted(deviation, tables.coefficients)
+    if tables.table_gains is not None:
+        frames = flat_codes(frames, tables.table_gains, config)
+    return slopes(frames, calibration)
+
+
+def quadratic_slopes(deviation: np.ndarray, calibration: Sensor, pixel_pitch_mm: float) -> np.ndarray:
+    """Return slopes by the calibration's quadratics.
+
+    Parameters
+    ----------
+    deviation : float array (..., rows, cols, 3), I / ref - 1: frames * gains - 1
+    pixel_pitch_mm : float
+        Millimetres per grid pixel.
+
+    Returns
+    -------
+    float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
+    """
+    rows, columns = deviation.shape[-3:-1]
+    return _weighted(deviation, quadratic_coefficients(rows, columns, calibration, pixel_pitch_mm))
+
+
+def _weighted(deviation: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """Return weighted sums over the colours: (..., rows, cols, 3) by (2, 3, rows, cols) to (..., rows, cols, 2)."""
+    red, green, blue = np.moveaxis(deviation, -1, 0)
+    slopes = [red * of_red + green * of_green + blue * of_blue for of_red, of_green, of_blue in coefficients]
+    return np.moveaxis(np.stack(slopes), 0, -1)
+
+
+def quadratic_coefficients(rows: int, columns: int, calibration: Sensor, pixel_pitch_mm: float) -> np.ndarray:
+    """Return the values of the calibration's quadratics at each pixel: float64 (2, 3, rows, cols)."""
+    assert calibration.coefficients is not None
+    return np.einsum("ant,rct->anrc", calibration.coefficients, quadratic_terms(rows, columns, pixel_pitch_mm))
+
+
+def quadratic_terms(rows: int, columns: int, pixel_pitch_mm: float) -> np.ndarray:
+    """Return 1, x, y, x^2, x y, y^2 at each pixel, in mm from the picture's centre: float64 (rows, cols, 6)."""
+    y, x = np.indices((rows, columns), dtype=np.float64)
+    x, y = (x - (columns - 1) / 2) * pixel_pitch_mm, (y - (rows - 1) / 2) * pixel_pitch_mm
+    return np.stack((np.ones_like(x), x, y, x * x, x * y, y * y), axis=-1)
+
+
+@cache
+def _divisor(rows: int, cols: int, neumann: bool) -> np.ndarray:
+    """Return the eigenvalues of the Laplacian, float64 (rows, cols), with infinity in place of 0 for zero mean."""
+    total = eigenvalues(rows, neumann)[:, None] + eigenvalues(cols, neumann)
+    return read_only(np.where(total == 0, np.inf, total))
+
+
+def solve(f: np.ndarray, neumann: bool = False) -> np.ndarray:
+    """Return the depth whose five-point Laplacian is `f`, zero half a pixel outside the frame.
+
+    Neumann: the depth has zero slope at the frame's edge, and zero mean.
+
+    Parameters
+    ----------
+    f : array (..., rows, cols), divergence of the slopes, per grid pixel
+
+    Returns
+    -------
+    float64 array (..., rows, cols), in grid pixels
+    """
+    rows, cols = f.shape[-2:]
+    forward, inverse = (dctn, idctn) if neumann else (dstn, idstn)
+    modes = forward(f, type=2, axes=(-2, -1)) / _divisor(rows, cols, neumann)
+    return inverse(modes, type=2, axes=(-2, -1), overwrite_x=True)
+
+
+def depth(frames: np.ndarray, calibration: Sensor, neumann: bool = False) -> np.ndarray:
+    """Return the depth of frames by slopes, divergence and solve.
+
+    Parameters
+    ----------
+    frames : uint8 array (..., rows, cols, 3), RGB
+
+    Returns
+    -------
+    float64 array (..., rows, cols), in grid pixels, positive pressed in
+    """
+    return solve(divergence(slopes(frames, calibration), neumann), neumann)
+
+
+def depth_of(
+    frames: np.ndarray, calibration: Sensor, config: Configuration, tables: Tables | None = None
+) -> np.ndarray:
+    """Return the depth of frames by the gradient model of a configuration, `slopes_of`."""
+    return solve(divergence(slopes_of(frames, calibration, config, tables), config.neumann), config.neumann)

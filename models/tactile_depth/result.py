@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Depth maps in millimetres, with slopes and contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from tactile_depth.contact.contact_events import FRACTION, TOUCHING, Record
+from tactile_depth.sensor import HeightError
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Contact of one frame, as the hardware records it.
+
+    Attributes
+    ----------
+    record : Record
+        Words of the hardware: depth in codes, positions in grid pixels.
+    mask : bool array (rows, columns)
+        Pixels whose depth is above the threshold, rows from the top of the picture.
+    depth_lsb_mm, pixel_pitch_mm : float
+    """
+
+    record: Record
+    mask: np.ndarray
+    depth_lsb_mm: float
+    pixel_pitch_mm: float
+
+    @property
+    def touching(self) -> bool:
+        """True if this frame has a contact."""
+        return bool(self.record.status & TOUCHING)
+
+    @property
+    def peak_mm(self) -> float:
+        """Largest depth above the threshold, in mm; 0 without contact."""
+        return self.record.peak * self.depth_lsb_mm
+
+    @property
+    def peak_px(self) -> tuple[int, int]:
+        """Row and column of the peak on the grid."""
+        return self.record.peak_place
+
+    @property
+    def area_mm2(self) -> float:
+        """Area whose depth is above the threshold, in mm^2."""
+        return self.record.area * self.pixel_pitch_mm**2
+
+    @property
+    def volume_mm3(self) -> float:
+        """Sum of the depths above the threshold times the area of a pixel, in mm^3."""
+        return self.record.volume * self.depth_lsb_mm * self.pixel_pitch_mm**2
+
+    @property
+    def centroid_px(self) -> tuple[float, float]:
+        """Row and column of the centre of the area on the grid, to 1/16 of a pixel."""
+        row, column = self.record.centroid
+        return row / 2**FRACTION, column / 2**FRACTION
+
+
+@dataclass(frozen=True)
+class Result:
+    """Depth of one frame or of several frames.
+
+    For several frames every array has a first axis of frames, and `result[i]` is the result of one frame. Rows are in
+    the order of the picture. Depth is positive where the gel is pressed in. The depth map is shifted by half a pixel up
+    and to the left, because slopes are differenced backwards.
+
+    Attributes
+    ----------
+    codes : int32 array (rows, columns)
+        Depth codes of the hardware.
+    depth_mm : float64 array (rows, columns)
+        `codes` times `depth_lsb_mm`; not rounded with float arithmetic.
+    slopes : float64 array (rows, columns, 2)
+        dz/dx along the columns and dz/dy down the rows, without unit.
+    dark : bool array (rows, columns)
+        Pixels without light, whose colour was taken from the pixel before them.
+    records : tuple of Record
+        One record per frame, from which `contact` is made.
+    saturations : dict of str to int
+        Number of values clipped in all frames, by node of the pipeline; empty without any.
+    threshold : int
+        Depth code above which a pixel touches.
+    depth_lsb_mm, pixel_pitch_mm : float
+    fitted_slope : float
+        Largest slope in the presses of the calibration.
+    height_error : HeightError or None
+        Error of the calibration, measured on presses that were not fitted; None if not measured.
+    """
+
+    codes: np.ndarray
+    depth_mm: np.ndarray
+    slopes: np.ndarray
+    dark: np.ndarray
+    records: tuple[Record, ...]
+    saturations: dict[str, int]
+    threshold: int
+    depth_lsb_mm: float
+    pixel_pitch_mm: float
+    fitted_slope: float
+    height_error: HeightError | None
+
+    def __len__(self) -> int:
+        """Return the number of frames."""
+        return len(self.records)
+
+    def __getitem__(self, index: int) -> Result:
+        """Return the result of one frame of several."""
+        if self.codes.ndim == 2:
+            raise TypeError("the result of a single picture has no frames to choose from")
+        arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}
+        return replace(self, records=(self.records[index],), **arrays)
+
+    @property
+    def threshold_mm(self) -> float:
+        """Depth above which a pixel touches, in mm."""
+        return self.threshold * self.depth_lsb_mm
+
+    @cached_property
+    def mask(self) -> np.ndarray:
+        """Pixels whose depth is above the threshold, bool, as `codes`."""
+        return self.codes > self.threshold
+
+    @cached_property
+    def height_mm(self) -> np.ndarray:
+        """Depth above the untouched surface: `depth_mm` minus the mean of the depths that are not above the threshold.
+
+        Without such a pixel the untouched surface is unknown, and the height is NaN.
+        """
+        untouched = ~self.mask
+        count = untouched.sum(axis=(-2, -1), keepdims=True)
+        total = np.where(untouched, self.depth_mm, 0).sum(axis=(-2, -1), keepdims=True)
+        return self.depth_mm - np.where(count, total / np.maximum(count, 1), np.nan)
+
+    @cached_property
+    def outside(self) -> np.ndarray:
+        """Pixels whose slope exceeds `fitted_slope`, bool, as `codes`."""
+        return ~self.dark & (np.hypot(self.slopes[..., 0], self.slopes[..., 1]) > self.fitted_slope)
+
+    @property
+    def contact(self) -> Contact:
+        """Contact of a single picture; for several frames use `result[i].contact`."""
+        if self.codes.ndim != 2:
+            raise AttributeError("several frames have several contacts: use result[i].contact")
+        return Contact(self.records[0], self.mask, self.depth_lsb_mm, self.pixel_pitch_mm)

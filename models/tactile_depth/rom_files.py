@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the $readmemh files of a configuration: one line per word, with fixed names in one folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.configuration import GAIN_WIDTH, Configuration
+from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals
+from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.transform.sdf_fft import stages
+from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors
+
+
+def write_words(path: Path, words: Iterable[int], width: int) -> None:
+    """Write non-negative words of `width` bits.
+
+    Raises
+    ------
+    ValueError
+        A word does not fit; nothing is written.
+    """
+    words = [int(word) for word in words]
+    if words and not 0 <= min(words) <= max(words) < 1 << width:
+        raise ValueError(f"{path.name}: words from {min(words)} to {max(words)} do not fit {width} unsigned bits")
+    digits = (width + 3) // 4
+    path.write_text("".join(f"{word:0{digits}x}\n" for word in words))
+
+
+def pack(fields: Iterable[np.ndarray], width: int) -> list[int]:
+    """Pack signed fields of `width` bits into words, the first on top; Python integers, because some exceed 64 bits."""
+    words: list[int] = []
+    for row in zip(*(unsigned(field, width).tolist() for field in fields), strict=True):
+        word = 0
+        for value in row:
+            word = word << width | value
+        words.append(word)
+    return words
+
+
+def unsigned(words: np.ndarray, width: int) -> np.ndarray:
+    """Return the two's complement of signed words of `width` bits, int64 of the same shape.
+
+    Raises
+    ------
+    ValueError
+        A word does not fit.
+    """
+    words = np.asarray(words)
+    half = 1 << width - 1
+    if words.size and not -half <= words.min() <= words.max() < half:
+        raise ValueError(f"words from {words.min()} to {words.max()} do not fit {width} signed bits")
+    return words & (2 * half - 1)
+
+
+def write_factors(path: Path, factors: np.ndarray, width: int) -> None:
+    """Write complex factors (block, 2) as twiddle_multiply.sv reads them: {-Im, Im, Re}."""
+    re, im = factors.T
+    write_words(path, pack((-im, im, re), width), 3 * width)
+
+
+def write_transform(folder: Path, size: int, width: int) -> None:
+    """Write the ROMs of dst_forward and dst_inverse."""
+    for inverse, direction in ((False, "forward"), (True, "inverse")):
+        blocks = sorted({s.block for s in stages(size, inverse) if s.delay == 0}, reverse=True)
+        for pair, block in enumerate(blocks):
+            factors = twiddle_factors(block, inverse, width)
+            write_factors(folder / f"twiddle_{direction}_{pair}.hex", factors, width)
+        write_factors(folder / f"phase_{direction}.hex", phase_factors(size, inverse, width), width)
+
+
+def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
+    """Write slope codes (bins, 2) as gradient_lookup.sv reads them: {gy, gx}."""
+    write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
+
+
+def write_gains(folder: Path, gains: np.ndarray, width: int = GAIN_WIDTH) -> None:
+    """Write gains (.., 3) as the memories of gain_map.sv read them: one file per channel, one word per node."""
+    for channel, words in enumerate(np.moveaxis(gains, -1, 0)):
+        write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
+
+
+def write_floor(folder: Path, floor: np.ndarray, width: int) -> None:
+    """Write depth codes (node rows, node columns) as auto_zero.sv reads them: offset binary, one word per node."""
+    write_words(folder / "floor_0.hex", floor.ravel() + (1 << width - 1), width)
+
+
+def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
+    """Write words (2, 3, 6) as quadratic_gradient.sv reads them.
+
+    There is one file for each polynomial, and one file of all polynomials. Each word occurs once for each bank.
+    """
+    flat = [word for word in pack((words.reshape(-1),), width) for _ in range(2)]
+    size = 2 * words.shape[-1]
+    for polynomial in range(len(flat) // size):
+        write_words(folder / f"quadratic_{polynomial}.hex", flat[polynomial * size :][:size], width)
+    write_words(folder / "quadratic.hex", flat, width)
+
+
+def write_thomas(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of thomas_table.sv."""
+    table = thomas_table(config)
+    width = config.coefficient_width
+    write_words(folder / "thomas.hex", unsigned(table.words, width), width)
+    settled_width, shift_width = table.settled_width, table.last_shift_width
+    address_width = (len(table.words) - 1).bit_length()
+    write_words(
+        folder / "thomas_index.hex",
+        table.base << settled_width | table.settled,
+        address_width + settled_width,
+    )
+    write_words(
+        folder / "thomas_last.hex", table.last_shift << width | unsigned(table.last, width), shift_width + width
+    )
+
+
+def write_solver(folder: Path, config: Configuration) -> None:
+    """Write the ROMs of the solver."""
+    write_transform(folder, config.columns, config.coefficient_width)
+    if config.solver == "tridiagonal":
+        write_thomas(folder, config)
+    else:
+        width = config.coefficient_width + reciprocals(config).shift_width
+        write_words(folder / "reciprocal.hex", reciprocal_rom(config), width)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drawn pictures for users without a sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tactile_depth.errors import InputError
+from tactile_depth.scenes import BENCH, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import Camera, Sensor, synthetic
+
+CAMERA = Camera(240, 320)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Pictures of a contact by the synthetic sensor, and the height map that was drawn.
+
+    Attributes
+    ----------
+    sensor : Sensor
+    image, reference : uint8 array (240, 320, 3), RGB
+        Pictures with and without contact.
+    height_mm : float64 array (240, 320)
+        Height above the untouched surface, positive pressed in.
+    """
+
+    sensor: Sensor
+    image: np.ndarray
+    reference: np.ndarray
+    height_mm: np.ndarray
+
+
+def sample(name: str = "ball", seed: int = 1) -> Sample:
+    """Return a drawn contact.
+
+    Parameters
+    ----------
+    name : str
+        A contact of the bench: ball, cylinder, cone, punch, ring, edge, two_balls, pyramid, seal, ..
+    seed : int
+        Seed of the camera's noise.
+
+    Raises
+    ------
+    InputError
+        There is no contact of that name.
+    """
+    if name not in BENCH:
+        raise InputError(f"name={name} is unknown: accepted are {', '.join(BENCH)}")
+    size = (CAMERA.rows, CAMERA.columns)
+    scene, rest = render(name, *size, seed), render("flat", *size, seed + 1, Press(noise=0))
+    pitch = scene_pixel_pitch_mm(min(size))
+    sensor = replace(
+        synthetic(), name="sample", pixel_pitch_mm=pitch, camera=CAMERA, flat_field=True, model="quadratic"
+    )
+    return Sample(sensor, scene.frames[0], rest.frames[0], scene.height[0] * pitch)

@@ -1,0 +1,460 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A sensor and its calibration: a table or quadratics from colour to slope, and the camera that they are valid for."""
+
+from __future__ import annotations
+
+import math
+import os
+import tempfile
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactile_depth.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
+
+if TYPE_CHECKING:
+    from tactile_depth.frames import Frames
+
+FOLDER = Path(__file__).resolve().parent / "calibrations"
+BUILT_IN = ("synthetic", "gelsight-mini")
+MODELS = GRADIENT_MODELS
+FORMAT_VERSION = 2
+PIXEL_FORMATS = ("rgb888",)
+BITS_PER_CHANNEL = (1, 6)
+COEFFICIENTS = (2, 3, 6)  # slope, colour, term
+SYNTHETIC_PIXEL_PITCH_MM = scene_pixel_pitch_mm(128)  # for a synthetic camera of 128 columns
+ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
+LARGEST_SLOPE = 0.99  # largest slope of the synthetic table, so that its gradient limit is 1
+ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
+LIGHTING_BLOCKS = (4, 4)  # rows and columns of `Sensor.lighting`
+# Largest RMS difference between two lightings of one sensor. On the presses of gelslam a contact changes it by 0.06
+# at most; exchanged colours change it by 0.14 to 0.31, an upside-down picture by 0.18, a uniform grey picture by 0.25.
+LIGHTING_AGREES = 0.12
+TOO_DARK = 16  # grey levels: where a colour of the reference is below, a pixel is dark
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Camera of a calibration, with the settings that the calibration is valid for.
+
+    Attributes
+    ----------
+    rows, columns : int
+        Size of the pictures.
+    pixel_format : str
+        One of `PIXEL_FORMATS`.
+    black_level : float
+        Grey levels, of 255, that the camera adds to every pixel. It is 0, because it is subtracted from the pictures
+        first.
+    exposure_us : float or None
+        Exposure time in microseconds; None: unknown.
+    """
+
+    rows: int
+    columns: int
+    pixel_format: str = PIXEL_FORMATS[0]
+    black_level: float = 0.0
+    exposure_us: float | None = None
+
+
+@dataclass(frozen=True)
+class HeightError:
+    """Error of a calibration, measured on ball presses that were not fitted.
+
+    Attributes
+    ----------
+    mean : float
+        Recovered over true height of the cap, mean over the presses.
+    spread : float
+        Standard deviation of that ratio over the presses.
+    presses : int
+    """
+
+    mean: float
+    spread: float
+    presses: int
+
+    @property
+    def relative(self) -> float:
+        """Relative RMS error of a height, from bias and spread together."""
+        return math.hypot(self.mean - 1, self.spread)
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """A calibrated sensor, with one or both of two models from colour to slope.
+
+    Attributes
+    ----------
+    name : str
+    gradient : float64 array (2**b, 2**b, 2**b, 2), or None
+        Model `lut`: slope dz/dx (along the columns) and dz/dy (down the rows) by the top b bits of red, green and
+        blue, in pixels per pixel; depth z is positive pressed in. Real sensors are flat-fielded first: 128 I / ref.
+    pixel_pitch_mm : float
+        Pitch of the camera's pixels; the pitch of the grid is larger if pixels are averaged.
+    coefficients : float64 array (2, 3, 6), or None
+        Model `quadratic`: slope = sum over red, green, blue of C (I / ref - 1), C = a quadratic in the position:
+        terms 1, x, y, x^2, x y, y^2, in mm from the picture's centre, x along the columns, y down the rows.
+    largest_slope : float
+        Largest slope that the formats of the quadratics hold.
+    model : str
+        The better of the two models.
+    reference : uint8 array (rows, columns, 3) or (2**k, rows, columns, 3), or None
+        The sensor without contact, on the grid in use (see `on_grid`).
+    camera : Camera or None
+        Camera of the pictures; None for the synthetic sensor, which takes pictures of any size.
+    flat_field : bool or None
+        True if colours are relative to a reference; None if both are accepted, as with the synthetic sensor.
+    fitted_slope : mapping of str to float
+        Largest slope in the fitted presses, by model. Steeper slopes are extrapolated. A model without an entry is
+        valid for all slopes.
+    height_errors : mapping of str to HeightError, by model
+    lighting : float64 array (`LIGHTING_BLOCKS`, 3), or None
+        Block means of the picture without contact over their mean, which distinguish types of sensors.
+    """
+
+    name: str
+    gradient: np.ndarray | None
+    pixel_pitch_mm: float
+    coefficients: np.ndarray | None = None
+    largest_slope: float = 0.0
+    model: str = "lut"
+    reference: np.ndarray | None = None
+    camera: Camera | None = None
+    flat_field: bool | None = None
+    fitted_slope: Mapping[str, float] = field(default_factory=dict)
+    height_errors: Mapping[str, HeightError] = field(default_factory=dict)
+    lighting: np.ndarray | None = None
+
+    def scaled(self, pixel_scale: float, reference: np.ndarray | None = None) -> Sensor:
+        """Return the sensor on a grid with pixels `pixel_scale` camera pixels wide, with the reference on that grid."""
+        return replace(self, pixel_pitch_mm=self.pixel_pitch_mm * pixel_scale, reference=reference)
+
+    def on_grid(self, frames: Frames) -> Sensor:
+        """Return the sensor on the grid of frames, with the frames' reference and the pitch of the grid.
+
+        Raises
+        ------
+        InputError
+            The frames do not fit this sensor's camera, or the reference that the sensor needs is missing.
+        """
+        if self.camera is not None and frames.picture_size is None:
+            raise InputError(
+                f"{frames.name}: a scene is drawn for the synthetic sensor, not for {self.name}: omit the calibration, "
+                "or give pictures of that sensor"
+            )
+        self.require_reference(frames.reference is not None)
+        zoom = 1.0 if frames.picture_size is None else self.zoom(frames.picture_size, frames.name)
+        if frames.no_contact is not None:
+            self.check_lighting(frames.no_contact)
+        return self.scaled(frames.pixel_scale / zoom, frames.reference)
+
+    def zoom(self, picture_size: tuple[int, int], name: str = "picture") -> float:
+        """Return pixels of a picture (rows, columns) per pixel of the calibrated camera; 1 for the synthetic sensor.
+
+        Raises
+        ------
+        InputError
+            The picture and the camera have different aspect ratios.
+        """
+        if self.camera is None:
+            return 1.0
+        rows, columns = picture_size
+        if abs(columns * self.camera.rows / (rows * self.camera.columns) - 1) > ASPECTS_AGREE:
+            raise InputError(
+                f"{name}: {columns} x {rows} pixels (columns x rows), but {self.name} is calibrated for pictures of "
+                f"{self.camera.columns} x {self.camera.rows}: give whole pictures of that camera, of the same aspect "
+                "ratio, or calibrate for this one"
+            )
+        return math.sqrt(rows * columns / (self.camera.rows * self.camera.columns))
+
+    def require_reference(self, is_given: bool) -> None:
+        """Raise InputError if a reference is needed and not given, or given and not accepted."""
+        if self.flat_field and not is_given:
+            raise InputError(
+                f"{self.name} needs a reference: its colours are relative to a picture without contact. Give "
+                "reference=<picture of the sensor without contact>, taken with the frames"
+            )
+        if self.flat_field is False and is_given:
+            raise InputError(
+                f"{self.name} was fitted to colours as sent: omit the reference, or calibrate again with one"
+            )
+
+    def lighting_difference(self, reference: np.ndarray) -> float:
+        """Return the RMS difference of lighting to a picture without contact; infinite if it is unknown."""
+        if self.lighting is None:
+            return math.inf
+        return float(np.sqrt(((lighting(reference) - self.lighting) ** 2).mean()))
+
+    def check_lighting(self, reference: np.ndarray) -> None:
+        """Warn if a picture without contact, uint8 (rows, columns, 3), does not look like this sensor's."""
+        if self.lighting is None or reference.mean() < TOO_DARK:  # a reference that dark is refused later
+            return
+        difference = self.lighting_difference(reference)
+        if difference > LIGHTING_AGREES:
+            warnings.warn(
+                f"the reference does not look like the sensor of {self.name} (its lighting differs by "
+                f"{100 * difference:.0f} %): give the calibration of the sensor that took it",
+                InputWarning,
+                stacklevel=3,
+            )
+
+    def configuration(self, model: str = "", **choices: Any) -> Configuration:
+        """Return the configuration that fits this sensor on its grid.
+
+        Parameters
+        ----------
+        model : str
+            A gradient model of the sensor; "": its better model if it has a reference, else `lut`.
+        choices
+            Arguments of `Configuration` that do not follow from the sensor.
+
+        Raises
+        ------
+        InputError
+            The sensor does not have the model, or the configuration cannot be built.
+        """
+        flat_field = self.reference is not None
+        model = model or (self.model if flat_field else GRADIENT_MODELS[0])
+        self.require_model(model)
+        self.require_reference(flat_field)
+        return Configuration(
+            gradient_limit=self.gradient_limit,
+            bits_per_channel=self.bits_per_channel,
+            flat_field=flat_field,
+            gradient_model=model,
+            **choices,
+        )
+
+    def check(self, config: Configuration, gains_given: bool = False) -> None:
+        """Raise InputError unless a configuration agrees with this sensor, because depth would be wrong.
+
+        Parameters
+        ----------
+        gains_given : bool
+            True if the gains of the flat field do not come from `reference`.
+        """
+        self.require_model(config.gradient_model)
+        if config.gradient_limit < self.gradient_limit:
+            raise InputError(
+                f"gradient_limit={config.gradient_limit:g} of the configuration is below the slopes of {self.name}, "
+                f"which reach {self.gradient_limit:g}: make it with Sensor.configuration"
+            )
+        if config.gradient_model == "lut" and config.bits_per_channel != self.bits_per_channel:
+            raise InputError(
+                f"bits_per_channel={config.bits_per_channel} of the configuration, but the table of {self.name} has "
+                f"{self.bits_per_channel}: make it with Sensor.configuration"
+            )
+        grid = (config.rows, config.columns)
+        if self.reference is not None and self.reference.shape[-3:-1] != grid:
+            raise InputError(
+                f"the reference of {self.name} has {self.reference.shape[-3]} rows and {self.reference.shape[-2]} "
+                f"columns, the grid of the configuration has rows={grid[0]}, columns={grid[1]}: use Sensor.on_grid"
+            )
+        if self.reference is not None and not config.flat_field:
+            raise InputError(
+                f"flat_field=False of the configuration, but {self.name} has a reference: make it with "
+                "Sensor.configuration"
+            )
+        if self.flat_field is False and config.flat_field:
+            raise InputError(
+                f"flat_field=True of the configuration, but {self.name} was fitted to colours as sent: make it with "
+                "Sensor.configuration"
+            )
+        if self.flat_field and not (config.flat_field and (gains_given or self.reference is not None)):
+            self.require_reference(False)
+
+    def require_model(self, model: str) -> None:
+        """Raise InputError unless the sensor has the gradient model."""
+        if model not in self.models:
+            raise InputError(f"gradient_model={model}: {self.name} holds only {', '.join(self.models)}")
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Gradient models that the sensor has."""
+        held = (self.gradient is not None, self.coefficients is not None)
+        return tuple(model for model, is_held in zip(MODELS, held, strict=True) if is_held)
+
+    @property
+    def table(self) -> np.ndarray:
+        """Table of the model `lut`, `gradient`.
+
+        Raises
+        ------
+        InputError
+            The sensor has no table.
+        """
+        if self.gradient is None:
+            raise InputError(f"{self.name}: no `gradient` in it: the table is needed here")
+        return self.gradient
+
+    @property
+    def bits_per_channel(self) -> int:
+        """Bits of each colour that index the table; 4 without a table, where the value has no effect."""
+        return 4 if self.gradient is None else self.gradient.shape[0].bit_length() - 1
+
+    @property
+    def gradient_limit(self) -> float:
+        """Power of two above all slopes of both models, exact or rounded to 1/256 of the slope or finer."""
+        table = 0.0 if self.gradient is None else float(np.abs(self.gradient).max())
+        largest = max(table, self.largest_slope) * (1 + ROUNDING)
+        return 2.0 ** math.ceil(math.log2(largest)) if largest > 0 else 1.0
+
+    def save(self, path: str | Path) -> None:
+        """Write the calibration to an `.npz` of format version 2, without the reference; `load` reads it.
+
+        Raises
+        ------
+        InputError
+            The sensor has no camera, or the file cannot be written.
+        """
+        path = Path(path)
+        if self.camera is None:
+            raise InputError(f"{self.name}: no camera in it: a calibration file names the camera that it holds for")
+        if path.suffix != ".npz":
+            raise InputError(f"{path}: give the name of an .npz file")
+        camera = self.camera
+        arrays: dict[str, Any] = {
+            "format_version": FORMAT_VERSION,
+            "camera_size": np.array((camera.rows, camera.columns)),
+            "pixel_format": camera.pixel_format,
+            "black_level": camera.black_level,
+            "exposure_us": math.nan if camera.exposure_us is None else camera.exposure_us,
+            "pixel_pitch_mm": self.pixel_pitch_mm,
+            "flat_field": bool(self.flat_field),
+            "model": self.model,
+            "gradient": self.gradient,
+            "coefficients": self.coefficients,
+            "largest_slope": self.largest_slope if self.coefficients is not None else None,
+            "lighting": self.lighting,
+        }
+        for model, slope in self.fitted_slope.items():
+            arrays[f"fitted_slope_{model}"] = slope
+        for model, error in self.height_errors.items():
+            arrays[f"cap_height_{model}"] = np.array((error.mean, error.spread, error.presses))
+        unfinished = None
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
+                unfinished = file.name
+                np.savez_compressed(file, **{key: value for key, value in arrays.items() if value is not None})
+            Path(unfinished).chmod(0o644)
+            os.replace(unfinished, path)
+        except OSError as error:
+            if unfinished:
+                Path(unfinished).unlink(missing_ok=True)
+            raise InputError(f"{path} cannot be written ({error.strerror}): give a path that can") from error
+
+
+def lighting(picture: np.ndarray) -> np.ndarray:
+    """Return block means of a picture without contact over their mean, which do not depend on exposure.
+
+    Parameters
+    ----------
+    picture : uint8 array (rows, columns, 3), RGB
+
+    Returns
+    -------
+    float64 array (`LIGHTING_BLOCKS`, 3)
+    """
+    rows, columns = LIGHTING_BLOCKS
+    height, width = (length // blocks for length, blocks in zip(picture.shape[:2], LIGHTING_BLOCKS, strict=True))
+    whole = picture[: rows * height, : columns * width].astype(np.float64)
+    blocks = whole.reshape(rows, height, columns, width, 3).mean(axis=(1, 3))
+    return blocks / max(float(blocks.mean()), 1.0)
+
+
+def load(name_or_path: str | Path, camera_size: tuple[int, int] | None = None) -> Sensor:
+    """Return a built-in calibration by its name, or one from an `.npz` file.
+
+    docs/calibration-file.md describes the format of the file. Files of version 0.1 hold only a pitch, `gradient` or
+    `coefficients`, and `largest_slope`; they are read with a warning.
+
+    Parameters
+    ----------
+    camera_size : (rows, columns), optional
+        Size of the pictures that a file of version 0.1 was made from, which the file does not hold.
+
+    Raises
+    ------
+    InputError
+    """
+    from tactile_depth.calibration_file import read_calibration
+
+    if not isinstance(name_or_path, str | Path):
+        raise InputError(f"a calibration is named by a {type(name_or_path).__name__}: accepted is a name or a path")
+    if name_or_path == "synthetic":
+        if camera_size is not None:
+            raise InputError(
+                f"camera_size={camera_size} with the synthetic sensor, which takes pictures of any size: omit "
+                "camera_size"
+            )
+        return synthetic()
+    if name_or_path in BUILT_IN:
+        return read_calibration(str(name_or_path), FOLDER / f"{name_or_path}.npz", camera_size)
+    return read_calibration(str(name_or_path), Path(name_or_path), camera_size)
+
+
+def identify(reference: np.ndarray) -> Sensor:
+    """Return the built-in calibration of the sensor that took a picture without contact, found by its lighting.
+
+    Parameters
+    ----------
+    reference : uint8 array (rows, columns, 3), RGB
+        Full picture of the sensor's camera.
+
+    Raises
+    ------
+    InputError
+        No built-in calibration has the aspect ratio and the lighting of the picture.
+    """
+    if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
+        raise InputError(
+            f"the reference is {reference.dtype} {reference.shape}: accepted is uint8 (rows, columns, 3), RGB"
+        )
+    rows, columns = reference.shape[:2]
+    nearest, reasons = None, []
+    for sensor in map(load, BUILT_IN):
+        if sensor.camera is None or sensor.lighting is None:
+            continue
+        difference = sensor.lighting_difference(reference)
+        try:
+            sensor.zoom((rows, columns))
+        except InputError:
+            camera = sensor.camera
+            reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
+            continue
+        if difference > LIGHTING_AGREES:
+            reasons.append(
+                f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "
+                f"{100 * LIGHTING_AGREES:.0f} %"
+            )
+        elif nearest is None or difference < nearest[0]:
+            nearest = difference, sensor
+    if nearest is None:
+        raise InputError(
+            f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)}): name the "
+            "calibration of the sensor that took it"
+        )
+    return nearest[1]
+
+
+def synthetic(bits_per_channel: int = 4) -> Sensor:
+    """Return the synthetic sensor: the least-squares inverse of its colour model, as a table and as quadratics.
+
+    The light is uniform and the colours are linear in the slopes, so only the first term of each quadratic is not 0.
+    """
+    step = 256 >> bits_per_channel
+    centre = np.arange(0, 256, step) + (step - 1) / 2
+    colour = np.stack(np.meshgrid(centre, centre, centre, indexing="ij"), axis=-1)
+    gradient = (colour - REST) / GAIN @ np.linalg.pinv(LIGHTS).T
+    within = np.clip(gradient, -LARGEST_SLOPE, LARGEST_SLOPE)
+    coefficients = np.zeros(COEFFICIENTS)
+    coefficients[..., 0] = REST / GAIN * np.linalg.pinv(LIGHTS)
+    return Sensor("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM, coefficients, LARGEST_SLOPE)

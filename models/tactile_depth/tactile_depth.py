@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/tactile_depth.sv, RGB frames in, depth codes out, and its HDL parameters."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.calibration.auto_zero import auto_zero, no_floor
+from tactile_depth.calibration.flat_field import (
+    PixelGains,
+    deviations,
+    flat_codes,
+    flat_field_parameters,
+    pixel_gains,
+    reference_gains,
+)
+from tactile_depth.calibration.floor_capture import floor_capture_parameters
+from tactile_depth.calibration.reference_capture import reference_capture_parameters
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import POLYNOMIAL, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.gradient.quadratic_gradient import (
+    coefficient_map,
+    gradient_parameters,
+    polynomial_words,
+    quadratic_gradient,
+)
+from tactile_depth.latency import frame_latency
+from tactile_depth.poisson import spectral_solver, tridiagonal_solver
+from tactile_depth.rom_files import write_floor, write_gains, write_gradient, write_quadratic, write_solver
+from tactile_depth.sensor import COEFFICIENTS, Sensor
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Tables that turn the colours of every frame into slopes, computed once by `slope_tables`.
+
+    Attributes
+    ----------
+    gains : PixelGains, or None without `flat_field`
+    slopes : int64 array
+        Model `lut`: slope codes by bin (bins, 2). Model `quadratic`: coefficients (2, 3, rows, columns).
+    """
+
+    gains: PixelGains | None
+    slopes: np.ndarray
+
+
+def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray | None = None) -> Tables:
+    """Compute the tables of a calibration; for `gains` see `tactile_depth`.
+
+    Raises
+    ------
+    InputError
+        The calibration and the configuration do not agree.
+    """
+    calibration.check(config, gains is not None)
+    if config.flat_field and gains is None:
+        gains = reference_gains(calibration, config)
+    if gains is not None:
+        require_nodes("gains", gains, (*config.reference_nodes, 3))
+    if config.gradient_model == "quadratic":
+        slopes = coefficient_map(polynomial_words(calibration, config, calibration.pixel_pitch_mm), config)
+    else:
+        slopes = gradient_codes(calibration, config)
+    return Tables(None if gains is None else pixel_gains(gains, config), slopes)
+
+
+def require_nodes(name: str, nodes: np.ndarray, shape: tuple[int, ...]) -> None:
+    """Raise InputError unless words of the nodes have the shape of the grid of nodes."""
+    if nodes.shape != shape:
+        raise InputError(f"{name} have the shape {nodes.shape}: accepted is {shape}, a node for each block of the grid")
+
+
+def tactile_depth(
+    frames: np.ndarray,
+    calibration: Sensor,
+    config: Configuration,
+    monitor: Monitor | None = None,
+    gains: np.ndarray | None = None,
+    dark_level: int = 0,
+    floor: np.ndarray | None = None,
+    tables: Tables | None = None,
+) -> np.ndarray:
+    """Return the depth codes of frames, rows in the order of the stream (tridiagonal solver: bottom row first).
+
+    Parameters
+    ----------
+    frames : uint8 array (..., rows, columns, 3), RGB
+    gains : int64 array (node rows, node columns, 3)
+        Gains in use; by default those of the calibration's reference.
+    dark_level : int
+        Value of the register.
+    floor : int64 array (node rows, node columns)
+        Floor in use, for a configuration with `auto_zero`; by default nothing is subtracted.
+    tables : Tables
+        `slope_tables` of the same calibration, configuration and gains, for many calls; by default computed here.
+
+    Returns
+    -------
+    int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
+    """
+    slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level, tables)
+    return zeroed(solve(divergence(slopes, config.neumann), config, monitor), config, monitor, floor)
+
+
+def zeroed(
+    codes: np.ndarray, config: Configuration, monitor: Monitor | None = None, floor: np.ndarray | None = None
+) -> np.ndarray:
+    """Subtract the floor from depth codes (..., rows, columns) if the configuration has `auto_zero`."""
+    if not config.auto_zero:
+        return codes
+    return auto_zero(codes, no_floor(config) if floor is None else floor, config, monitor)
+
+
+def slope_codes(
+    frames: np.ndarray,
+    calibration: Sensor,
+    config: Configuration,
+    monitor: Monitor | None = None,
+    gains: np.ndarray | None = None,
+    dark_level: int = 0,
+    tables: Tables | None = None,
+) -> np.ndarray:
+    """Return the slope codes of frames, int64 (..., rows, columns, 2), by the gradient model of the configuration."""
+    if tables is None:
+        tables = slope_tables(calibration, config, gains)
+    if config.gradient_model == "quadratic":
+        assert tables.gains is not None
+        deviation = deviations(frames, tables.gains, config, dark_level, monitor)
+        return quadratic_gradient(deviation, tables.slopes, config, monitor)
+    if tables.gains is not None:
+        frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
+    return gradient_lookup(frames, tables.slopes, config.bits_per_channel)
+
+
+def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+    """Return the depth codes of divergence codes (..., rows, columns) by the configuration's solver."""
+    if config.solver == "tridiagonal":
+        return tridiagonal_solver.tridiagonal_solver(f, config, monitor)
+    return spectral_solver.spectral_solver(f, config, monitor)
+
+
+def top_parameters(config: Configuration) -> dict[str, int]:
+    """Parameters of hdl/tactile_depth.sv."""
+    tridiagonal = config.solver == "tridiagonal"
+    solver = tridiagonal_solver if tridiagonal else spectral_solver
+    parameters = solver.solver_parameters(config)
+    del parameters["InWidth"]
+    return {
+        **parameters,
+        "Rows": config.rows,
+        "Tridiagonal": int(tridiagonal),
+        "BitsPerChannel": config.bits_per_channel,
+        "GradientWidth": config.gradient.width,
+        "GradientFraction": config.gradient.fraction,
+        "FrameLatency": frame_latency(config),
+        **_colour_parameters(config),
+        **_floor_parameters(config),
+    }
+
+
+def _colour_parameters(config: Configuration) -> dict[str, int]:
+    """Return the parameters of the cores from pixels to slopes."""
+    quadratic = config.gradient_model == "quadratic"
+    if not config.flat_field:
+        return {"FlatField": 0, "Quadratic": 0}
+    flat, capture = flat_field_parameters(config, quadratic), reference_capture_parameters(config)
+    colour = {f"Colour{name}": flat[name] for name in ("Drop", "Offset", "Flat")}
+    colour |= {"FlatField": 1, "Quadratic": int(quadratic), "BlockLog2": flat["BlockLog2"]}
+    colour |= {"GainWidth": flat["GainWidth"], "GainFraction": capture["GainFraction"], "ColourWidth": flat["OutWidth"]}
+    colour["CaptureLog2"] = capture["MaxLog2"]
+    if quadratic:
+        slope = gradient_parameters(config)
+        colour |= {"PolynomialWords": math.prod(COEFFICIENTS), "PolynomialWidth": slope["WordWidth"]}
+        colour |= {"ColourCoeffWidth": slope["CoeffWidth"], "SlopeDrop": slope["Drop"]}
+    return colour
+
+
+def _floor_parameters(config: Configuration) -> dict[str, int]:
+    if not config.auto_zero:
+        return {"AutoZero": 0}
+    capture = floor_capture_parameters(config)
+    return {"AutoZero": 1, "BlockLog2": capture["BlockLog2"], "FloorLog2": capture["MaxLog2"]}
+
+
+def write_roms(
+    folder: Path,
+    calibration: Sensor,
+    config: Configuration,
+    floor: np.ndarray | None = None,
+    gains: np.ndarray | None = None,
+) -> None:
+    """Write every file that the RTL reads; for `floor` and `gains` see `tactile_depth`.
+
+    Raises
+    ------
+    InputError
+        The calibration and the configuration do not agree.
+    """
+    calibration.check(config, gains is not None)
+    if gains is not None:
+        require_nodes("gains", gains, (*config.reference_nodes, 3))
+    if floor is not None:
+        require_nodes("floor", floor, config.reference_nodes)
+    write_solver(folder, config)
+    if config.auto_zero:
+        write_floor(folder, no_floor(config) if floor is None else floor, config.depth.width)
+    if config.flat_field:
+        write_gains(folder, reference_gains(calibration, config) if gains is None else gains)
+    if config.gradient_model == "quadratic":
+        words = polynomial_words(calibration, config, calibration.pixel_pitch_mm)
+        write_quadratic(folder, words, POLYNOMIAL.width)
+    else:
+        write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)

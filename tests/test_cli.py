@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `tactile-depth depth`: what it writes is what the package computes, and bad input is one line."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tactile_depth as td
+from real_data import FOLDER, needs_real_data
+from tactile_depth.cli.main import main
+from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
+from tactile_depth.cli.ply import triangles
+
+GRID = ["--grid", "32x24"]
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    """Pictures of the sample, its background and its calibration, as files."""
+    folder = tmp_path_factory.mktemp("inputs")
+    sample = td.sample("ball")
+    sample.sensor.save(folder / "sensor.npz")
+    Image.fromarray(sample.image).save(folder / "press.png")
+    Image.fromarray(sample.reference).save(folder / "background.png")
+    return folder
+
+
+@pytest.fixture
+def arguments(inputs):
+    return ["--reference", f"{inputs}/background.png", "--calibration", f"{inputs}/sensor.npz", *GRID]
+
+
+def expected(inputs, **choices):
+    pipeline = td.Pipeline(td.load(inputs / "sensor.npz"), inputs / "background.png", grid=(24, 32), **choices)
+    return pipeline(inputs / "press.png")
+
+
+def read_ply(path):
+    """Vertices and faces of a binary mesh, read by what its header says."""
+    header, _, body = path.read_bytes().partition(b"end_header\n")
+    counts = {line.split()[1]: int(line.split()[2]) for line in header.decode().splitlines() if "element" in line}
+    assert b"format binary_little_endian 1.0" in header
+    vertices = np.frombuffer(body, "<f4", 3 * counts["vertex"]).reshape(-1, 3)
+    faces = np.frombuffer(body[vertices.nbytes :], [("count", "u1"), ("corners", "<i4", 3)])
+    assert len(faces) == counts["face"]
+    return vertices, faces
+
+
+# What it writes.
+
+
+def test_the_files_hold_the_height_of_the_pipeline(tmp_path, inputs, arguments):
+    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 0
+    height = expected(inputs).height_mm
+    depth_mm = np.load(tmp_path / "depth_mm.npy")
+    assert depth_mm.dtype == np.float32
+    np.testing.assert_array_equal(depth_mm, height.astype(np.float32))
+    with Image.open(tmp_path / "depth_um.png") as picture:
+        assert picture.mode == "I;16"
+        assert picture.text["Description"].endswith("in micrometres")
+        np.testing.assert_array_equal(np.array(picture), np.maximum(np.rint(1000 * height), 0))
+    vertices, faces = read_ply(tmp_path / "depth.ply")
+    np.testing.assert_array_equal(vertices[:, 2].reshape(24, 32), depth_mm)
+    pitch = expected(inputs).pixel_pitch_mm
+    np.testing.assert_allclose(vertices[[0, 31, -1], :2], np.array([[0, 0], [31, 0], [31, -23]]) * pitch, rtol=1e-6)
+    assert len(faces) == 2 * 23 * 31
+    with Image.open(tmp_path / "overview.png") as picture:
+        assert picture.size[0] > 1000
+    files = {path.name for path in tmp_path.iterdir()}
+    assert files == {"depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"}
+
+
+def test_the_report_describes_the_result(tmp_path, inputs, arguments, capsys):
+    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 0
+    report, result = json.loads((tmp_path / "report.json").read_text()), expected(inputs)
+    assert report["grid"] == {"rows": 24, "columns": 32}
+    assert report["pixel_pitch_mm"] == result.pixel_pitch_mm
+    assert report["calibration"] == f"{inputs}/sensor.npz"
+    (picture,) = report["pictures"]
+    assert picture["peak_height_mm"] == result.height_mm.max()
+    contact = picture["contact"]
+    assert contact["touching"]
+    assert contact["peak_mm"] == result.contact.peak_mm
+    assert contact["area_mm2"] == result.contact.area_mm2
+    assert contact["volume_mm3"] == result.contact.volume_mm3
+    assert contact["centroid_px"] == list(result.contact.centroid_px)
+    assert (picture["dark_pixels"], picture["outside_pixels"], picture["saturations"]) == (0, 0, {})
+    assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
+    printed = capsys.readouterr().out
+    assert "grid: 32 x 24 pixels of 0.6" in printed
+    assert f"peak height {result.height_mm.max():.2f} mm, contact area {result.contact.area_mm2:.1f} mm2" in printed
+    assert "error of the calibration not measured" in printed
+
+
+@pytest.mark.parametrize(
+    ("options", "choices"),
+    [
+        (["--arithmetic", "float"], {"arithmetic": "float"}),
+        (["--threshold-mm", "0.5"], {"threshold_mm": 0.5}),
+        (["--model", "lut"], {"model": "lut"}),
+        (["--no-zero-offset"], {"zero_offset": False}),
+    ],
+    ids=lambda value: value[0] if isinstance(value, list) else "",
+)
+def test_options_reach_the_pipeline(tmp_path, inputs, arguments, options, choices):
+    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments, *options]) == 0
+    result = expected(inputs, **choices)
+    np.testing.assert_array_equal(np.load(tmp_path / "depth_mm.npy"), result.height_mm.astype(np.float32))
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["threshold_mm"] == choices.get("threshold_mm", 0.1)
+    assert report["zero_offset"] == choices.get("zero_offset", True)
+
+
+def test_several_pictures_share_one_array(tmp_path, inputs, arguments):
+    pictures = [f"{inputs}/press.png", f"{inputs}/background.png"]
+    assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
+    height = np.load(tmp_path / "depth_mm.npy")
+    assert height.shape == (2, 24, 32)
+    np.testing.assert_array_equal(height[0], expected(inputs).height_mm.astype(np.float32))
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert [picture["contact"]["touching"] for picture in report["pictures"]] == [True, False]
+    assert report["pictures"][1]["files"] == ["depth_um_1.png", "depth_1.ply", "overview_1.png"]
+    assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
+
+
+def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path, inputs, arguments):
+    (tmp_path / "notes.txt").write_text("mine")
+    pictures = [f"{inputs}/press.png"] * 2
+    assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
+    assert main(["depth", pictures[0], "--out", str(tmp_path), *arguments]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "notes.txt", "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
+    }  # fmt: skip
+
+
+def test_the_results_lie_in_the_current_folder_by_default(tmp_path, inputs, arguments, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["depth", f"{inputs}/press.png", *arguments]) == 0
+    assert (tmp_path / "press-depth" / "depth_mm.npy").is_file()
+
+
+def test_nothing_is_written_when_one_picture_is_bad(tmp_path, inputs, arguments, capsys):
+    narrow = tmp_path / "narrow.png"
+    Image.new("RGB", (100, 240)).save(narrow)
+    out = tmp_path / "out"
+    assert main(["depth", f"{inputs}/press.png", str(narrow), "--out", str(out), *arguments]) == 2
+    assert not list(out.iterdir())
+    assert f"tactile-depth: {narrow}: pictures: 100 x 240 pixels" in capsys.readouterr().err
+
+
+# Which calibration.
+
+
+@pytest.fixture(scope="module")
+def mini(tmp_path_factory):
+    """A picture without contact of the sensor gelsight-mini, as its calibration knows it, and three others."""
+    folder = tmp_path_factory.mktemp("mini")
+    picture = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+    Image.fromarray(picture).save(folder / "background.png")
+    Image.fromarray(np.rot90(picture, 2)).save(folder / "rotated.png")
+    return folder
+
+
+def test_the_calibration_is_found_by_the_reference_and_named(tmp_path, mini, capsys):
+    picture = f"{mini}/background.png"
+    assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr()
+    said = "calibration: gelsight-mini: the reference looks like it; --calibration names another"
+    assert printed.out.splitlines()[0] == said
+    assert "grid: 128 x 96 pixels of 0.1585 mm" in printed.out
+    assert "no contact above 0.1 mm" in printed.out
+    assert not printed.err
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert (report["calibration"], report["calibration_named"]) == ("gelsight-mini", False)
+    assert 0.05 < report["calibration_error"]["relative"] < 0.08
+
+
+def test_a_reference_of_no_known_sensor_needs_a_calibration(tmp_path, mini, capsys):
+    picture = f"{mini}/rotated.png"
+    assert main(["depth", picture, "--reference", picture, "--out", f"{tmp_path}/out"]) == 2
+    assert "name the calibration of the sensor that took it" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_named_calibration_with_another_reference_is_used_with_a_warning(tmp_path, mini, capsys):
+    picture = f"{mini}/rotated.png"
+    named = ["--calibration", "gelsight-mini"]
+    assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path), *GRID, *named]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("tactile-depth: warning: the reference does not look like the sensor of gelsight-mini")
+    assert json.loads((tmp_path / "report.json").read_text())["warnings"] == [line.removeprefix(
+        "tactile-depth: warning: "
+    )]  # fmt: skip
+
+
+@needs_real_data
+def test_a_real_press(tmp_path, capsys):
+    data = FOLDER / "gelslam"
+    picture, reference = data / "9.500mm" / "12.png", data / "background.png"
+    assert main(["depth", str(picture), "--reference", str(reference), "--out", str(tmp_path)]) == 0
+    assert "peak height 0.81 +- 0.05 mm" in capsys.readouterr().out
+
+
+# Bad input: one line and exit status 2.
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ([], "the following arguments are required: COMMAND: see `tactile-depth --help`"),
+        (["height"], "invalid choice: 'height'"),
+        (["depth"], "the following arguments are required: PICTURE, --reference: see `tactile-depth depth --help`"),
+        (["depth", "none.png", "--reference", "none.png"], "none.png: no such file or folder"),
+        (["depth", "{press}", "--reference", "{ref}", "--calibration", "x.npz"], "x.npz"),
+        (["depth", "{press}", "--reference", "{ref}", "--grid", "32"], "'32' is no size: accepted is columns x rows"),
+        (
+            ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--grid", "33x24"],
+            "--grid 33x.. is not a power of two",
+        ),
+        (["depth", "{press}", "--reference", "{ref}", "--arithmetic", "exact"], "invalid choice: 'exact'"),
+        (
+            ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--threshold-mm", "-1"],
+            "--threshold-mm -1.0: acc",
+        ),
+        (["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--out", "{press}"], "cannot be writ"),
+    ],
+)
+def test_bad_input_is_one_line(tmp_path, inputs, monkeypatch, capsys, command, said):
+    monkeypatch.chdir(tmp_path)
+    names = {"press": f"{inputs}/press.png", "ref": f"{inputs}/background.png", "npz": f"{inputs}/sensor.npz"}
+    assert main([word.format(**names) for word in command]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("tactile-depth: ")
+    assert said in line
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_interruption_ends_with_130(inputs, arguments, monkeypatch, capsys):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", interrupt)
+    assert main(["depth", f"{inputs}/press.png", *arguments]) == 130
+    assert capsys.readouterr().err == "tactile-depth: interrupted\n"
+
+
+def test_an_error_of_the_program_ends_with_3(inputs, arguments, monkeypatch, capsys):
+    def fail(*_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", fail)
+    assert main(["depth", f"{inputs}/press.png", *arguments]) == 3
+    assert "an error of this program" in capsys.readouterr().err
+
+
+def test_it_runs_as_a_module():
+    ended = subprocess.run([sys.executable, "-m", "tactile_depth.cli", "--help"], capture_output=True, text=True)
+    assert ended.returncode == 0
+    assert ended.stdout.startswith("usage: tactile-depth")
+
+
+# Mesh and drawing.
+
+
+def test_triangles_face_up():
+    index = triangles(3, 4)
+    y, x = np.divmod(np.arange(12), 4)
+    points = np.stack([x, -y, np.zeros(12)], axis=-1).astype(float)
+    a, b, c = (points[index[:, corner]] for corner in range(3))
+    np.testing.assert_array_equal(np.cross(b - a, c - a)[:, 2], np.ones(12))
+    assert sorted({*index.ravel().tolist()}) == list(range(12))
+
+
+def test_colours_run_from_dark_blue_to_yellow():
+    np.testing.assert_array_equal(colours(np.array([-1.0, 0.0, 2.0, 3.0]), 0, 2)[[0, 1, 2, 3], 0], [68, 68, 253, 253])
+    for limit, step in ((0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70, 50), (0.021, 0.02)):
+        assert round_number(limit) == pytest.approx(step)
+
+
+def test_doubtful_pixels_are_marked_in_the_overview(inputs):
+    result = expected(inputs)
+    image = np.array(Image.open(inputs / "press.png"))
+
+    def marked(result, colour):
+        return (np.array(draw_overview(image, result, "")) == colour).all(axis=-1)[:400].sum()
+
+    dark = np.zeros_like(result.dark)
+    dark[2, 3] = True
+    cell = (480 // 32) ** 2
+    assert [marked(result, colour) for colour in (OUTSIDE, DARK)] == [0, 0]
+    assert marked(replace(result, dark=dark), DARK) == cell
+    steep = replace(result, fitted_slope=0.4)
+    assert marked(steep, OUTSIDE) == cell * steep.outside.sum() > 0

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The notebook of real presses runs from its first cell to its last, and shows what it showed when it was committed."""
+
+import json
+
+import matplotlib
+
+from commands.simulator import ROOT
+from real_data import FOLDER, needs_real_data
+
+NOTEBOOK = ROOT / "examples" / "real_presses.ipynb"
+
+
+@needs_real_data
+def test_the_notebook_of_real_presses(monkeypatch, capsys):
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("TACTILE_DATA", str(FOLDER))
+    matplotlib.use("Agg")
+    scope = {}
+    for cell in json.loads(NOTEBOOK.read_text())["cells"]:
+        if cell["cell_type"] != "code":
+            continue
+        exec("".join(cell["source"]), scope)
+        printed = "".join("".join(out["text"]) for out in cell["outputs"] if out["output_type"] == "stream")
+        assert capsys.readouterr().out == printed

@@ -1,0 +1,525 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tactile-depth live`: what it shows is what the pipeline computes, and each frame is shown or counted as lost.
+
+Tests of the viewer and of videos need the extra [live]: `make live-test` runs all in an environment that has it.
+"""
+
+import contextlib
+import importlib.util
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import sys
+import termios
+import threading
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tactile_depth as td
+from press_video import press_frames, write_sensor, write_video
+from tactile_depth.cli import live as command
+from tactile_depth.cli import source as sources
+from tactile_depth.cli.failure import Failure
+from tactile_depth.cli.keys import pressed_keys
+from tactile_depth.cli.main import main
+from tactile_depth.cli.source import Source
+from tactile_depth.errors import InputError
+
+FRAMES = 10
+MISSING = [name for name in ("cv2", "rerun") if importlib.util.find_spec(name) is None]
+needs_live = pytest.mark.skipif(bool(MISSING), reason=f"{', '.join(MISSING)} missing: make live-test installs them")
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    """Drawn presses as a folder of pictures; background and calibration."""
+    folder = tmp_path_factory.mktemp("inputs")
+    write_sensor(folder)
+    (folder / "presses").mkdir()
+    for index, image in enumerate(press_frames(FRAMES)):
+        Image.fromarray(image).save(folder / "presses" / f"{index}.png")
+    return folder
+
+
+@pytest.fixture
+def arguments(inputs):
+    return ["--calibration", f"{inputs}/sensor.npz", "--grid", "32x24"]
+
+
+@pytest.fixture(scope="module")
+def images():
+    return press_frames(FRAMES)
+
+
+def pipeline_of(inputs, reference="background.png"):
+    reference = inputs / reference if isinstance(reference, str) else reference
+    return td.Pipeline(td.load(inputs / "sensor.npz"), reference, grid=(24, 32))
+
+
+class Screen:
+    """Stands for the display: keeps what it is shown."""
+
+    def __init__(self, *_):
+        self.indices, self.heights = [], []
+        Screen.last = self
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def show(self, index, picture, result):
+        self.indices.append(index)
+        self.heights.append(result.height_mm)
+
+
+@pytest.fixture
+def screen(monkeypatch):
+    """Replace the display and the check that it is installed."""
+    monkeypatch.setattr(command, "Display", Screen)
+    monkeypatch.setattr(command, "load_rerun", lambda: None)
+
+
+@pytest.fixture
+def press_keys(monkeypatch):
+    """Press keys: a word of letters, one before each frame, "." for none."""
+
+    def press(letters):
+        @contextmanager
+        def keys():
+            left = iter(letters)
+            yield lambda: next(left, "").replace(".", "")
+
+        monkeypatch.setattr(command, "pressed_keys", keys)
+
+    return press
+
+
+def counted(printed):
+    """The numbers of the last line, by name."""
+    (line,) = [line for line in printed.splitlines() if line.startswith("frames:")]
+    counts = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)[,;]", line)}
+    lost_or_shown = sum(count for name, count in counts.items() if name != "read")
+    assert counts["read"] == lost_or_shown
+    return counts
+
+
+# What is shown.
+
+
+def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(inputs, arguments, images, screen, capsys):
+    reference = ["--reference", f"{inputs}/background.png"]
+    assert main(["live", f"{inputs}/presses", *reference, *arguments]) == 0
+    expected = pipeline_of(inputs)
+    np.testing.assert_array_equal(Screen.last.heights, [expected(image).height_mm for image in images])
+    assert Screen.last.indices == list(range(FRAMES))
+    assert counted(capsys.readouterr().out) == {"read": FRAMES, "shown": FRAMES, "dropped": 0, "failed": 0}
+
+
+@pytest.mark.parametrize("option", [[], ["--reference", "capture"]])
+def test_the_first_frames_become_the_reference(tmp_path, inputs, arguments, images, screen, capsys, option):
+    rest = np.array(Image.open(inputs / "background.png"))
+    np.save(tmp_path / "frames.npy", np.stack([rest] * 8 + [images[5]]))
+    assert main(["live", f"{tmp_path}/frames.npy", *arguments, *option]) == 0
+    np.testing.assert_array_equal(Screen.last.heights, [pipeline_of(inputs)(images[5]).height_mm])
+    printed = capsys.readouterr().out
+    assert printed.startswith("do not touch the sensor: its first 8 frames become the reference\n")
+    assert counted(printed) == {"read": 9, "captured": 8, "shown": 1, "dropped": 0, "failed": 0}
+
+
+def test_the_calibration_is_found_by_the_captured_reference(tmp_path, screen, capsys):
+    rest = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+    np.save(tmp_path / "frames.npy", np.stack([rest] * 9))
+    assert main(["live", f"{tmp_path}/frames.npy"]) == 0
+    assert "calibration: gelsight-mini: the reference looks like it" in capsys.readouterr().out
+
+
+def test_it_stops_after_so_many_frames(inputs, arguments, screen, capsys):
+    reference = ["--reference", f"{inputs}/background.png"]
+    assert main(["live", f"{inputs}/presses", *reference, *arguments, "--frames", "3"]) == 0
+    assert Screen.last.indices == [0, 1, 2]
+    assert counted(capsys.readouterr().out)["shown"] == 3
+
+
+# Keys.
+
+
+def drifting(tmp_path, inputs, images):
+    """Frames without contact under weaker light, then one press; the drift is seen against the old background."""
+    rest = np.array(Image.open(inputs / "background.png"))
+    y, x = np.mgrid[-1:1:240j, -1:1:320j]
+    light = 0.9 + 0.05 * np.stack([x, y, x * y], axis=-1)
+    drifted = [np.rint(image * light).astype(np.uint8) for image in (rest, images[5])]
+    np.save(tmp_path / "frames.npy", np.stack([drifted[0]] * 8 + [drifted[1]]))
+    return np.stack([drifted[0]] * 8), drifted[1]
+
+
+@pytest.mark.parametrize("key", ["r", "z"])
+def test_keys_capture_from_the_frames_that_follow(tmp_path, inputs, arguments, images, screen, press_keys, capsys, key):
+    rest, press = drifting(tmp_path, inputs, images)
+    press_keys(key)
+    reference = ["--reference", f"{inputs}/background.png"]
+    assert main(["live", f"{tmp_path}/frames.npy", *reference, *arguments]) == 0
+    expected = pipeline_of(inputs)
+    np.testing.assert_array_equal(Screen.last.heights[0], expected(rest[0]).height_mm)
+    if key == "r":
+        expected.capture_reference(rest)
+    expected.capture_zero(rest)
+    np.testing.assert_array_equal(Screen.last.heights[8], expected(press).height_mm)
+    assert "captured the" in capsys.readouterr().out
+
+
+def test_q_quits(inputs, arguments, screen, press_keys, capsys):
+    press_keys("..q")
+    reference = ["--reference", f"{inputs}/background.png"]
+    assert main(["live", f"{inputs}/presses", *reference, *arguments]) == 0
+    assert Screen.last.indices == [0, 1]
+    printed = capsys.readouterr().out
+    assert counted(printed) == {"read": 3, "shown": 2, "dropped": 0, "failed": 0, "unfinished": 1}
+    assert "keys: r captures the reference" in printed
+
+
+def test_z_without_a_zero_offset_is_refused_and_nothing_ends(inputs, arguments, screen, press_keys, capsys):
+    press_keys("z")
+    options = ["--reference", f"{inputs}/background.png", "--no-zero-offset"]
+    assert main(["live", f"{inputs}/presses", *arguments, *options]) == 0
+    assert "nothing captured: pictures: this pipeline has no zero offset" in capsys.readouterr().err
+    assert len(Screen.last.indices) == FRAMES
+
+
+def test_the_terminal_is_as_before(monkeypatch):
+    """Keys come one by one while the block runs; afterwards lines and echo are back, also after an error."""
+    ours, theirs = pty.openpty()
+    with os.fdopen(theirs, "r") as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        before = termios.tcgetattr(stdin)
+        with contextlib.suppress(KeyboardInterrupt), pressed_keys() as key:
+            assert key() == ""
+            os.write(ours, b"rz")
+            assert select.select([stdin], [], [], 5)[0]
+            assert [key(), key(), key()] == ["r", "z", ""]
+            assert not termios.tcgetattr(stdin)[3] & (termios.ICANON | termios.ECHO)
+            raise KeyboardInterrupt
+        assert termios.tcgetattr(stdin) == before
+    os.close(ours)
+
+
+def test_without_a_terminal_there_are_no_keys(monkeypatch, tmp_path):
+    (tmp_path / "empty").touch()
+    with (tmp_path / "empty").open() as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        with pressed_keys() as key:
+            assert key is None
+
+
+# Frames that are lost.
+
+
+def test_pictures_that_cannot_be_read_or_used_are_counted(tmp_path, inputs, arguments, images, screen, capsys):
+    for index in range(4):
+        Image.fromarray(images[index]).save(tmp_path / f"{index}.png")
+    (tmp_path / "1.png").write_bytes(b"no picture")
+    Image.new("RGB", (100, 240)).save(tmp_path / "2.png")
+    assert main(["live", str(tmp_path), "--reference", f"{inputs}/background.png", *arguments]) == 0
+    printed = capsys.readouterr()
+    assert Screen.last.indices == [0, 3]
+    assert counted(printed.out) == {"read": 4, "shown": 2, "dropped": 0, "failed": 2}
+    (line,) = printed.err.splitlines()
+    assert line.startswith("tactile-depth: a frame is left out; others are counted at the end: ")
+    assert "1.png: not a readable picture" in line
+
+
+def test_a_source_of_the_wrong_size_is_told_at_the_start(tmp_path, inputs, arguments, screen, capsys):
+    Image.new("RGB", (100, 240)).save(tmp_path / "0.png")
+    assert main(["live", str(tmp_path), "--reference", f"{inputs}/background.png", *arguments]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "100 x 240 pixels (columns x rows), but" in line
+
+
+@pytest.fixture
+def camera(monkeypatch):
+    """Make camera 0 out of items; it is asked for each as fast as it can be."""
+
+    def connect(items):
+        monkeypatch.setattr(sources, "_camera", lambda name: iter(items))
+        return Source("0")
+
+    return connect
+
+
+def numbered(count):
+    return [np.full((2, 2, 3), index, np.uint8) for index in range(count)]
+
+
+def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(camera):
+    with camera(numbered(50)) as source:
+        source._thread.join()
+        taken = [frame for frame in source.frames() if frame is not None]
+    assert [frame.index for frame in taken] == list(range(50 - len(taken), 50))
+    assert [int(frame.image[0, 0, 0]) for frame in taken] == [frame.index for frame in taken]
+    assert 0 < len(taken) <= sources.QUEUED
+    assert source.counts.dropped == 50 - len(taken)
+    assert source.counts.read == 50
+
+
+def test_files_wait_for_a_slow_consumer(inputs):
+    with Source(f"{inputs}/presses") as source:
+        taken = []
+        for frame in source.frames():
+            time.sleep(0.01)
+            taken.append(frame)
+    assert len(taken) == source.counts.read == FRAMES
+    assert source.counts.dropped == 0
+
+
+def test_a_silent_source_gives_none_meanwhile(camera):
+    released = threading.Event()
+
+    def items():
+        released.wait(10)
+        yield from numbered(1)
+
+    with camera(items()) as source:
+        frames = source.frames(patience_s=0.01)
+        assert next(frames) is None
+        released.set()
+        assert next(frame for frame in frames if frame is not None).index == 0
+
+
+class Camera:
+    """Stands for cv2 and its camera, which reads one frame and then fails."""
+
+    COLOR_BGR2RGB = None
+
+    def __init__(self, good=1):
+        self.good, self.reads, self.released = good, 0, False
+
+    def VideoCapture(self, name):
+        self.name = name
+        return self
+
+    def isOpened(self):
+        return self.good > 0
+
+    def read(self):
+        self.reads += 1
+        return (self.reads <= self.good), np.array([[[1, 2, 3]]], np.uint8)
+
+    def cvtColor(self, image, _):
+        return image[..., ::-1]
+
+    def release(self):
+        self.released = True
+
+
+def test_a_camera_that_is_unplugged_ends_it(monkeypatch):
+    device = Camera()
+    monkeypatch.setattr(sources, "load_opencv", lambda: device)
+    monkeypatch.setattr(sources, "QUEUED", 100)
+    with Source("3") as source, pytest.raises(Failure, match="camera 3 gives no frames any more"):
+        assert [frame.image.tolist() for frame in source.frames()] == [[[[3, 2, 1]]]]
+    assert device.name == 3
+    assert device.released
+    assert source.counts.failed == sources.DEAD_AFTER
+
+
+def test_a_camera_that_is_not_there_is_a_failure(monkeypatch, capsys, screen):
+    monkeypatch.setattr(sources, "load_opencv", lambda: Camera(good=0))
+    assert main(["live", "/dev/video9"]) == 3
+    assert "camera /dev/video9 cannot be opened" in capsys.readouterr().err
+
+
+def test_an_interruption_still_says_where_the_frames_went(inputs, arguments, screen, monkeypatch, capsys):
+    def interrupt(self, index, *_):
+        if index == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Screen, "show", interrupt)
+    assert main(["live", f"{inputs}/presses", "--reference", f"{inputs}/background.png", *arguments]) == 130
+    printed = capsys.readouterr()
+    assert counted(printed.out) == {"read": 3, "shown": 2, "dropped": 0, "failed": 0, "unfinished": 1}
+    assert printed.err.splitlines()[-1] == "tactile-depth: interrupted"
+
+
+# Bad input.
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["none.mp4"], "none.mp4: no such source"),
+        (["presses", "--headless"], "--headless shows nothing: give --save FILE.rrd"),
+        (["presses", "--frames", "0"], "--frames 0: accepted are 1 and more"),
+        (["presses"], "the reference looks like no sensor"),
+        (["few"], "few: 1 frames, the reference takes 8: give --reference BACKGROUND"),
+    ],
+)
+def test_bad_input_is_one_line(inputs, screen, monkeypatch, capsys, options, said):
+    monkeypatch.chdir(inputs)
+    (inputs / "few").mkdir(exist_ok=True)
+    Image.new("RGB", (320, 240)).save(inputs / "few" / "0.png")
+    assert main(["live", *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
+@pytest.mark.parametrize(
+    ("module", "source", "said"),
+    [
+        (
+            "rerun",
+            "presses",
+            "frames are shown by Rerun, which is not installed: pip install '.[live]' in the repository",
+        ),
+        (
+            "cv2",
+            "0",
+            "cameras and videos are read by OpenCV, which is not installed: pip install '.[live]' in the repository",
+        ),
+    ],
+)
+def test_a_missing_library_is_one_line(inputs, monkeypatch, capsys, module, source, said):
+    monkeypatch.chdir(inputs)
+    monkeypatch.setitem(sys.modules, module, None)
+    if module == "cv2":
+        monkeypatch.setattr(command, "load_rerun", lambda: None)
+    assert main(["live", source]) == 3
+    assert capsys.readouterr().err == f"tactile-depth: {said}\n"
+
+
+# With OpenCV and Rerun.
+
+
+@pytest.fixture(scope="module")
+def video(inputs):
+    path = inputs / "press.avi"
+    write_video(path, press_frames(FRAMES), 25)
+    return path
+
+
+def decoded(video):
+    """Frames of a video as OpenCV reads it, in RGB."""
+    with Source(str(video)) as source:
+        return [frame.image for frame in source.frames() if frame is not None]
+
+
+def read_back(path):
+    """What an .rrd holds: entity and component to the values by frame number, (None) for static ones."""
+    from rerun.chunk import RrdReader
+
+    values = {}
+    for chunk in RrdReader(path).stream():
+        batch = chunk.to_record_batch()
+        columns = {field.name: batch.column(field.name) for field in batch.schema}
+        times = columns["frame"].to_pylist() if "frame" in columns else [None] * len(batch)
+        for name, column in columns.items():
+            if ":" in name:
+                values.setdefault(f"{chunk.entity_path}:{name}", {}).update(zip(times, column.to_pylist(), strict=True))
+    return values
+
+
+def component(values, entity, ending):
+    (key,) = [key for key in values if key.startswith(f"{entity}:") and key.endswith(ending)]
+    return {frame: value for frame, value in values[key].items() if value is not None}
+
+
+@needs_live
+def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(tmp_path, inputs, arguments, video, capsys):
+    rrd = tmp_path / "run.rrd"
+    options = ["--reference", f"{inputs}/background.png", "--headless", "--save", str(rrd)]
+    assert main(["live", str(video), *options, *arguments]) == 0
+    assert counted(capsys.readouterr().out) == {"read": 25, "shown": 25, "dropped": 0, "failed": 0}
+    values, expected = read_back(rrd), pipeline_of(inputs)
+    results = [expected(image) for image in decoded(video)]
+    heights = component(values, "/height", "buffer")
+    assert sorted(heights) == list(range(25))
+    for frame, result in enumerate(results):
+        (buffer,) = heights[frame]
+        logged = np.frombuffer(bytes(buffer), np.float32).reshape(24, 32)
+        np.testing.assert_array_equal(logged, result.height_mm.astype(np.float32))
+    vertices = component(values, "/surface", "vertex_positions")
+    np.testing.assert_array_equal(np.array(vertices[7])[:, 2], results[7].height_mm.astype(np.float32).ravel())
+    peaks = component(values, "/contact/peak_mm", "scalars")
+    assert [peaks[frame] for frame in range(25)] == [[result.contact.peak_mm] for result in results]
+    touching = component(values, "/contact/touching", "scalars")
+    assert [touching[frame] for frame in range(25)] == [[float(result.contact.touching)] for result in results]
+    assert sorted(component(values, "/camera", "blob")) == list(range(25))
+
+
+@needs_live
+def test_a_video_gives_the_frames_that_were_written_in_rgb(video, images):
+    """The codec loses nothing, so that a channel in another's place shows."""
+    read = decoded(video)
+    assert len(read) == 25
+    for index, image in enumerate(read):
+        np.testing.assert_array_equal(image, images[index % FRAMES])
+
+
+@needs_live
+def test_a_video_that_is_cut_is_counted(tmp_path, inputs, video):
+    """The index of an AVI is at its end; what is cut off is claimed by its head and cannot be read."""
+    import cv2
+
+    path = tmp_path / "whole.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 30, (320, 240))
+    for image in press_frames(3):
+        for _ in range(10):
+            writer.write(image)
+    writer.release()
+    data = path.read_bytes()
+    (tmp_path / "cut.avi").write_bytes(data[: len(data) // 2])
+    with Source(str(tmp_path / "cut.avi")) as source:
+        shown = sum(frame is not None for frame in source.frames())
+    assert 0 < shown < 30
+    assert source.counts.read == shown + source.counts.failed == 30
+
+
+@needs_live
+def test_what_is_no_video_is_refused(tmp_path):
+    (tmp_path / "text.mp4").write_text("text")
+    with pytest.raises(InputError, match=r"text.mp4: not a readable video"):
+        Source(str(tmp_path / "text.mp4"))
+
+
+@needs_live
+def test_ctrl_c_closes_the_recording(tmp_path, inputs, video):
+    rrd = tmp_path / "run.rrd"
+    long = tmp_path / "long.avi"
+    write_video(long, press_frames(FRAMES), 3000)
+    options = ["--reference", f"{inputs}/background.png", "--calibration", f"{inputs}/sensor.npz"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "tactile_depth.cli", "live", long, *options, "--headless", "--save", rrd],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60
+    while not (rrd.exists() and rrd.stat().st_size > 500_000):
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    printed, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "tactile-depth: interrupted"
+    shown = counted(printed)["shown"]
+    assert len(component(read_back(rrd), "/height", "buffer")) in (
+        shown,
+        shown + 1,
+    )  # it may be logged, not yet counted
+
+
+@needs_live
+def test_a_recording_that_cannot_be_written_is_named(tmp_path, inputs, video, arguments, capsys):
+    (tmp_path / "file").touch()
+    options = ["--reference", f"{inputs}/background.png", "--headless", "--save", f"{tmp_path}/file/run.rrd"]
+    assert main(["live", str(video), *options, *arguments]) == 2
+    assert "run.rrd cannot be written" in capsys.readouterr().err

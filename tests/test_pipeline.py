@@ -1,0 +1,349 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python interface: from pictures to millimetres, equal to the models bit for bit, and near what was drawn."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tactile_depth as td
+from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.pipeline import default_grid
+from tactile_depth.resampling import resampling
+from tactile_depth.rom_files import write_words
+from tactile_depth.tactile_depth import tactile_depth, top_parameters
+from tactile_depth.tactile_depth import write_roms as write_tables
+
+SMALL = (24, 32)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return td.sample("ball")
+
+
+@pytest.fixture(scope="module")
+def pipeline(ball):
+    return td.Pipeline(ball.sensor, ball.reference)
+
+
+@pytest.fixture(scope="module")
+def small(ball):
+    return td.Pipeline(ball.sensor, ball.reference, grid=SMALL)
+
+
+def on_grid(height_mm, grid):
+    return resampling(height_mm.shape, grid).average(height_mm[..., None])[..., 0]
+
+
+def test_defaults_suit_a_real_sensor(pipeline):
+    config = pipeline.config
+    assert pipeline.grid == (96, 128)
+    assert (config.solver, config.neumann, config.gradient_model) == ("tridiagonal", True, "quadratic")
+    assert (config.data_width, config.coefficient_width, config.auto_zero) == (24, 18, True)
+    assert (pipeline.arithmetic, pipeline.threshold_mm) == ("chip", 0.1)
+
+
+@pytest.mark.parametrize(
+    ("camera", "solver", "grid"),
+    [
+        ((240, 320), "tridiagonal", (96, 128)),
+        ((480, 640), "tridiagonal", (96, 128)),
+        ((720, 1280), "tridiagonal", (72, 128)),
+        ((240, 320), "spectral", (128, 128)),
+        ((60, 100), "tridiagonal", (38, 64)),
+        (None, "tridiagonal", (128, 128)),
+    ],
+)
+def test_the_default_grid_shows_the_whole_picture(ball, camera, solver, grid):
+    sensor = replace(ball.sensor, camera=None if camera is None else td.Camera(*camera))
+    assert default_grid(sensor, solver) == grid
+
+
+@pytest.mark.parametrize("name", ["ball", "cylinder", "cone"])
+def test_the_height_is_what_was_drawn(name):
+    """Within 4 % of the peak: the bound is that of the discretisation at 128 x 96, 2.5 camera pixels to one."""
+    drawn = td.sample(name)
+    result = td.Pipeline(drawn.sensor, drawn.reference)(drawn.image)
+    truth = on_grid(drawn.height_mm, (96, 128))
+    assert np.abs(result.height_mm - truth).max() < 0.04 * truth.max()
+    assert result.contact.touching
+    assert not result.saturations
+    assert not result.dark.any()
+
+
+def test_the_untouched_surface_has_height_zero(pipeline, ball):
+    result = pipeline(ball.image)
+    assert result.height_mm[~result.mask].mean() == pytest.approx(0, abs=1e-12)
+    assert result.depth_mm[~result.mask].mean() < -0.01  # its mean over the frame is zero
+    np.testing.assert_allclose(result.height_mm - result.depth_mm, -result.depth_mm[~result.mask].mean())
+
+
+def test_depth_is_codes_times_unit_and_both_arithmetics_agree(ball, pipeline):
+    result = pipeline(ball.image)
+    np.testing.assert_array_equal(result.depth_mm, result.codes * pipeline.depth_lsb_mm)
+    exact = td.Pipeline(ball.sensor, ball.reference, arithmetic="float")(ball.image)
+    error = result.depth_mm - exact.depth_mm
+    assert np.sqrt((error**2).mean()) < 1e-4 * exact.depth_mm.max()
+    assert np.abs(exact.codes * pipeline.depth_lsb_mm - exact.depth_mm).max() <= pipeline.depth_lsb_mm / 2
+
+
+def test_codes_are_those_of_the_model_in_picture_order(small, ball):
+    frames = np.stack([ball.image, ball.reference])
+    result = small(frames)
+    on_grid = np.rint(frames.reshape(2, 24, 10, 32, 10, 3).mean(axis=(2, 4))).astype(np.uint8)
+    codes = tactile_depth(on_grid, small.sensor, small.config, gains=small._gains, floor=small._floor)
+    np.testing.assert_array_equal(result.codes, codes[:, ::-1])
+
+
+@pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
+@pytest.mark.parametrize("boundary", ["dirichlet", "neumann"])
+def test_every_solver_and_boundary_sees_the_contact_upright(ball, solver, boundary):
+    result = td.Pipeline(ball.sensor, ball.reference, grid=(32, 32), solver=solver, boundary=boundary)(ball.image)
+    row, column = np.unravel_index(result.height_mm.argmax(), (32, 32))
+    drawn = np.unravel_index(ball.height_mm[:, 40:280].argmax(), (240, 240))
+    assert abs(row + 0.5 - drawn[0] / 7.5) < 1.5
+    assert abs(column + 0.5 - drawn[1] / 7.5) < 1.5
+
+
+def test_a_batch_is_its_frames_one_by_one(ball, small):
+    frames = np.stack([ball.image, ball.reference, ball.image])
+    batch = small(frames)
+    assert len(batch) == 3
+    assert batch.codes.shape == (3, *SMALL)
+    for index, frame in enumerate(frames):
+        single = td.Pipeline(ball.sensor, ball.reference, grid=SMALL)(frame)
+        np.testing.assert_array_equal(batch[index].codes, single.codes)
+        np.testing.assert_array_equal(batch[index].height_mm, single.height_mm)
+        assert batch[index].contact.record[2:] == single.contact.record[2:]
+        assert batch[index].contact.touching == (index != 1)
+    with pytest.raises(AttributeError, match=r"use result\[i\].contact"):
+        _ = batch.contact
+    with pytest.raises(TypeError, match="has no frames"):
+        _ = small(ball.image)[0]
+
+
+def test_paths_give_what_arrays_give(tmp_path, ball, small):
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    for name, image in (("2.png", ball.image), ("10.png", ball.reference)):
+        Image.fromarray(image).save(folder / name)
+    frames = np.stack([ball.image, ball.reference])
+    np.save(tmp_path / "frames.npy", frames)
+    expected = small(frames).codes
+    np.testing.assert_array_equal(small(folder).codes, expected)
+    np.testing.assert_array_equal(small(str(tmp_path / "frames.npy")).codes, expected)
+    np.testing.assert_array_equal(small(folder / "2.png").codes, expected[0])
+    by_path = td.Pipeline(ball.sensor, folder / "10.png", grid=SMALL)
+    np.testing.assert_array_equal(by_path(ball.image).codes, expected[0])
+
+
+def test_larger_pictures_of_the_camera_give_the_same_depth(ball, small):
+    twice = ball.image.repeat(2, axis=0).repeat(2, axis=1)
+    np.testing.assert_array_equal(small(twice).codes, small(ball.image).codes)
+
+
+# Contact.
+
+
+def test_the_record_of_a_whole_frame_is_that_of_its_beats():
+    rng = np.random.default_rng(1)
+    settings = Settings(40, 20, 3, 2)
+    for bottom_first in (False, True):
+        beats, whole = (ContactEvents(9, 16, bottom_first) for _ in range(2))
+        for time in range(12):
+            frame = rng.integers(-50, rng.integers(1, 60), (9, 16))
+            for row in range(9):
+                for column in range(16):
+                    last, end = column == 15, (row, column) == (8, 15)
+                    record = beats.beat(int(frame[row, column]), row + column == 0, last, end, settings, time)
+            assert whole.whole_frame(frame, settings, time) == record
+
+
+def test_the_contact_in_millimetres(pipeline, ball):
+    result = pipeline(ball.image)
+    contact = result.contact
+    touched = result.codes * pipeline.depth_lsb_mm > 0.1
+    np.testing.assert_array_equal(contact.mask, touched)
+    assert contact.peak_mm == pytest.approx(result.depth_mm.max())
+    assert result.depth_mm[contact.peak_px] == result.depth_mm.max()
+    assert contact.area_mm2 == pytest.approx(touched.sum() * pipeline.pixel_pitch_mm**2)
+    assert contact.volume_mm3 == pytest.approx(result.depth_mm[touched].sum() * pipeline.pixel_pitch_mm**2)
+    np.testing.assert_allclose(contact.centroid_px, np.argwhere(touched).mean(axis=0), atol=1 / 32)
+
+
+# Captures.
+
+
+def drifted(picture, seed):
+    """The picture under other lights, up to 10 % off over the gel, with noise."""
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[-1:1:240j, -1:1:320j]
+    light = 1 + 0.05 * np.stack([x, y, x * y], axis=-1)
+    return np.clip(np.rint(picture * light + rng.normal(size=picture.shape)), 0, 255).astype(np.uint8)
+
+
+@pytest.mark.parametrize("arithmetic", ["chip", "float"])
+def test_captures_take_drift_away(ball, arithmetic):
+    pipeline = td.Pipeline(ball.sensor, ball.reference, arithmetic=arithmetic)
+    fresh = pipeline(ball.image).height_mm
+    untouched = np.stack([drifted(ball.reference, seed) for seed in range(4)])
+    seen = drifted(ball.image, 9)
+    assert np.abs(pipeline(untouched[0]).depth_mm).max() > 0.1
+    pipeline.capture_reference(untouched)
+    pipeline.capture_zero(untouched)
+    assert np.abs(pipeline(untouched[0]).depth_mm).max() < 0.01
+    assert np.abs(pipeline(seen).height_mm - fresh).max() < 0.02 * fresh.max()
+
+
+def test_a_capture_takes_a_power_of_two_of_pictures(small, ball):
+    three = np.stack([ball.reference] * 3)
+    for capture in (small.capture_reference, small.capture_zero):
+        with pytest.raises(td.InputError, match="3 pictures: the hardware averages 1, 2, 4,"):
+            capture(three)
+
+
+def test_a_capture_that_the_pipeline_has_not_is_refused(ball):
+    as_sent = td.Pipeline(td.load("synthetic"), grid=(16, 16), zero_offset=False)
+    rest = np.full((16, 16, 3), 128, np.uint8)
+    with pytest.raises(td.InputError, match="takes colours as sent"):
+        as_sent.capture_reference(rest)
+    with pytest.raises(td.InputError, match="has no zero offset"):
+        as_sent.capture_zero(rest)
+
+
+# Flags.
+
+
+def test_slopes_outside_the_calibrated_range_are_flagged(ball):
+    narrow = replace(ball.sensor, fitted_slope={"quadratic": 0.4})
+    result = td.Pipeline(narrow, ball.reference)(ball.image)
+    steep = np.hypot(*np.moveaxis(result.slopes, -1, 0)) > 0.4
+    assert 0 < steep.sum() < steep.size / 10
+    np.testing.assert_array_equal(result.outside, steep)
+    assert not td.Pipeline(ball.sensor, ball.reference)(ball.image).outside.any()
+
+
+def test_dark_pixels_are_flagged_and_harm_no_others(ball):
+    reference = ball.reference.copy()
+    reference[:40, :40] = 0
+    for arithmetic in ("chip", "float"):
+        result = td.Pipeline(ball.sensor, reference, arithmetic=arithmetic)(ball.image)
+        assert result.dark[:12, :12].all()
+        assert not result.dark[24:].any()
+        assert np.isfinite(result.height_mm).all()
+        assert result.height_mm.max() == pytest.approx(1.36, abs=0.05)
+
+
+def test_a_reference_that_leaves_nothing_is_refused(ball):
+    for dark in (np.zeros_like(ball.reference), np.full_like(ball.reference, 4)):
+        with pytest.raises(td.InputError, match="grey levels in a colour at 100 % of the pixels"):
+            td.Pipeline(ball.sensor, dark)
+
+
+def test_the_error_of_the_calibration_comes_with_the_result():
+    mini = td.load("gelsight-mini")
+    rest = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)
+    result = td.Pipeline(mini, rest)(rest)
+    assert result.height_error == mini.height_errors["quadratic"]
+    assert 0.05 < result.height_error.relative < 0.08
+    assert result.fitted_slope == mini.fitted_slope["quadratic"]
+
+
+# For the RTL.
+
+
+def test_hardware_writes_what_the_pipeline_computes_with(tmp_path, small):
+    index = small.hardware(tmp_path / "hw")
+    described = json.loads(index.read_text())
+    assert described["parameters"] == top_parameters(small.config)
+    assert described["depth_lsb_mm"] == small.depth_lsb_mm
+    (tmp_path / "again").mkdir()
+    write_tables(tmp_path / "again", small.sensor, small.config, small._floor, small._gains)
+    tables = {path.name: path.read_text() for path in (tmp_path / "again").iterdir()}
+    assert described["tables"] == sorted(tables)
+    assert {path.name: path.read_text() for path in (tmp_path / "hw").iterdir() if path != index} == tables
+
+
+def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(tmp_path, small, ball):
+    small.hardware(tmp_path)
+    (tmp_path / "notes.txt").write_text("mine")
+    write_words(tmp_path / "other.hex", [1], 4)
+    td.Pipeline(ball.sensor, ball.reference, grid=(32, 32), solver="spectral", model="lut").hardware(tmp_path)
+    tables = json.loads((tmp_path / "parameters.json").read_text())["tables"]
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == sorted([*tables, "notes.txt", "other.hex", "parameters.json"])
+    assert "thomas.hex" not in tables
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path, small):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(td.InputError, match=r"file/hw cannot be written"):
+        small.hardware(tmp_path / "file" / "hw")
+
+
+# Bad input.
+
+
+@pytest.mark.parametrize(
+    ("choices", "said"),
+    [
+        ({"sensor": "gelsight-mini"}, "sensor is a str: accepted is a Sensor"),
+        ({"grid": 64}, "grid=64: accepted are"),
+        ({"grid": (24.0, 32)}, r"grid=\(24\.0, 32\): accepted are"),
+        ({"data_width": 24.5}, "data_width=24.5: accepted is a whole number"),
+        ({"reference": np.zeros((3, 240, 320, 3), np.uint8)}, "reference: 3 pictures: the hardware averages"),
+        ({"arithmetic": "exact"}, "arithmetic=exact is unknown: accepted are chip, float"),
+        ({"boundary": "periodic"}, "boundary=periodic is unknown: accepted are neumann, dirichlet"),
+        ({"solver": "multigrid"}, "solver=multigrid is unknown"),
+        ({"model": "cubic"}, "gradient_model=cubic: sample holds only lut, quadratic"),
+        ({"grid": (24, 33)}, "columns=33 is not a power of two"),
+        ({"grid": (256, 512)}, "smaller than the grid"),
+        ({"grid": (24, 32), "solver": "spectral"}, "rows=24"),
+        ({"data_width": 33}, "data_width=33"),
+        ({"coefficient_width": 9}, "coefficient_width=9"),
+        ({"depth_range_mm": float("nan")}, "depth_range_mm=nan"),
+        ({"threshold_mm": 0.0}, "threshold_mm=0.0"),
+        ({"threshold_mm": 1e3}, "threshold_mm=1000.0"),
+        ({"reference": None}, "sample needs a reference"),
+        ({"reference": "none.png"}, "none.png: no such file or folder"),
+        ({"reference": np.zeros((240, 321, 3), np.uint8)}, None),
+        ({"reference": np.zeros((240, 300, 3), np.uint8)}, "300 x 240 pixels"),
+        ({"reference": np.zeros((240, 320), np.uint8)}, r"reference are uint8 \(240, 320\)"),
+    ],
+)
+def test_a_pipeline_that_cannot_be_is_refused(ball, choices, said):
+    with pytest.raises(td.InputError, match=said):
+        td.Pipeline(**{"sensor": ball.sensor, "reference": ball.reference, **choices})
+
+
+@pytest.mark.parametrize(
+    ("picture", "said"),
+    [
+        (np.zeros((240, 320, 3)), r"pictures are float64 \(240, 320, 3\): accepted is uint8"),
+        (np.zeros((240, 320, 4), np.uint8), r"\(240, 320, 4\)"),
+        (np.zeros((0, 240, 320, 3), np.uint8), r"\(0, 240, 320, 3\)"),
+        (np.zeros((240, 240, 3), np.uint8), "240 x 240 pixels .* calibrated for pictures of 320 x 240"),
+        (np.zeros((12, 16, 3), np.uint8), "are fewer than the grid's 32 x 24"),
+        ("none.png", "none.png: no such file or folder"),
+        (None, "pictures are NoneType: accepted is a uint8 array or a path"),
+    ],
+)
+def test_pictures_of_no_use_are_refused(small, picture, said):
+    with pytest.raises(td.InputError, match=said):
+        small(picture)
+
+
+def test_a_sample_of_no_contact_is_refused():
+    with pytest.raises(td.InputError, match="name=cube is unknown: accepted are ball"):
+        td.sample("cube")
+
+
+def test_names_of_the_package_exist():
+    for name in td.__all__:
+        assert getattr(td, name) is not None
+    assert set(td.__all__) <= set(dir(td))
+    with pytest.raises(AttributeError, match="no attribute 'depth'"):
+        _ = td.depth

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The package as users get it: a wheel, installed into an empty environment, computes what the RTL computes."""
+
+import email
+import fcntl
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import textwrap
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import real_data
+import tactile_depth as td
+from commands import bench
+from commands.simulator import ROOT
+from tactile_depth.frames import read_picture
+from tactile_depth.resampling import resampling
+from tactile_depth.tactile_depth import top_parameters
+
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "models")
+UNREACHABLE = ("NewConnectionError", "ConnectTimeoutError", "ReadTimeoutError", "NameResolutionError", "ProxyError")
+DRAWN = """
+    sample = td.sample("ball")
+    sensor, reference, image = sample.sensor, sample.reference, sample.image
+    """
+REAL = """
+    sensor, reference, image = td.load("gelsight-mini"), "background.png", "press.png"
+    """
+QUICK_START = """
+    import numpy as np
+    import tactile_depth as td
+    {pictures}
+    pipeline = td.Pipeline(sensor, reference)
+    result = pipeline(image)
+    assert (result.depth_mm == result.codes * pipeline.depth_lsb_mm).all()
+    np.save("codes.npy", result.codes)
+    pipeline.hardware("hardware")
+    """
+
+
+def without_sources():
+    """The surroundings of a user: the repository's own modules are not on the path."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """One folder for all workers, with a lock around what is made once."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "wheel"
+    folder.mkdir(exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def wheel(folder):
+    """The wheel, built of a copy: setuptools would take up what lies in build/ from before."""
+    if not list(folder.glob("*.whl")):
+        sources = folder / "sources"
+        for name in SOURCES:
+            if (ROOT / name).is_dir():
+                shutil.copytree(ROOT / name, sources / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+            else:
+                sources.mkdir(exist_ok=True)
+                shutil.copy(ROOT / name, sources)
+        build = ["wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, sources]
+        subprocess.run([sys.executable, "-m", "pip", *build], check=True, capture_output=True)
+    (path,) = folder.glob("*.whl")
+    return path
+
+
+@pytest.fixture(scope="module")
+def environment(folder, wheel):
+    """An environment that holds the wheel and what it asks for, by pip's usual registry."""
+    python = folder / "environment" / "bin" / "python"
+    complete = folder / "complete"
+    if not complete.exists():
+        subprocess.run([sys.executable, "-m", "venv", python.parent.parent], check=True)
+        install = [python, "-m", "pip", "install", "--disable-pip-version-check", wheel]
+        ended = subprocess.run(install, capture_output=True, text=True, env=without_sources())
+        told = ended.stdout + ended.stderr
+        if ended.returncode and any(reason in told for reason in UNREACHABLE):
+            pytest.skip(f"pip reaches no registry for numpy, scipy and Pillow: {told.splitlines()[-1]}")
+        assert ended.returncode == 0, told
+        complete.touch()
+    return python
+
+
+@pytest.fixture(scope="module")
+def pictures(folder):
+    """A folder with background.png and press.png of a GelSight Mini: real ones where TACTILE_DATA is."""
+    place = folder / "pictures"
+    if not place.exists():
+        place.mkdir()
+        if real_data.PRESENT:
+            data = real_data.FOLDER / "gelslam"
+            shutil.copy(data / "background.png", place)
+            shutil.copy(data / "9.500mm" / "12.png", place / "press.png")
+        else:
+            blocks = td.load("gelsight-mini").lighting * 90
+            rest = np.kron(blocks, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+            for name in ("background.png", "press.png"):
+                Image.fromarray(rest).save(place / name)
+    return place
+
+
+def run(python, cwd, *arguments):
+    ended = subprocess.run([python, *arguments], cwd=cwd, env=without_sources(), capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    assert not ended.stderr
+    return ended.stdout
+
+
+def examples():
+    """Code of the package's docstring and of the README."""
+    (block,) = re.findall(r"(?:^    .*\n|^\n)*^    result\..*\n", td.__doc__, re.MULTILINE)
+    yield pytest.param(textwrap.dedent(block), id="docstring")
+    for page in ("README.md", "docs/python.md"):
+        for index, block in enumerate(re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.M | re.S)):
+            yield pytest.param(block, id=f"{page}-{index}")
+
+
+def test_the_metadata_say_what_a_user_must_know(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        metadata = email.message_from_bytes(archive.read(name))
+    assert metadata["Requires-Python"] == ">=3.10"
+    assert metadata["License-Expression"] == "Apache-2.0"
+    assert metadata.get_all("Provides-Extra") == ["fit", "plot", "live"]
+    required = [line for line in metadata.get_all("Requires-Dist") if "extra ==" not in line]
+    assert [re.match(r"\w+", line)[0] for line in required] == ["numpy", "scipy", "Pillow"]
+
+
+def test_the_wheel_holds_every_module_and_the_data(wheel):
+    package = ROOT / "models" / "tactile_depth"
+    with zipfile.ZipFile(wheel) as archive:
+        held = {name for name in archive.namelist() if ".dist-info/" not in name}
+    wanted = [*package.rglob("*.py"), *package.rglob("*.npz"), *package.rglob("*.json"), package / "py.typed"]
+    assert held == {path.relative_to(package.parent).as_posix() for path in wanted}
+
+
+def test_nothing_beyond_the_declared_is_imported(environment, pictures):
+    script = """
+        import sys
+        import tactile_depth as td
+        import tactile_depth.cli.main
+        td.Pipeline(td.sample().sensor, td.sample().reference)
+        print(td.__file__, *{name.split(".")[0] for name in sys.modules})
+        """
+    path, *modules = run(environment, pictures, "-c", textwrap.dedent(script)).split()
+    assert Path(path).is_relative_to(environment.parent.parent)
+    assert not {"matplotlib", "skimage", "cv2", "rerun", "commands"} & set(modules)
+
+
+@pytest.mark.parametrize("block", list(examples()))
+def test_the_examples_run_as_printed(environment, pictures, block, tmp_path):
+    for picture in pictures.iterdir():
+        shutil.copy(picture, tmp_path)
+    run(environment, tmp_path, "-c", block)
+
+
+def test_the_command_writes_its_files(environment, pictures, tmp_path):
+    command = environment.parent / "tactile-depth"
+    options = ["--reference", pictures / "background.png", "--out", tmp_path]
+    printed = run(command, tmp_path, "depth", pictures / "press.png", *options)
+    assert printed.startswith("calibration: gelsight-mini: the reference looks like it")
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "picture", [pytest.param(DRAWN, id="drawn"), pytest.param(REAL, id="real", marks=real_data.needs_real_data)]
+)
+def test_the_rtl_has_the_codes_of_the_wheel(environment, pictures, tmp_path, picture):
+    for file in pictures.iterdir():
+        shutil.copy(file, tmp_path)
+    run(environment, tmp_path, "-c", textwrap.dedent(QUICK_START.format(pictures=picture)))
+    codes = np.load(tmp_path / "codes.npy")
+    if picture == REAL:
+        sensor, names = td.load("gelsight-mini"), ("background.png", "press.png")
+        reference, image = (read_picture(pictures / name) for name in names)
+    else:
+        drawn = td.sample("ball")
+        sensor, reference, image = drawn.sensor, drawn.reference, drawn.image
+    pipeline = td.Pipeline(sensor, reference)
+    rows, columns = pipeline.grid
+    frame = np.rint(resampling(image.shape[:2], pipeline.grid).average(image)).astype(np.uint8)
+    sensor = replace(pipeline.sensor, reference=pipeline.sensor.reference[0])
+    work = tmp_path / "rtl"
+    work.mkdir()
+    played = bench.play(
+        "verilator",
+        pipeline.config,
+        sensor,
+        bench.frame_entries(frame[None]),
+        work,
+        clocks=10 * rows * columns,
+        total_frames=1,
+        floor=pipeline._floor,
+    )
+    np.testing.assert_array_equal(played.codes.reshape(rows, columns)[::-1], codes)  # the bottom row leaves first
+    described = json.loads((tmp_path / "hardware" / "parameters.json").read_text())
+    assert described["parameters"] == top_parameters(pipeline.config)
+    for name in described["tables"]:
+        assert (tmp_path / "hardware" / name).read_text() == (work / name).read_text()
