@@ -3,6 +3,8 @@
 
 import contextlib
 import os
+import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -60,7 +62,13 @@ def wait_for(condition, what):
 
 
 def wait_for_the_simulator(process):
-    wait_for(lambda: any("vvp" in line for line in members(process.pid).values()), "the simulator")
+    """Wait until vvp runs; fail with what the command wrote if it ends before."""
+
+    def running():
+        assert process.poll() is None, process.stderr.read()
+        return any("vvp" in line for line in members(process.pid).values())
+
+    wait_for(running, "the simulator")
 
 
 @pytest.mark.parametrize("number", ENDS, ids=lambda number: number.name)
@@ -73,6 +81,44 @@ def test_a_signal_ends_the_command(tmp_path, number):
     assert said == f"make sim: {ENDS[number]}\n"
     assert members(process.pid) == {}
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def makefile(tmp_path):
+    """A folder with the Makefile, whose virtual environment is complete and runs the Python of this test."""
+    folder = tmp_path / "place"
+    python = folder / ".venv" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} "$@"\n')
+    python.chmod(0o755)
+    shutil.copy(ROOT / "Makefile", folder)
+    for requirements in ROOT.glob("requirements*.txt"):
+        (folder / requirements.name).touch()
+    (folder / ".venv" / "complete").touch()
+    return folder
+
+
+@pytest.mark.parametrize("number", ENDS, ids=lambda number: number.name)
+def test_a_signal_to_the_terminal_ends_make_and_its_command(tmp_path, makefile, number):
+    process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
+    wait_for_the_simulator(process)
+    os.killpg(process.pid, number)
+    _, said = process.communicate(timeout=WAIT_S)
+    assert process.returncode != 0
+    assert [line for line in said.splitlines() if not line.startswith("make: ***")] == [f"make sim: {ENDS[number]}"]
+    wait_for(lambda: members(process.pid) == {}, "the end of every process")
+    assert list(tmp_path.iterdir()) == [makefile]
+
+
+def test_a_signal_to_make_alone_ends_its_command(tmp_path, makefile):
+    process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
+    wait_for_the_simulator(process)
+    os.kill(process.pid, signal.SIGTERM)
+    _, said = process.communicate(timeout=WAIT_S)
+    assert process.returncode != 0
+    assert "make sim: terminated by SIGTERM\n" in said
+    wait_for(lambda: members(process.pid) == {}, "the end of every process")
+    assert list(tmp_path.iterdir()) == [makefile]
 
 
 def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path):
