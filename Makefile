@@ -56,12 +56,12 @@ live-test: $(LIVE)/complete
 
 # What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
 regress: $(HARDWARE)
-	@sh commands/icarus.sh
+	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands regress $(given)
 
 # Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
 lint: $(TOOLS)
-	@sh commands/icarus.sh
+	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands lint $(given)
 
 # Accuracy against latency, multipliers and memory, by the models, into a CSV; goes on where it was interrupted.
@@ -78,7 +78,7 @@ coverage: $(TOOLS)
 
 # Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
 upsets: $(STAMP)
-	@sh commands/icarus.sh
+	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands upsets $(given)
 
 # The largest value that each node can be asked to hold, and the frames that ask for it, run in model and RTL; RTL=0: model.
@@ -97,13 +97,13 @@ frontends: $(TOOLS)
 fuzz: $(TOOLS)
 	@exec $(PY) -m commands fuzz $(given)
 
-# Unbounded proofs of the cores, of one with CORE=..; commands/formal.py says what is proven, at which sizes and why.
+# Unbounded proofs of the cores, of one with CORE=..; commands/verify/formal.py says what is proven, at which sizes and why.
 formal: $(TOOLS)
 	@exec $(PY) -m commands formal $(given)
 
 # Mutants of every core through its own testbench; survivors settled by proof. CORE, MUTANTS, SEED, JOBS, SECONDS.
 mutate: $(TOOLS)
-	@sh commands/icarus.sh
+	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands mutate $(given)
 
 # Contact to command and to motion, with the RTL in the loop, against a host: N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM
@@ -142,7 +142,7 @@ synth: $(TOOLS)
 
 # Every core after synthesis through its own testbench, and the whole at 32 x 32: CORE=name,.. SEED=1
 netlists: $(TOOLS)
-	@sh commands/icarus.sh
+	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands netlists $(given)
 
 # Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.

@@ -10,14 +10,16 @@ import importlib
 import io
 import sys
 
-from commands import variables
+from commands.common import variables
 from tactile_depth.errors import InputError
 
-COMMANDS = (
-    *("asic", "baselines", "benchmark", "calibrate", "certify", "coverage", "extremes", "formal", "fpga", "frontends"),
-    *("fuzz", "lint", "mutate", "netlists", "reflex", "registers", "regress", "report", "sim", "sweep", "synth"),
-    *("tune", "upsets"),
-)
+ROOMS = {
+    "run": ("calibrate", "reflex", "sim"),
+    "study": ("baselines", "benchmark", "certify", "extremes", "report", "sweep", "tune"),
+    "verify": ("coverage", "formal", "frontends", "fuzz", "lint", "mutate", "netlists", "regress", "upsets"),
+    "hardware": ("asic", "fpga", "registers", "synth"),
+}
+COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}
 
 
 def main() -> None:
@@ -26,12 +28,12 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")  # a path may hold bytes that are no text
     command = sys.argv[1] if len(sys.argv) > 1 else ""
     if command not in COMMANDS:
-        unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(COMMANDS)}")
+        unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(sorted(COMMANDS))}")
         print(f"python -m commands: {unknown}", file=sys.stderr)
         sys.exit(variables.BAD_INPUT)
     with variables.reported(command):  # from here on, because imports take seconds
         sys.argv = sys.argv[1:]
-        importlib.import_module(f"commands.{command}").main()
+        importlib.import_module(f"commands.{COMMANDS[command]}.{command}").main()
 
 
 if __name__ == "__main__":

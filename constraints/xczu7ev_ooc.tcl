@@ -22,8 +22,8 @@ set parameters [split [string trim [read $file]]]
 close $file
 
 # The package first. Tables are looked for where Vivado stands.
-read_verilog -sv [file join $root hdl register_map_pkg.sv]
-foreach source [lsort [glob [file join $root hdl *.sv]]] {
+read_verilog -sv [file join $root hdl registers register_map_pkg.sv]
+foreach source [lsort [glob [file join $root hdl *.sv] [file join $root hdl * *.sv]]] {
   if {[file tail $source] ne "register_map_pkg.sv"} { read_verilog -sv $source }
 }
 read_xdc -mode out_of_context [file join $root constraints xczu7ev.xdc]

@@ -37,7 +37,7 @@ module tactile_depth
   parameter int RowInverseOut    = -1,
   parameter int DivideShiftWidth = 4,
   parameter int DivideDrop       = 23,
-  parameter int StoreStyle       = 1,    // of a frame store, hdl/ram.sv
+  parameter int StoreStyle       = 1,    // of a frame store, hdl/common/ram.sv
   parameter int StoreDrop        = 3,    // from here: tridiagonal
   parameter int TableWords       = 1379,
   parameter int SettledWidth     = 7,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MULT18X18D: the multiplier of an ECP5, as far as commands/ecp5.py uses it: registers at inputs and output under CLK0,
+// MULT18X18D: the multiplier of an ECP5, as far as commands/hardware/ecp5.py uses it: registers at inputs and output under CLK0,
 // each under one enable. The one between, and resets, are not modelled. To simulate netlists; not for synthesis.
 
 module MULT18X18D #(

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from stream import StreamDriver, send_apart
+from tb.stream import StreamDriver, send_apart
 
 FIELDS = ["user", "last", "frame_end", "data"]
 

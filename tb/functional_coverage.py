@@ -3,7 +3,7 @@
 
 A bin is "cover point: value, value, ..". The monitor watches; it drives and compares nothing. It looks inside the
 device only for what pins do not tell (where the guard stands, filler, frames in flight). With HDL_COVERAGE=1 it leaves
-its counts in the run folder; commands/coverage.py adds them up over all runs.
+its counts in the run folder; commands/verify/coverage.py adds them up over all runs.
 """
 
 import json
@@ -16,11 +16,11 @@ from pathlib import Path
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from axis import PROFILES
 from tactile_depth.configuration import COLUMNS, ROWS, Configuration
 from tactile_depth.frame.frame_guard import FAULTS
 from tactile_depth.latency import frame_latency
 from tactile_depth.registers.register_map import MAP
+from tb.axis import PROFILES
 
 FILE = "functional_coverage.json"
 

@@ -7,10 +7,10 @@ import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from stream import parameters, places
 from tactile_depth.calibration.flat_field import unit_gains
 from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
 from tactile_depth.configuration import GAIN_WIDTH, Format
+from tb.stream import parameters, places
 
 READ_CLOCKS = 3  # from table_read to the gain
 PAUSED = 4  # clocks of a pause before its last

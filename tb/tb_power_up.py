@@ -8,7 +8,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from stream import CLOCK_NS
+from tb.stream import CLOCK_NS
 
 
 @cocotb.test()

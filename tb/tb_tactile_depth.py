@@ -15,10 +15,6 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-import functional_coverage
-from axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
-from second_client import SecondMaster, SecondSink, SecondSource
-from stream import CLOCK_NS, MANY, configuration
 from tactile_depth.calibration.flat_field import captured_gains
 from tactile_depth.calibration.floor_capture import captured_floor
 from tactile_depth.common.round_saturate import Monitor
@@ -33,7 +29,11 @@ from tactile_depth.registers.axil_registers import WORD, Response, strobed_bits
 from tactile_depth.registers.register_map import MAP, REGISTERS, TABLES
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import slope_codes, solve, top_parameters, zeroed
-from tb_axil_registers import master_of, present, read, response_of, take, write
+from tb import functional_coverage
+from tb.axis import PROFILES, AxisMonitor, AxisSink, AxisSource, broken, positions, profile, video
+from tb.registers.tb_axil_registers import master_of, present, read, response_of, take, write
+from tb.second_client import SecondMaster, SecondSink, SecondSource
+from tb.stream import CLOCK_NS, MANY, configuration
 
 OFFSET = {register.name: register.offset for register in MAP}
 STATUS, CONTROL, COMMIT, CAPTURE = (REGISTERS[name] for name in ("STATUS", "CONTROL", "TABLE_COMMIT", "CAPTURE"))

@@ -2,7 +2,7 @@
 """Soft errors: one bit of a register or memory of tactile_depth flips while frames stream through.
 
 Each experiment resets the device, streams FRAMES frames, flips one bit at one clock and looks at what leaves. Its
-outcome is the first of commands.upsets.OUTCOMES that holds. The bits are sampled evenly over modules, so that small
+outcome is the first of OUTCOMES of upsets.py that holds. The bits are sampled evenly over modules, so that small
 ones are not lost among the memories. Results go to upsets.json in the run folder.
 """
 
@@ -19,13 +19,13 @@ from cocotb.clock import Clock
 from cocotb.handle import ArrayObject, HierarchyArrayObject, HierarchyObject, LogicArrayObject, LogicObject
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from axis import video
-from commands.simulator import HDL
-from stream import CLOCK_NS, configuration
+from commands.common.repository import cores
 from tactile_depth.latency import last_pixel_to_first_depth
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth
+from tb.axis import video
+from tb.stream import CLOCK_NS, configuration
 
 FRAMES = 6
 FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency later
@@ -64,7 +64,7 @@ class Place:
 
 def registers_of(module: str) -> set[str]:
     """Names that a module's source assigns with <= in a clocked block."""
-    text = re.sub(r"//.*", "", (HDL / f"{module}.sv").read_text())
+    text = re.sub(r"//.*", "", cores()[module].hdl.read_text())
     clocked = text[text.find("always_ff") :]
     names = set(re.findall(r"(?:^|[;)]|begin|else)\s*\{?\s*(\w+)(?:\[[^\]]*\])?\s*<=", clocked, re.M))
     joined = re.findall(r"\{([\w, ]+)\}\s*<=", clocked)
@@ -84,7 +84,7 @@ def places(dut) -> list[Place]:
                     visit(element, module, owner)
             elif isinstance(child, HierarchyObject):
                 inner = child._def_name
-                if (HDL / f"{inner}.sv").is_file():
+                if inner in cores():
                     if inner != "rom":
                         # A memory counts for the core it serves, and so does what only counts or delays.
                         shared = inner in ("ram", "delay_line", "burst_counter", "round_saturate", "dot_product")

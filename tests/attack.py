@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
-from commands import bench
+from commands.run import bench
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.frame.frame_guard import FAULTS, Guarded, Word, frame_guard
@@ -23,6 +22,7 @@ from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import solve
+from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
 
 FOLLOWS = ("at_once", "one_clock", "many_clocks", "broken")
 """What comes after a broken frame: a whole one, after so many clocks; or another broken one and then a whole one."""

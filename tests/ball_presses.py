@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from commands.calibrate import data_folder
+from commands.run.calibrate import data_folder
 from tactile_depth.errors import InputError
 from tactile_depth.presses import GridPresses, camera_pitch_mm, gather, to_grid
 from tactile_depth.scenes import LIGHTS

@@ -14,9 +14,10 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import settings
 
-from commands import simulator as simulation
-from records import record
-from stream import CLOCK_NS
+from commands.common import repository
+from commands.common import simulator as simulation
+from tb.stream import CLOCK_NS
+from tests.records import record
 
 SEED = int(os.environ.get("SEED", "1"))
 POWER_UPS = int(os.environ.get("POWER_UPS", "8"))  # random states to begin from
@@ -103,7 +104,7 @@ def run_tb(simulator, request):
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
         flags = zlib.crc32(Path(simulation.__file__).read_bytes())
-        structure = json.dumps([toplevel, [path.name for path in simulation.sources(sources)], parameters, flags])
+        structure = json.dumps([toplevel, [path.name for path in repository.sources(sources)], parameters, flags])
         if not stamp.is_file() or stamp.read_text() != structure:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
@@ -113,7 +114,7 @@ def run_tb(simulator, request):
         simulation.build(
             simulator,
             toplevel,
-            [*simulation.sources(sources), *files],
+            [*repository.sources(sources), *files],
             parameters or {},
             folder,
             log=folder / "build.log",
@@ -122,7 +123,7 @@ def run_tb(simulator, request):
         def play(log, environment, **arguments):
             count, failed = simulation.run(
                 toplevel,
-                test_module or f"tb_{toplevel}",
+                test_module or repository.testbench(toplevel),
                 folder,
                 folder,
                 simulator=simulator,
@@ -137,11 +138,11 @@ def run_tb(simulator, request):
 
         began = time.monotonic()
         play(folder / "run.log", environment)
-        top = next(path for path in [*simulation.sources(sources), *files] if path.stem == toplevel)
+        top = next(path for path in [*repository.sources(sources), *files] if path.stem == toplevel)
         if not begins_at_random(request.node) or "rst" not in top.read_text():
             return
         quick = {**(environment or {}), "COCOTB_TEST_FILTER": shortest(folder / "results.xml", QUICK_CLOCKS)}
-        states = POWER_UPS if (simulation.HDL / f"{toplevel}.sv").is_file() else min(POWER_UPS, STATES_OF_A_BOARD)
+        states = POWER_UPS if toplevel in repository.cores() else min(POWER_UPS, STATES_OF_A_BOARD)
         for power_up in range(1, states):  # the run above was the first
             play(folder / "power_up.log", quick, power_up=SEED * 1000 + power_up)
         record(

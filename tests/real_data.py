@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from commands.simulator import ROOT
+from commands.common.repository import ROOT
 
 FOLDER = Path(os.environ.get("TACTILE_DATA") or ROOT.parent / "shared" / "data")
 PRESENT = (FOLDER / "gelslam" / "presses.csv").is_file()

@@ -6,8 +6,8 @@ import json
 import numpy as np
 import pytest
 
-from commands import certify as command
-from commands import sim
+from commands.run import sim
+from commands.study import certify as command
 from tactile_depth import reference
 from tactile_depth.certificate import certify, deepest, node_format, slope_response
 from tactile_depth.common.round_saturate import Monitor

@@ -11,10 +11,10 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from real_data import FOLDER, needs_real_data
 from tactile_depth.cli.main import main
 from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
 from tactile_depth.cli.ply import triangles
+from tests.real_data import FOLDER, needs_real_data
 
 GRID = ["--grid", "32x24"]
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from commands.simulator import ROOT
+from commands.common.repository import ROOT
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format, bounds
 from tactile_depth.errors import InputError
@@ -256,8 +256,8 @@ BOTH = {**FLAT[0], **FLAT[1], **ZERO, **top_parameters(TRIDIAGONAL), **top_param
     [
         ("hdl/tactile_depth.sv", BOTH),
         ("tb/frame_bench.sv", BOTH),
-        ("hdl/spectral_solver.sv", solver_parameters(SPECTRAL)),
-        ("hdl/tridiagonal_solver.sv", tridiagonal_solver.solver_parameters(TRIDIAGONAL)),
+        ("hdl/poisson/spectral_solver.sv", solver_parameters(SPECTRAL)),
+        ("hdl/poisson/tridiagonal_solver.sv", tridiagonal_solver.solver_parameters(TRIDIAGONAL)),
     ],
 )
 def test_default_parameters_are_those_of_the_default_configuration(path, derived):

@@ -6,8 +6,8 @@ from collections import Counter
 
 import pytest
 
-from commands import simulator as simulation
-from commands import yosys
+from commands.common import repository
+from commands.hardware import yosys
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import KINDS, Multiplier, cost
 from tactile_depth.sensor import synthetic
@@ -28,7 +28,7 @@ def elaborated(config, folder):
     """Cells of the whole pipeline, by name."""
     write_roms(folder, synthetic(config.bits_per_channel), config)
     names = []
-    for path in simulation.sources():
+    for path in repository.sources():
         (folder / path.name).write_text(path.read_text())
         names.append(path.name)
     parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())

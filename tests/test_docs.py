@@ -5,9 +5,9 @@ import re
 
 import pytest
 
-from commands import simulator as simulation
+from commands.common import repository
 
-ROOT = simulation.ROOT
+ROOT = repository.ROOT
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = "hdl|models|tb|tests|formal|commands|boards|constraints|registers|docs"

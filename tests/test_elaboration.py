@@ -5,8 +5,8 @@ import subprocess
 
 import pytest
 
-from commands import simulator
-from stream import REGRESS
+from commands.common import repository, simulator
+from tb.stream import REGRESS
 
 INVALID = {
     "burst_counter": ["Size=1"],
@@ -56,7 +56,7 @@ CASES = [(core, change) for core, changes in INVALID.items() for change in chang
 def refused(core, change, folder) -> str:
     """What Icarus says: it does not elaborate, or the simulation ends with $fatal at time 0."""
     changes = [f"-P{core}.{parameter}" for parameter in change.split()]
-    sources = [str(path) for path in simulator.sources()]
+    sources = [str(path) for path in repository.sources()]
     built = folder / "built"
     command = ["iverilog", "-g2012", "-o", built, "-s", core, *changes, *sources]
     result = subprocess.run(command, capture_output=True, text=True, check=False)

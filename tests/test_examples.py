@@ -5,8 +5,8 @@ import json
 
 import matplotlib
 
-from commands.simulator import ROOT
-from real_data import FOLDER, needs_real_data
+from commands.common.repository import ROOT
+from tests.real_data import FOLDER, needs_real_data
 
 NOTEBOOK = ROOT / "examples" / "real_presses.ipynb"
 

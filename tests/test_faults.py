@@ -17,11 +17,11 @@ from itertools import groupby
 
 import pytest
 
-from attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
-from conftest import SEED
-from records import record
-from stream import REGRESS
 from tactile_depth.configuration import COLUMNS, Configuration
+from tb.stream import REGRESS
+from tests.attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
+from tests.conftest import SEED
+from tests.records import record
 
 TIMEOUT = 100
 GRIDS = {

@@ -10,21 +10,6 @@ from PIL import Image
 from scipy.ndimage import uniform_filter
 
 import tactile_depth as td
-from ball_presses import (
-    CAMERA,
-    GRID,
-    PITCH,
-    SENSITIVITY,
-    pictures,
-    places,
-    read,
-    real_folder,
-    table_rows,
-    weakness,
-    write_folder,
-    write_table,
-)
-from stream import REGRESS
 from tactile_depth.calibration.auto_zero import auto_zero
 from tactile_depth.calibration.flat_field import captured_gains
 from tactile_depth.calibration.floor_capture import captured_floor
@@ -49,6 +34,21 @@ from tactile_depth.reference import quadratic_slopes, quadratic_terms
 from tactile_depth.scenes import LIGHTS
 from tactile_depth.sensor import MODELS
 from tactile_depth.tactile_depth import slope_codes, solve
+from tb.stream import REGRESS
+from tests.ball_presses import (
+    CAMERA,
+    GRID,
+    PITCH,
+    SENSITIVITY,
+    pictures,
+    places,
+    read,
+    real_folder,
+    table_rows,
+    weakness,
+    write_folder,
+    write_table,
+)
 
 
 @pytest.fixture(scope="module")

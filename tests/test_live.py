@@ -23,7 +23,6 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from press_video import press_frames, write_sensor, write_video
 from tactile_depth.cli import live as command
 from tactile_depth.cli import source as sources
 from tactile_depth.cli.failure import Failure
@@ -31,6 +30,7 @@ from tactile_depth.cli.keys import pressed_keys
 from tactile_depth.cli.main import main
 from tactile_depth.cli.source import Source
 from tactile_depth.errors import InputError
+from tests.press_video import press_frames, write_sensor, write_video
 
 FRAMES = 10
 MISSING = [name for name in ("cv2", "rerun") if importlib.util.find_spec(name) is None]

@@ -3,19 +3,20 @@
 
 import json
 
-from commands import simulator as simulation
+from commands.common import repository
+from commands.common import simulator as simulation
 
 SEEDS = range(1, 9)
 
 
 def test_what_is_not_reset(simulator, tmp_path):
-    files = [*simulation.sources(["ram.sv"]), simulation.ROOT / "tb" / "power_up.sv"]
+    files = [*repository.sources(["ram.sv"]), repository.ROOT / "tb" / "power_up.sv"]
     simulation.build(simulator, "power_up", files, {}, tmp_path, log=tmp_path / "build.log")
 
     def seen(power_up):
         count, failed = simulation.run(
             "power_up",
-            "tb_power_up",
+            "tb.tb_power_up",
             tmp_path,
             tmp_path,
             simulator=simulator,

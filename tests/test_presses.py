@@ -13,7 +13,13 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from ball_presses import (
+from tactile_depth import circles
+from tactile_depth.circles import find_circle
+from tactile_depth.errors import InputError
+from tactile_depth.fitting import fit_presses, held_out_presses
+from tactile_depth.press_folder import read_presses
+from tactile_depth.presses import GridPress, camera_pitch_mm, gather, to_grid
+from tests.ball_presses import (
     CAMERA,
     COLUMNS,
     GRID,
@@ -27,12 +33,6 @@ from ball_presses import (
     write_folder,
     write_table,
 )
-from tactile_depth import circles
-from tactile_depth.circles import find_circle
-from tactile_depth.errors import InputError
-from tactile_depth.fitting import fit_presses, held_out_presses
-from tactile_depth.press_folder import read_presses
-from tactile_depth.presses import GridPress, camera_pitch_mm, gather, to_grid
 
 BALL = GridPress("ball", 30.4, 33.7, 14.0, 26.0)
 

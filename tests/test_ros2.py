@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from commands.simulator import ROOT
+from commands.common.repository import ROOT
 
 FOLDER = ROOT / "examples" / "ros2"
 

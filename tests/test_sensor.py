@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from real_data import FOLDER, needs_real_data
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.frames import camera_scale, load_frames, read_picture
@@ -15,6 +14,7 @@ from tactile_depth.rom_files import pack, unsigned, write_words
 from tactile_depth.scenes import render
 from tactile_depth.sensor import Sensor, identify, lighting, load, synthetic
 from tactile_depth.tactile_depth import tactile_depth, write_roms
+from tests.real_data import FOLDER, needs_real_data
 
 GREY = np.full((16, 16, 3), 128, np.uint8)
 

@@ -7,12 +7,12 @@ from itertools import product
 
 import pytest
 
-from attack import PROFILES
-from stream import REGRESS
 from tactile_depth.configuration import COLUMNS, ULTRA, Configuration
 from tactile_depth.scenes import render
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
+from tb.stream import REGRESS
+from tests.attack import PROFILES
 
 # What is run in other formats than the first of each solver, and on a larger grid; on the first everything is.
 FORMATS = (

@@ -18,13 +18,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import real_data
 import tactile_depth as td
-from commands import bench
-from commands.simulator import ROOT
+from commands.common.repository import ROOT
+from commands.run import bench
 from tactile_depth.frames import read_picture
 from tactile_depth.resampling import resampling
 from tactile_depth.tactile_depth import top_parameters
+from tests import real_data
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "models")
 UNREACHABLE = ("NewConnectionError", "ConnectTimeoutError", "ReadTimeoutError", "NameResolutionError", "ProxyError")

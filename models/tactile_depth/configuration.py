@@ -30,7 +30,7 @@ DEEPEST = 0.67  # largest depth over N pixels for slopes up to 1 (L1 norm of the
 COARSEST_LSB = 1 / 32  # of a mode's word, as a fraction of the deepest depth: coarser words lose the shape
 SMALLEST_DEPTH_RANGE_PX = 1 / 16
 
-# Styles of hdl/ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
+# Styles of ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
 BLOCK, ULTRA = 1, 2
 ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Counts multipliers, memory bits and latency of a configuration, from the parameters of the RTL.
 
-Memories are those in hdl/ram.sv and hdl/rom.sv. Registers are not counted, nor are delays of up to LONGEST_SHIFT,
+Memories are those in ram.sv and rom.sv. Registers are not counted, nor are delays of up to LONGEST_SHIFT,
 which are registers. A test elaborates the RTL and compares the counts.
 """
 
@@ -16,7 +16,7 @@ from tactile_depth.tactile_depth import top_parameters
 from tactile_depth.transform.sdf_fft import stages
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
-LONGEST_SHIFT = 4  # delays up to this are registers, hdl/delay_line.sv
+LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/delay_line.sv
 
 # A DSP48E2 multiplies 27 by 18 bits, signed. The low parts of a wider operand are unsigned and hold one bit less.
 PORTS = (27, 18)
@@ -173,13 +173,13 @@ def _tridiagonal(p: dict[str, int]) -> Parts:
 
 
 def _forward(p: dict[str, int]) -> Parts:
-    """Count the parts of hdl/dst_forward.sv, which forms only the real part of the product with the phase."""
+    """Count the parts of hdl/transform/dst_forward.sv, which forms only the real part of the product with the phase."""
     phase = [Multiplier(p["Width"], p["CoeffWidth"])] * 2
     return _joined(_fft(p, inverse=False), (phase, [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]))
 
 
 def _inverse(p: dict[str, int], in_width: int) -> Parts:
-    """Count the parts of hdl/dst_inverse.sv with its mode_pairs."""
+    """Count the parts of hdl/transform/dst_inverse.sv with its mode_pairs."""
     size = p["Size"]
     memories = [
         Memory("delay lines", in_width, size // 2 + 1),
@@ -190,7 +190,7 @@ def _inverse(p: dict[str, int], in_width: int) -> Parts:
 
 
 def _fft(p: dict[str, int], inverse: bool) -> Parts:
-    """Count the parts of hdl/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
+    """Count the parts of hdl/transform/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
     multipliers, memories = [], []
     for stage in stages(p["Size"], inverse):
         if stage.delay > LONGEST_SHIFT:

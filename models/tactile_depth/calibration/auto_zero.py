@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/auto_zero.sv: depth minus the floor.
+"""Bit-accurate model of hdl/calibration/auto_zero.sv: depth minus the floor.
 
 The floor is the depth that a pixel reads without contact. Lights and gel drift, and the remaining slope errors add up
 to a floor that is not flat. The floor is smooth, so a coarse grid of block means holds it: the grid of the reference
@@ -17,7 +17,7 @@ from tactile_depth.configuration import Configuration
 
 
 def auto_zero_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/auto_zero.sv."""
+    """Parameters of hdl/calibration/auto_zero.sv."""
     return {
         "Rows": config.rows,
         "Columns": config.columns,

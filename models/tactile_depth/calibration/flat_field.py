@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/flat_field.sv: colours relative to the reference frame.
+"""Bit-accurate model of hdl/calibration/flat_field.sv: colours relative to the reference frame.
 
 The reference (the frame without contact) is kept as gains, 1 / reference, on a coarse grid of block means. The gains
 are interpolated between the centres of the blocks. Lighting is smooth, so the interpolation causes no visible error.
@@ -46,7 +46,7 @@ def unit_gains(config: Configuration) -> np.ndarray:
 
 
 def flat_field_parameters(config: Configuration, quadratic: bool) -> dict[str, int]:
-    """Parameters of hdl/flat_field.sv: deviations for the quadratic model, else codes for the table."""
+    """Parameters of hdl/calibration/flat_field.sv: deviations for the quadratic model, else codes for the table."""
     fraction = DEVIATION.fraction if quadratic else FLAT_CODE.bit_length() - 1
     return {
         "Rows": config.rows,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/floor_capture.sv: computes the floor of auto_zero from depth without contact."""
+"""Bit-accurate model of hdl/calibration/floor_capture.sv: the floor of auto_zero from depth without contact."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CLOCKS = 6
 
 
 def floor_capture_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/floor_capture.sv."""
+    """Parameters of hdl/calibration/floor_capture.sv."""
     return {**auto_zero_parameters(config), "MaxLog2": LARGEST_LOG2}
 
 

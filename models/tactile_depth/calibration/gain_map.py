@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Entries of hdl/gain_map.sv; its model is `tactile_depth.calibration.flat_field.interpolated_gains`."""
+"""Entries of hdl/calibration/gain_map.sv; its model is `tactile_depth.calibration.flat_field.interpolated_gains`."""
 
 from __future__ import annotations
 

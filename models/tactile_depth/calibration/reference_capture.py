@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Model of hdl/reference_capture.sv, frame by frame; the arithmetic is `captured_gains` of flat_field.py."""
+"""Model of hdl/calibration/reference_capture.sv, frame by frame; its arithmetic is `flat_field.captured_gains`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def largest_log2_frames(config: Configuration) -> int:
 
 
 def reference_capture_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/reference_capture.sv."""
+    """Parameters of hdl/calibration/reference_capture.sv."""
     return {
         "Rows": config.rows,
         "Columns": config.columns,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cycle-accurate model of hdl/axis_skid.sv: a queue of two words."""
+"""Cycle-accurate model of hdl/common/axis_skid.sv: a queue of two words."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/burst_counter.sv."""
+"""Bit-accurate model of hdl/common/burst_counter.sv."""
 
 from __future__ import annotations
 

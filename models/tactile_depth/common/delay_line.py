@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/delay_line.sv: a delay of the stream."""
+"""Bit-accurate model of hdl/common/delay_line.sv: a delay of the stream."""
 
 from __future__ import annotations
 

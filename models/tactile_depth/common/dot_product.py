@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/dot_product.sv: two products and their sum."""
+"""Bit-accurate model of hdl/common/dot_product.sv: two products and their sum."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/multiply.sv: one product."""
+"""Bit-accurate model of hdl/common/multiply.sv: one product."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/ram.sv: an array that is read, then written, in each clock."""
+"""Bit-accurate model of hdl/common/ram.sv: an array that is read, then written, in each clock."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/rom.sv: a table of words."""
+"""Bit-accurate model of hdl/common/rom.sv: a table of words."""
 
 from __future__ import annotations
 

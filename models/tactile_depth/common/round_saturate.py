@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/round_saturate.sv, and the monitor that counts saturated values by node."""
+"""Bit-accurate model of hdl/common/round_saturate.sv, and the monitor that counts saturated values by node."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/contact_events.sv: the record of each frame beat by beat, its packets cycle by cycle."""
+"""Bit-accurate model of hdl/contact/contact_events.sv: records beat by beat, packets cycle by cycle."""
 
 from __future__ import annotations
 

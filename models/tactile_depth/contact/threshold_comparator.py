@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/threshold_comparator.sv."""
+"""Bit-accurate model of hdl/contact/threshold_comparator.sv."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cycle-accurate model of hdl/depth_gate.sv: a queue of words to send and a queue of words to tap."""
+"""Cycle-accurate model of hdl/frame/depth_gate.sv: a queue of words to send and a queue of words to tap."""
 
 from __future__ import annotations
 

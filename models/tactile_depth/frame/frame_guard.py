@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Model of hdl/frame_guard.sv, word by word: any stream in, complete frames and faults out.
+"""Model of hdl/frame/frame_guard.sv, word by word: any stream in, complete frames and faults out.
 
 The model counts cycles only for the time-out. It leaves out the cycles in which filler is sent and the input waits;
 these change neither frames nor faults.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/frame_output.sv: turns the solver's output into the beats of good frames."""
+"""Bit-accurate model of hdl/frame/frame_output.sv: turns the solver's output into the beats of good frames."""
 
 from __future__ import annotations
 

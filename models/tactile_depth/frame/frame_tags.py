@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cycle-accurate model of hdl/frame_tags.sv: tags return a fixed number of enabled cycles after the push."""
+"""Cycle-accurate model of hdl/frame/frame_tags.sv: tags return a fixed number of enabled cycles after the push."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/divergence.sv."""
+"""Bit-accurate model of hdl/gradient/divergence.sv."""
 
 from __future__ import annotations
 

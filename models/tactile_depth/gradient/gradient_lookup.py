@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/gradient_lookup.sv, and the contents of its table."""
+"""Bit-accurate model of hdl/gradient/gradient_lookup.sv, and the contents of its table."""
 
 from __future__ import annotations
 

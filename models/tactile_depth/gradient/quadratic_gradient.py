@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/quadratic_gradient.sv: slopes from a colour's deviation, linear in the three colours.
+"""Bit-accurate model of hdl/gradient/quadratic_gradient.sv: slopes, linear in the deviations of three colours.
 
     slope of an axis = sum over red, green, blue of C[axis][colour](column, row) * deviation[colour]
 
@@ -128,7 +128,7 @@ def slope_codes(
 
 
 def gradient_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/quadratic_gradient.sv."""
+    """Parameters of hdl/gradient/quadratic_gradient.sv."""
     return {
         "Width": config.gradient.width,
         "DeviationWidth": DEVIATION.width,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/back_substitution.sv."""
+"""Bit-accurate model of hdl/poisson/back_substitution.sv."""
 
 from __future__ import annotations
 

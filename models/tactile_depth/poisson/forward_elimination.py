@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/forward_elimination.sv."""
+"""Bit-accurate model of hdl/poisson/forward_elimination.sv."""
 
 from __future__ import annotations
 

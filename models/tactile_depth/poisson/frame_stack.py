@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/frame_stack.sv."""
+"""Bit-accurate model of hdl/poisson/frame_stack.sv."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/spectral_divide.sv, and the contents of its ROM."""
+"""Bit-accurate model of hdl/poisson/spectral_divide.sv, and the contents of its ROM."""
 
 from __future__ import annotations
 

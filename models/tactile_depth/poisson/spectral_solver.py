@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/spectral_solver.sv: divergence in, depth codes out."""
+"""Bit-accurate model of hdl/poisson/spectral_solver.sv: divergence in, depth codes out."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tactile_depth.transform.transpose import transpose
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/spectral_solver.sv."""
+    """Parameters of hdl/poisson/spectral_solver.sv."""
     table = reciprocals(config)
     return {
         **config.stream_parameters(),

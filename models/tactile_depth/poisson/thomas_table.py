@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/thomas_table.sv: the compressed table of Thomas's algorithm.
+"""Bit-accurate model of hdl/poisson/thomas_table.sv: the compressed table of Thomas's algorithm.
 
 For the mode of eigenvalue lambda the rows of a frame form a tridiagonal system with off-diagonals 1. Its elimination
 (L. H. Thomas, 1949; Press et al., Numerical Recipes, section 2.4) needs c[0] = 1 / b[0], c[i] = 1 / (b[i] - c[i-1]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/tridiagonal_solver.sv: divergence in, depth codes out, bottom row first."""
+"""Bit-accurate model of hdl/poisson/tridiagonal_solver.sv: divergence in, depth codes out, bottom row first."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tactile_depth.transform.row_reorder import row_reorder
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/tridiagonal_solver.sv."""
+    """Parameters of hdl/poisson/tridiagonal_solver.sv."""
     table = thomas_table(config)
     reciprocal, mean_drop = mean_reciprocal(config)
     return {

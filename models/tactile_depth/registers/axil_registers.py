@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Behavioural model of hdl/axil_registers.sv: the results of reads, and the effects of writes and events.
+"""Behavioural model of hdl/registers/axil_registers.sv: the results of reads, and the effects of writes and events.
 
 The model does not count cycles. In one cycle a read sees the registers first, then the write takes effect, then the
 events. This order makes setting win over clearing. A read of a table entry comes in a cycle without a write.
@@ -46,7 +46,7 @@ class Response(IntEnum):
 
 @dataclass(frozen=True)
 class Build:
-    """Parameters of hdl/axil_registers.sv."""
+    """Parameters of hdl/registers/axil_registers.sv."""
 
     rows: int
     columns: int

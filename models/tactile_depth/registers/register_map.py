@@ -69,7 +69,7 @@ class Register:
     offset : int
         Byte address, a multiple of 4.
     made_elsewhere : bool
-        True if hdl/axil_registers.sv takes the value as one input word.
+        True if hdl/registers/axil_registers.sv takes the value as one input word.
     fields : tuple of Field
         A register that holds a single number has one field, `value`.
     """

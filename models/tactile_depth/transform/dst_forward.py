@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/dst_forward.sv: DST-II of a burst by Makhoul's method."""
+"""Bit-accurate model of hdl/transform/dst_forward.sv: DST-II of a burst by Makhoul's method."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/dst_inverse.sv: the inverse of dst_forward."""
+"""Bit-accurate model of hdl/transform/dst_inverse.sv: the inverse of dst_forward."""
 
 from __future__ import annotations
 

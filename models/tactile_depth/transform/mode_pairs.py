@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/mode_pairs.sv."""
+"""Bit-accurate model of hdl/transform/mode_pairs.sv."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/row_reorder.sv."""
+"""Bit-accurate model of hdl/transform/row_reorder.sv."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/sdf_butterfly.sv."""
+"""Bit-accurate model of hdl/transform/sdf_butterfly.sv."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/sdf_fft.sv: radix-2^2 single-path delay feedback FFT.
+"""Bit-accurate model of hdl/transform/sdf_fft.sv: radix-2^2 single-path delay feedback FFT.
 
 S. He, M. Torkelson, A new approach to pipeline FFT processor, IPPS 1996.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/transpose.sv."""
+"""Bit-accurate model of hdl/transform/transpose.sv."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/twiddle_multiply.sv, and the contents of its ROMs."""
+"""Bit-accurate model of hdl/transform/twiddle_multiply.sv, and the contents of its ROMs."""
 
 from __future__ import annotations
 

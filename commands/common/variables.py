@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Variables of a command, words NAME=value, and the exit status that it ends with: docs/exit-status.md."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import signal
+import subprocess
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from commands.common import signals
+from tactile_depth.errors import InputError, InputWarning
+
+EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
+
+
+# Errors of the package name arguments; a user of make gave variables.
+VARIABLES = {
+    r"\bcamera_size=\(rows, columns\)": "CAMERA_SIZE=<columns>x<rows>",
+    r"\bcolumns=": "N=",
+    r"\brows=": "ROWS=",
+    r"\bsolver=": "SOLVER=",
+    r"\bdata_width=": "DATA_WIDTH=",
+    r"\bcoefficient_width=": "COEFF_WIDTH=",
+    r"\bgradient_model=": "GRADIENT=",
+    r"\breference=": "REFERENCE=",
+    r"\bcamera_size\b": "CAMERA_SIZE",
+    r"\bomit the calibration\b": "omit CALIBRATION",
+    r"\bcalibration=": "CALIBRATION=",
+    r"\bpitch_mm\b": "PITCH",
+    r"\bbits=": "BITS=",
+    r"\bmodels=": "GRADIENT=",
+    r"\bexposure_us=": "EXPOSURE_US=",
+}
+
+
+class Mismatch(Exception):
+    """A result that differs from what it is checked against."""
+
+
+def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
+    """Name to value of those that have one.
+
+    Raises
+    ------
+    InputError
+        A name that is not accepted, or a word without one.
+    """
+    names = tuple(accepted)
+    values: dict[str, str] = {}
+    for argument in arguments:
+        name, equals, value = argument.partition("=")
+        if not equals or name not in names:
+            accepted_are = f"accepted {'are' if len(names) > 1 else 'is'} {', '.join(names) or 'none'}"
+            raise InputError(f"{argument}: unknown variable: {accepted_are}")
+        if value:
+            values[name] = value
+    return values
+
+
+def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
+    """The number that was given as `name`, of a kind, int or float; `default` where it was not.
+
+    Raises
+    ------
+    InputError
+        No number, or not from `low` to `high`.
+    """
+    if not values.get(name):
+        return default
+    try:
+        value = kind(values[name])
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high or value in (math.inf, -math.inf):
+        what = "a whole number" if kind is int else "a number"
+        to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
+        raise InputError(f"{name}={values[name]}: accepted is {what}{to}")
+    return value
+
+
+def usable(text: str) -> bool:
+    """Return whether a path or a name can hold this text: no NUL, no half of a character."""
+    try:
+        return b"\0" not in os.fsencode(text)
+    except UnicodeEncodeError:
+        return False
+
+
+def named(message: str) -> str:
+    """Name variables of make in a message of the package, which names arguments."""
+    for argument, variable in VARIABLES.items():
+        message = re.sub(argument, variable, message)
+    return message
+
+
+def show_warning(target: str) -> Callable[..., None]:
+    """Return what shows a warning about input as one line; other warnings show as Python shows them."""
+    python = warnings.showwarning
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if issubclass(category, InputWarning):
+            print(f"make {target}: warning: {named(str(message))}", file=sys.stderr)
+        else:
+            python(message, category, *place, **more)
+
+    return show
+
+
+@contextmanager
+def reported(target: str, interrupted: str = "") -> Iterator[None]:
+    """End `make <target>` with one line on stderr and an exit status when an exception or a signal ends it.
+
+    Bad input gives 2, a mismatch 1, a failure on the way 3, a signal 128 + its number. An exception that nobody
+    expected shows its traceback, since it is a fault of the command, and gives 3.
+
+    Parameters
+    ----------
+    interrupted : str
+        Says what an interruption leaves.
+    """
+    try:
+        with signals.stoppable(), warnings.catch_warnings():
+            warnings.showwarning = show_warning(target)
+            yield
+    except InputError as error:
+        message, status = named(str(error)), BAD_INPUT
+    except Mismatch as error:
+        message, status = str(error), MISMATCH
+    except KeyboardInterrupt as stop:
+        number = stop.number if isinstance(stop, signals.Stopped) else signal.SIGINT
+        message, status = "; ".join(filter(None, (signals.SIGNALS[number], interrupted))), 128 + number
+    except BrokenPipeError:
+        message, status = "whatever reads the output has ended", FAILURE
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest at its end
+    except (RuntimeError, subprocess.SubprocessError, OSError, MemoryError) as error:
+        message, status = cause(error), FAILURE
+    except Exception:
+        traceback.print_exc()
+        message, status = "an unexpected error, shown above: please report it", FAILURE
+    else:
+        return
+    print(f"make {target}: {InputError(message)}", file=sys.stderr)
+    sys.exit(status)
+
+
+def cause(error: Exception) -> str:
+    """Return what went wrong, with the file that an OSError names."""
+    if isinstance(error, OSError) and error.strerror:
+        return ": ".join(str(part) for part in (error.filename, error.strerror) if part)
+    return str(error) or type(error).__name__

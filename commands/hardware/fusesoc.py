@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The generator of tactile_depth.core: parameters and tables of a configuration, as a core of FuseSoC.
+
+Its parameters are the variables of `make sim` that choose a configuration; commands/hardware/synth.py names them.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
+
+from commands.hardware import synth  # noqa: E402
+from commands.run import sim  # noqa: E402
+from tactile_depth.errors import InputError  # noqa: E402
+from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
+
+
+def generate(description: Path, folder: Path) -> None:
+    """Write the tables and a core that holds them, and the parameters as its defaults, into a folder.
+
+    Raises
+    ------
+    InputError
+    """
+    wanted = yaml.safe_load(description.read_text())
+    given = wanted.get("parameters") or {}
+    for key in given:
+        if key not in synth.CONFIGURING:
+            raise InputError(f"{key}: unknown variable: accepted are {', '.join(synth.CONFIGURING)}")
+    config, calibration = synth.configured(sim.parse([f"{key}={value}" for key, value in given.items()]))
+    write_roms(folder, calibration, config)
+    parameters = top_parameters(config)
+    core = {
+        "name": wanted["vlnv"],
+        "filesets": {
+            "tables": {
+                "files": [{rom.name: {"copyto": rom.name}} for rom in sorted(folder.glob("*.hex"))],
+                "file_type": "user",
+            }
+        },
+        "parameters": {
+            name: {"datatype": "int", "default": value, "paramtype": "vlogparam"} for name, value in parameters.items()
+        },
+        "targets": {"default": {"filesets": ["tables"], "parameters": list(parameters)}},
+    }
+    name = wanted["vlnv"].split(":")[2]
+    (folder / f"{name}.core").write_text("CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False))
+
+
+def main() -> None:
+    try:
+        generate(Path(sys.argv[1]), Path.cwd())
+    except InputError as error:
+        print(f"tables of tactile_depth: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make registers`: everything that is written from registers/tactile_depth.rdl.
+
+Committed, so that nobody needs these tools to read or to use them: the page by peakrdl-markdown, the C header by
+peakrdl-cheader, and two by the templates here: register_map_pkg.sv, since no exporter writes a package that Icarus 11
+takes, and the JSON that register_map.py reads, since a run needs neither the compiler nor its 40 MB. The
+Python access layer of peakrdl-python goes to build/: it is thousands of lines, most of them its library.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from peakrdl_cheader.c_standards import CStandard
+from peakrdl_cheader.exporter import CHeaderExporter
+from peakrdl_markdown import MarkdownExporter
+from peakrdl_python import PythonExporter
+from systemrdl import RDLCompiler
+from systemrdl.node import FieldNode, RegNode, RootNode
+
+from commands.common import variables
+from commands.common.repository import ROOT
+
+SOURCE = ROOT / "registers" / "tactile_depth.rdl"
+PACKAGE_MAP = ROOT / "models" / "tactile_depth" / "registers" / "register_map.json"
+LAYER = ROOT / "build" / "registers"
+NAME = SOURCE.stem
+LAYER_NAME = f"{NAME}_registers"  # `tactile_depth` is the package of models
+WRITTEN_BY = f"Written by `make registers` from {SOURCE.relative_to(ROOT)}: change it there."
+
+
+def compiled(source: Path = SOURCE, inst_name: str | None = None) -> RootNode:
+    """The elaborated map, under its own name or under `inst_name`."""
+    compiler = RDLCompiler()
+    compiler.compile_file(str(source))
+    return compiler.elaborate(inst_name=inst_name)
+
+
+def access(field: FieldNode) -> str:
+    """One of tactile_depth.registers.register_map.ACCESSES.
+
+    Raises
+    ------
+    ValueError
+        Software sees the field in a way that no register of ours has.
+    """
+    onwrite, onread = field.get_property("onwrite"), field.get_property("onread")
+    properties = (
+        field.get_property("sw").name,
+        onwrite.name if onwrite else "",
+        onread.name if onread else "",
+        field.get_property("singlepulse"),
+    )
+    accesses = {
+        ("r", "", "", False): "ro",
+        ("rw", "", "", False): "rw",
+        ("rw", "woclr", "", False): "w1c",
+        ("rw", "woset", "", False): "w1s",
+        ("w", "", "", True): "pulse",
+        ("rw", "wuser", "ruser", False): "port",
+    }
+    if properties not in accesses:
+        raise ValueError(f"{field.get_path()}: no register has sw, onwrite, onread, singlepulse = {properties}")
+    return accesses[properties]
+
+
+def field_of(node: FieldNode) -> dict[str, Any]:
+    encode = node.get_property("encode")
+    return {
+        "name": node.inst_name,
+        "low": node.low,
+        "high": node.high,
+        "access": access(node),
+        "reset": node.get_property("reset"),
+        "signed": node.get_property("is_signed", default=False),
+        "values": {member.name: member.value for member in encode} if encode else {},
+        "description": node.get_property("name"),
+    }
+
+
+def register_of(node: RegNode) -> dict[str, Any]:
+    return {
+        "name": node.inst_name,
+        "offset": node.absolute_address,
+        "description": node.get_property("name"),
+        "made_elsewhere": node.get_property("made_elsewhere", default=False),
+        "fields": [field_of(field) for field in node.fields()],
+    }
+
+
+def camel(name: str) -> str:
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def package(registers: list[dict[str, Any]]) -> str:
+    """Text of hdl/registers/register_map_pkg.sv."""
+    offsets, resets, bits, values = [], [], [], []
+    for register in registers:
+        name = camel(register["name"])
+        offsets.append(f"localparam int {name}Offset = 32'h{register['offset']:02x};")
+        reset = sum((field["reset"] or 0) << field["low"] for field in register["fields"])
+        if reset:
+            resets.append(f"localparam int {name}Reset = 32'h{reset:08x};")
+        for field in () if register["made_elsewhere"] else register["fields"]:
+            if field["name"] == "value":  # the register is this number
+                continue
+            single = field["low"] == field["high"]
+            bits.append(f"localparam int {name}{camel(field['name'])}{'Bit' if single else 'Lsb'} = {field['low']};")
+            if field["values"]:
+                bits.append(f"localparam int {name}{camel(field['name'])}Width = {field['high'] - field['low'] + 1};")
+                values.append(f"localparam int {name}{camel(field['name'])}Count = {len(field['values'])};")
+            for value, code in field["values"].items():
+                values.append(f"localparam int {name}{camel(value)} = {code};")
+    sections = {
+        "Byte offsets.": [f"localparam int AddressWidth = {address_width(registers)};", *offsets],
+        "Values after reset that are not zero.": resets,
+        "Bits: number of a flag, lowest of a wider field.": bits,
+        "Values of a field.": values,
+    }
+    body = "\n\n".join("\n".join(f"  {line}" for line in (f"// {title}", *lines)) for title, lines in sections.items())
+    return (
+        "// SPDX-License-Identifier: Apache-2.0\n"
+        "// register_map_pkg: offsets, reset values and bits of the AXI4-Lite registers.\n"
+        "//\n"
+        f"// {WRITTEN_BY}\n\n"
+        f"package register_map_pkg;\n\n{body}\n\nendpackage\n"
+    )
+
+
+def address_width(registers: list[dict[str, Any]]) -> int:
+    """Bits of a byte address: 8 serve 64 registers, and a map that outgrows them grows by itself."""
+    return max(8, max(register["offset"] for register in registers).bit_length())
+
+
+def generated(root: RootNode) -> dict[Path, str]:
+    """Every committed file that is written from the map, and its text."""
+    top = root.top
+    registers = [register_of(node) for node in top.registers(unroll=True)]
+    described = {"written_by": WRITTEN_BY, "address_width": address_width(registers), "registers": registers}
+    with TemporaryDirectory() as folder:
+        page, header = Path(folder) / "registers.md", Path(folder) / f"{NAME}.h"
+        MarkdownExporter().export(top, str(page), input_files=[str(SOURCE.relative_to(ROOT))])
+        # Names by place, not by type: a type that is used twice would get a hash for its name.
+        CHeaderExporter().export(top, str(header), reuse_typedefs=False, std=CStandard.gnu11)
+        texts = {
+            ROOT / "docs" / page.name: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
+            SOURCE.parent / header.name: f"// SPDX-License-Identifier: Apache-2.0\n// {WRITTEN_BY}\n"
+            + header.read_text(),
+        }
+    return texts | {
+        PACKAGE_MAP: json.dumps(described, indent=1) + "\n",
+        ROOT / "hdl" / "registers" / "register_map_pkg.sv": package(registers),
+    }
+
+
+def python_layer(folder: Path) -> None:
+    """The package `tactile_depth_registers` in the folder, with its library: needs nothing else installed."""
+    PythonExporter().export(
+        compiled(inst_name=LAYER_NAME).top,
+        str(folder),
+        skip_test_case_generation=True,
+        skip_systemrdl_name_and_desc_in_docstring=True,
+    )
+
+
+def main() -> None:
+    with variables.reported("registers"):
+        variables.given(sys.argv[1:], ())
+        run()
+
+
+def run() -> None:
+    """Write every file, and say which have changed."""
+    root = compiled()
+    for path, text in generated(root).items():
+        changed = not path.exists() or path.read_text() != text
+        path.write_text(text)
+        print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
+    python_layer(LAYER)
+    print(f"wrote {LAYER.relative_to(ROOT)}/{LAYER_NAME}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,875 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make reflex`: contact to command and to motion, near the sensor with the RTL in the loop, and through a host.
+
+A pin is pressed into the gel at a set speed, at a moment that is uniform against the camera's frame clock. The frames
+that the sensor makes of it go through the RTL at the camera's timing, and the clock in which the pin `contact` rises is
+the command. The host path is a USB camera and the same reconstruction in software, timed on this machine as it runs.
+Every delay is a `Delay`: a distribution and where it comes from. docs/reflex.md tells what comes of it.
+
+Takes N, CLOCK_MHZ, SPEED (mm/s), TRIALS, HOST_TRIALS, SEED, SIM, VIDEO (a .gif) and OUT as KEY=VALUE arguments. Exit
+status: 0 done, 1 the RTL is not as it must be, 2 bad input.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import mannwhitneyu
+from tqdm import tqdm
+
+from commands.common import markdown, repository, results, variables
+from commands.common import simulator as simulation
+from commands.common.machine import machine
+from commands.common.signals import threads
+from commands.run import bench, reflex_pictures
+from commands.run.sim import CONTACT_THRESHOLD
+from commands.study.tune import CLOCK_MHZ
+from tactile_depth import reference
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.scenes import SENSOR_WIDTH_MM, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load
+from tactile_depth.tactile_depth import tactile_depth
+
+RESULTS = ("reflex.json", "reflex.png")
+DEFAULT_OUT = repository.ROOT / "build" / "reflex"
+PIN = "ball"  # its round tip, of models/tactile_depth/scenes.py
+STOP_MM = 1.0  # the press ends so deep
+DECIDING_CLOCKS = 1  # from the deciding depth's leaving to `contact`
+
+# The published figures, ms: contact to command and contact to motion, mean and standard deviation; range of the latter.
+PUBLISHED: dict[str, dict[str, Any]] = {
+    "near": {"trials": 50, "command": (10.2, 3.2), "motion": (28.3, 4.9), "range": (16.7, 37.5)},
+    "host": {"trials": 81, "command": (148.6, 28.3), "motion": (169.9, 27.8), "range": (108.3, 260.4)},
+}
+
+# What the delays are made of.
+FRAME_MS = {"near": 1000 / 400, "host": 1000 / 25}
+SPEED_MM_S = 20.0
+EXPOSURE = 0.5  # of the frame time
+SERVO_MS, SERVO_SPREAD_MS = 18.1, 3.3
+USB_BYTES_PER_MS = 8 * 3 * 1024  # high speed: 8 microframes a ms, isochronous, at most 3 transactions of 1,024 bytes
+CAMERA_BYTES = 640 * 480 * 2  # YUYV
+DRIVER_BUFFERS = 4
+ASLEEP_MS = 1.0
+
+SCALES = (0.5, 2.0)  # of the sensitivity table
+
+
+@dataclass(frozen=True)
+class Delay:
+    """One row of the table of delays: what the simulation takes from where."""
+
+    path: str
+    name: str
+    distribution: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A path in numbers. Each may be scaled by itself, which is what the sensitivity table does.
+
+    Attributes
+    ----------
+    speed : float, mm/s
+    threshold : float, mm
+    frame : float, ms
+        From one exposure to the next.
+    exposure : float
+        Share of the frame time, at its end.
+    read_out : float
+        Share of the frame time from the end of the exposure to the last pixel.
+    transfer : float, ms
+        What a link takes in its place.
+    waiting, compute, wake_up : float
+        Scales of what was drawn or measured in each trial.
+    servo, servo_spread : float, ms
+    """
+
+    speed: float
+    threshold: float
+    frame: float
+    exposure: float
+    read_out: float = 0.0
+    transfer: float = 0.0
+    waiting: float = 1.0
+    compute: float = 1.0
+    wake_up: float = 1.0
+    servo: float = SERVO_MS
+    servo_spread: float = SERVO_SPREAD_MS
+
+    def exposed(self, phase: float, frame: int) -> float:
+        """When the exposure of a frame ends, ms after the contact; number 0 is the first to end after it."""
+        return (phase + frame) * self.frame
+
+    def middle(self, phase: float, frame: int) -> float:
+        """The middle of its exposure: what a picture of a steady press shows."""
+        return self.exposed(phase, frame) - self.exposure * self.frame / 2
+
+    def depth(self, phase: float, frame: int) -> float:
+        """How deep the pin is then, mm."""
+        return min(max(self.speed * self.middle(phase, frame) / 1000, 0.0), STOP_MM)
+
+
+@dataclass(frozen=True)
+class Draws:
+    """What chance decides in the trials of a path; one entry a trial.
+
+    Attributes
+    ----------
+    phase : float array, shares of a frame time from the contact to the end of the exposure
+    waiting : int array, finished frames that wait in the driver before this one
+    servo : float array, standard normal
+    noise : int array, seeds of the camera's noise
+    """
+
+    phase: np.ndarray
+    waiting: np.ndarray
+    servo: np.ndarray
+    noise: np.ndarray
+
+
+def draw(trials: int, seed: int, path: str) -> Draws:
+    random = np.random.default_rng([seed, list(FRAME_MS).index(path)])
+    return Draws(
+        random.random(trials),
+        random.integers(DRIVER_BUFFERS, size=trials),
+        random.standard_normal(trials),
+        random.integers(2**32, size=trials),
+    )
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for."""
+
+    size: int
+    clock_mhz: float
+    speed: float
+    trials: int
+    host_trials: int
+    seed: int
+    simulator: str
+    video: Path | None
+    out: Path
+
+
+def parse(arguments: Sequence[str]) -> Request:
+    """KEY=VALUE arguments to a Request; an empty value means the default.
+
+    Raises
+    ------
+    InputError
+    """
+    accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "VIDEO", "OUT")
+    given = variables.given(arguments, accepted)
+    number = partial(variables.number, given)
+    request = Request(
+        size=number("N", 128, *COLUMNS["spectral"]),
+        clock_mhz=number("CLOCK_MHZ", CLOCK_MHZ, 0.5, 400, float),
+        speed=number("SPEED", SPEED_MM_S, 5, 200, float),
+        trials=number("TRIALS", PUBLISHED["near"]["trials"], 2, 10_000),
+        host_trials=number("HOST_TRIALS", PUBLISHED["host"]["trials"], 2, 10_000),
+        seed=number("SEED", 1, 0, 10**9),
+        simulator=given.get("SIM", simulation.SIMULATORS[0]),
+        video=Path(given["VIDEO"]) if "VIDEO" in given else None,
+        out=Path(given.get("OUT", DEFAULT_OUT)),
+    )
+    for solver in COLUMNS:
+        Configuration(columns=request.size, solver=solver)
+    least = request.size**2 / FRAME_MS["near"] / 1000
+    if request.clock_mhz < least:
+        raise InputError(
+            f"CLOCK_MHZ={request.clock_mhz:g}: the pixels of {request.size} x {request.size} at "
+            f"{1000 / FRAME_MS['near']:g} frames/s come faster: accepted is {least:.4g} and more, or a smaller N"
+        )
+    if request.video is not None and request.video.suffix.lower() != ".gif":
+        raise InputError(f"VIDEO={request.video}: accepted is a file that ends in .gif")
+    if request.video is not None and (request.video.is_dir() or not request.video.parent.is_dir()):
+        raise InputError(
+            f"VIDEO={request.video}: its folder is missing, or it is one: accepted is a file that ends in .gif"
+        )
+    return request
+
+
+# Frames.
+
+
+def picture(setup: Setup, draws: Draws, trial: int, frame: int, size: int) -> np.ndarray:
+    """What the sensor sees of a trial in one of its frames: uint8 (size, size, 3)."""
+    depth = setup.depth(draws.phase[trial], frame)
+    seed = int(np.random.SeedSequence([int(draws.noise[trial]), frame + 1]).generate_state(1)[0])
+    name, press = (PIN, Press(depth)) if depth else ("flat", Press())
+    return render(name, size, seed=seed, press=press).frames[0]
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A frame on its way to the RTL. `slow`: at the camera's timing."""
+
+    trial: int
+    frame: int
+    slow: bool
+
+
+def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
+    """The frames of a trial: one from before the contact, then all until the pin is well beyond the threshold.
+
+    Those less than half as deep as the threshold cannot decide and come without gaps, to be done with them; if one
+    did decide, the run would fail.
+    """
+    phase = draws.phase[trial]
+    for frame in itertools.count(-1):
+        depth = setup.depth(phase, frame)
+        yield Sent(trial, frame, 2 * depth >= setup.threshold)
+        if depth >= 1.5 * setup.threshold:
+            return
+
+
+def calibration_on(size: int) -> Sensor:
+    return load("synthetic").scaled(scene_pixel_pitch_mm(size) / SYNTHETIC_PIXEL_PITCH_MM)
+
+
+# Near the sensor.
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What the pins showed in one trial, in clocks.
+
+    Attributes
+    ----------
+    frame : int
+        The first after which `contact` rose; 0 is the first whose exposure ended after the contact.
+    first_pixel_to_contact, last_pixel_to_contact, last_pixel_to_first_depth : int
+    place : int
+        Depths of the frame that left before the deciding one.
+    deciding_to_contact : int
+    """
+
+    frame: int
+    first_pixel_to_contact: int
+    last_pixel_to_contact: int
+    last_pixel_to_first_depth: int
+    place: int
+    deciding_to_contact: int
+
+
+@dataclass(frozen=True)
+class Loop:
+    """The trials of one solver through the RTL."""
+
+    config: Configuration
+    sent: list[Sent]
+    pixels: np.ndarray  # uint8 (frames, size, size, 3)
+    codes: np.ndarray  # int32 (frames, size, size), as they left
+    decisions: list[Decision]
+    faults: list[str]
+
+
+def spacing(request: Request) -> tuple[int, int]:
+    """Clocks from pixel to pixel at the camera's timing, and of a frame time."""
+    period = round(FRAME_MS["near"] * request.clock_mhz * 1000)
+    return period // request.size**2, period
+
+
+def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
+    """What the bench plays, and how many clocks that takes at least."""
+    gap, period = spacing(request)
+    parts: list[np.ndarray] = []
+    clocks = 0
+    for one, frame in zip(sent, pixels, strict=True):
+        step = gap if one.slow else 1
+        left = period - gap * request.size**2 if one.slow else 0
+        parts.append(np.array([bench.entry("source", bench.turns(1, step - 1))], np.uint32))
+        parts.append(bench.frame_entries(frame[None]))
+        if left:
+            parts.append(np.array([bench.entry("idle", left)], np.uint32))
+        clocks += step * request.size**2 + left
+    return np.concatenate(parts), clocks
+
+
+def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration) -> tuple[list[Decision], list[str]]:
+    """The first contact of each trial from what the bench wrote down, and what is not as it must be."""
+    taken, out = played.clocks("t"), played.clocks("d")
+    deciding: dict[int, int] = {}
+    contact: dict[int, int] = {}
+    index = -1
+    for letter, numbers in played.events:
+        if letter == "d":
+            index += 1
+        elif letter == "b":
+            deciding[index] = numbers[0]
+        elif letter == "c":
+            contact[index] = numbers[0]
+    found: list[Decision] = []
+    faults = []
+    expected = last_pixel_to_first_depth(config)
+    decided: set[int] = set()
+    if set(deciding) != set(contact):
+        faults.append("`contact` rose without a depth above the threshold, or did not rise after one")
+    for index, one in enumerate(sent):
+        first, last, depth = taken[2 * index], taken[2 * index + 1], out[index]
+        if depth - last != expected:
+            faults.append(f"trial {one.trial}: first depth {depth - last} clocks after the last pixel, not {expected}")
+        if index not in contact or one.trial in decided:
+            continue
+        decided.add(one.trial)
+        if not one.slow:
+            faults.append(f"trial {one.trial}: decided in a frame that was sent without gaps")
+        clock, above = contact[index], deciding.get(index, contact[index])
+        if clock - above != DECIDING_CLOCKS:
+            faults.append(f"trial {one.trial}: `contact` came {clock - above} clocks after the deciding depth")
+        found.append(Decision(one.frame, clock - first, clock - last, depth - last, above - depth, clock - above))
+    for trial in sorted({one.trial for one in sent} - decided):
+        faults.append(f"trial {trial}: `contact` never rose")
+    return found, faults
+
+
+def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
+    """The trials through the RTL of both solvers, at the same time."""
+    sent = [one for trial in range(request.trials) for one in sequence(setup, draws, trial)]
+    pixels = np.stack(
+        [
+            picture(setup, draws, one.trial, one.frame, request.size)
+            for one in tqdm(sent, desc="rendering", unit="frame", leave=False, disable=None)
+        ]
+    )
+    calibration = calibration_on(request.size)
+    played_entries, clocks = entries(request, sent, pixels)
+    configs = [Configuration(columns=request.size, rows=request.size, solver=solver) for solver in COLUMNS]
+    for config in configs:
+        bench.build(request.simulator, config)
+
+    def play(config: Configuration, folder: Path) -> bench.Played:
+        folder.mkdir()
+        return bench.play(
+            request.simulator,
+            config,
+            calibration,
+            played_entries,
+            folder,
+            clocks=2 * clocks + 16 * request.size**2,
+            total_frames=len(sent),
+            registers={"THRESHOLD": threshold_code(config)},
+            seed=request.seed,
+        )
+
+    with tempfile.TemporaryDirectory() as work, threads(min(len(configs), os.cpu_count() or 1)) as pool:
+        folders = [Path(work).resolve() / config.solver for config in configs]
+        runs = [pool.submit(play, config, folder) for config, folder in zip(configs, folders, strict=True)]
+        total = len(sent) * len(configs)
+        with tqdm(total=total, unit="frame", desc="RTL in the loop", leave=False, disable=None) as bar:
+            while not all(run.done() for run in runs):
+                time.sleep(0.2)
+                sizes = [f.stat().st_size if (f := folder / "depth.bin").exists() else 0 for folder in folders]
+                bar.update(sum(sizes) // (4 * request.size**2) - bar.n)
+        played = [run.result() for run in runs]
+    return [examine(config, one, sent, pixels, calibration) for config, one in zip(configs, played, strict=True)]
+
+
+def examine(
+    config: Configuration, played: bench.Played, sent: list[Sent], pixels: np.ndarray, calibration: Sensor
+) -> Loop:
+    codes = played.codes.reshape(len(sent), config.rows, config.columns)
+    found, faults = decisions(played, sent, config)
+    if not (codes == tactile_depth(pixels, calibration, config)).all():
+        faults.append("RTL differs from the model")
+    return Loop(config, sent, pixels, codes, found, [f"{config.solver}, {fault}" for fault in faults])
+
+
+def threshold_code(config: Configuration) -> int:
+    return round(CONTACT_THRESHOLD * config.rows / config.depth_lsb_px)
+
+
+# Trials.
+
+
+@dataclass(frozen=True)
+class Times:
+    """Of each trial of a path, ms; `parts` add up to contact to motion."""
+
+    command: np.ndarray
+    motion: np.ndarray
+    parts: dict[str, np.ndarray]
+
+
+def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, wake_up: np.ndarray) -> Times:
+    """From the deciding frames to motion.
+
+    Parameters
+    ----------
+    frames : int array, the deciding frame of each trial
+    compute, wake_up : float array, ms: from the last pixel to the decision, and how late the operating system was
+    """
+    middles = np.array([setup.middle(phase, frame) for phase, frame in zip(draws.phase, frames, strict=True)])
+    parts = {
+        "indentation grows to the threshold, and the next exposure comes": middles,
+        "half the exposure": np.full(len(frames), setup.exposure * setup.frame / 2),
+        "read-out": np.full(len(frames), setup.read_out * setup.frame),
+        "transfer": np.full(len(frames), setup.transfer),
+        "frames waiting": setup.waiting * draws.waiting * setup.frame,
+        "reconstruction": setup.compute * compute,
+        "operating system": setup.wake_up * wake_up,
+        "servo": setup.servo + setup.servo_spread * draws.servo,
+    }
+    motion = np.sum(list(parts.values()), axis=0)
+    return Times(motion - parts["servo"], motion, parts)
+
+
+def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: Sensor) -> tuple[int, float, float]:
+    """The deciding frame by double precision; how long its reconstruction took, and how late a sleep before it ended.
+
+    Returns
+    -------
+    frame : int
+    compute, wake_up : float, ms
+    """
+    for frame in itertools.count():
+        if 2 * setup.depth(draws.phase[trial], frame) < setup.threshold:
+            continue  # see `sequence`
+        pixels = picture(setup, draws, trial, frame, size)
+        begin = time.perf_counter()
+        time.sleep(ASLEEP_MS / 1000)
+        woken = time.perf_counter()
+        deepest = reference.depth(pixels, calibration).max() * scene_pixel_pitch_mm(size)
+        done = time.perf_counter()
+        if deepest > setup.threshold:
+            return frame, 1000 * (done - woken), max(1000 * (woken - begin) - ASLEEP_MS, 0.0)
+    raise AssertionError("unreachable")
+
+
+def in_software(setup: Setup, draws: Draws, size: int, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`first_above` of each trial: deciding frames, compute and wake-up in ms."""
+    calibration = calibration_on(size)
+    reference.depth(picture(setup, draws, 0, 0, size), calibration)  # the first is slower: imports, plans
+    trials = tqdm(range(len(draws.phase)), desc=name, unit="trial", leave=False, disable=None, delay=2)
+    found = [first_above(setup, draws, trial, size, calibration) for trial in trials]
+    frames, compute, wake_up = (np.array(values) for values in zip(*found, strict=True))
+    return frames, compute, wake_up
+
+
+def sensitivity(
+    setup: Setup, draws: Draws, size: int, base: tuple[np.ndarray, np.ndarray, np.ndarray], names: dict[str, str]
+) -> list[dict[str, Any]]:
+    """Contact to motion with one number of the setup halved or doubled, most moving first.
+
+    `base`: what `times` takes with the setup as it is. `names`: field of the setup to what the table calls it.
+    """
+    rows = []
+    for field, name in names.items():
+        row: dict[str, Any] = {"delay": name, "value": getattr(setup, field)}
+        for scale in SCALES:
+            changed = replace(setup, **{field: scale * getattr(setup, field)})
+            if max(changed.exposure, changed.read_out) > 1:  # no camera has time for it
+                row[f"x{scale:g}"] = None
+                continue
+            frames, compute, wake_up = base
+            if field in ("speed", "threshold", "frame", "exposure"):
+                frames, _, _ = in_software(changed, draws, size, f"{name} x {scale:g}")
+            motion = times(changed, draws, frames, compute, wake_up).motion
+            row[f"x{scale:g}"] = {"mean": float(motion.mean()), "sd": float(motion.std(ddof=1))}
+        rows.append(row)
+    middle = float(times(setup, draws, *base).motion.mean())
+
+    def moves(row: dict[str, Any]) -> float:
+        return max(abs(row[f"x{scale:g}"]["mean"] - middle) for scale in SCALES if row[f"x{scale:g}"])
+
+    return sorted(rows, key=moves, reverse=True)
+
+
+# Results.
+
+
+def statistics(values: np.ndarray) -> dict[str, Any]:
+    return {
+        "trials": len(values),
+        "mean": float(values.mean()),
+        "sd": float(values.std(ddof=1)),
+        "min": float(values.min()),
+        "max": float(values.max()),
+    }
+
+
+def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
+    """Two-sided Mann-Whitney U. 0: every trial near the sensor was quicker than every one through the host."""
+    result = mannwhitneyu(near, host, alternative="two-sided")
+    return {"U": float(result.statistic), "p": float(result.pvalue)}
+
+
+def within_published(near: dict[str, Any]) -> bool:
+    """Mean within the published mean +- standard deviation, and a spread no wider than the published one."""
+    mean, spread = PUBLISHED["near"]["motion"]
+    return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
+
+
+def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
+    """Every delay of the simulation and where it comes from."""
+    gap, _ = spacing(request)
+    threshold = f"{near.threshold:.3g} mm, {CONTACT_THRESHOLD * request.size:g} px"
+    return [
+        Delay("both", "approach", f"constant, {near.speed:g} mm/s", "assumption (SPEED); none is published"),
+        Delay("both", "threshold", f"constant, {threshold}", "that of make sim; none is published"),
+        Delay("near", "frame clock", f"uniform over {near.frame:g} ms", "published: 400 frames/s"),
+        Delay("near", "exposure", f"constant, {near.exposure:g} of a frame", "assumption; its middle counts"),
+        Delay(
+            "near",
+            "read-out",
+            f"constant, {near.read_out * near.frame:.3f} ms",
+            f"assumption: all of the frame, {gap} clocks a pixel",
+        ),
+        Delay("near", "pipeline", "the clocks counted in each trial", f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)"),
+        Delay(
+            "both", "servo", f"normal, {near.servo:g} +- {near.servo_spread:g} ms", "published; its shape: assumption"
+        ),
+        Delay("host", "frame clock", f"uniform over {host.frame:g} ms", "published: 25 frames/s"),
+        Delay("host", "exposure", f"constant, {host.exposure:g} of a frame", "assumption; its middle counts"),
+        Delay(
+            "host",
+            "transfer",
+            f"constant, {host.transfer:.1f} ms",
+            "640 x 480 YUYV (assumption) at USB 2.0's isochronous limit, 3 x 1,024 bytes a microframe (5.6.3, 5.9.2)",
+        ),
+        Delay(
+            "host",
+            "frames waiting",
+            f"0 to {DRIVER_BUFFERS - 1} frames, each as likely",
+            "OpenCV asks V4L2 for 4 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
+        ),
+        Delay("host", "reconstruction", "as measured in each trial", "tactile_depth.reference on this machine"),
+        Delay(
+            "host", "operating system", "as measured in each trial", f"lateness after a sleep of {ASLEEP_MS:g} ms, here"
+        ),
+    ]
+
+
+NEAR_NAMES = {
+    "speed": "approach speed, mm/s",
+    "threshold": "threshold, mm",
+    "frame": "frame time, ms (exposure and read-out with it)",
+    "exposure": "exposure, share of the frame time",
+    "read_out": "read-out, share of the frame time",
+    "compute": "pipeline (scale)",
+    "servo": "servo, ms",
+    "servo_spread": "servo's spread, ms",
+}
+HOST_NAMES = {
+    **{name: text for name, text in NEAR_NAMES.items() if name not in ("frame", "read_out", "compute")},
+    "frame": "frame time, ms (exposure and waiting with it)",
+    "transfer": "transfer, ms",
+    "waiting": "frames waiting (scale)",
+    "compute": "reconstruction (scale)",
+    "wake_up": "operating system (scale)",
+}
+
+
+def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]:
+    """Everything: the document that reflex.json holds, and what the video is made of."""
+    gap, _ = spacing(request)
+    clocks_per_ms = 1000 * request.clock_mhz
+    threshold = CONTACT_THRESHOLD * SENSOR_WIDTH_MM
+    read_out = gap * (request.size**2 - 1) / clocks_per_ms
+    near = Setup(
+        request.speed, threshold, FRAME_MS["near"], EXPOSURE, read_out=read_out / FRAME_MS["near"], waiting=0, wake_up=0
+    )
+    host = Setup(request.speed, threshold, FRAME_MS["host"], EXPOSURE, transfer=CAMERA_BYTES / USB_BYTES_PER_MS)
+    near_draws, host_draws = draw(request.trials, request.seed, "near"), draw(request.host_trials, request.seed, "host")
+
+    load = os.getloadavg()[0]
+    loops = loop(request, near, near_draws)
+    faults = [fault for one in loops for fault in one.faults]
+    if faults:
+        raise variables.Mismatch("; ".join(faults[:5]) + (f"; and {len(faults) - 5} more" if len(faults) > 5 else ""))
+    none = np.zeros(request.trials)
+    solvers: dict[str, Any] = {}
+    near_times: dict[str, Times] = {}
+    bases: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+    for one in loops:
+        frames = np.array([decision.frame for decision in one.decisions])
+        # The clock counted from the first pixel on says all; `times` has its read-out apart.
+        pipeline = np.array([d.first_pixel_to_contact for d in one.decisions]) / clocks_per_ms - read_out
+        bases[one.config.solver] = (frames, pipeline, none)
+        near_times[one.config.solver] = times(near, near_draws, *bases[one.config.solver])
+    host_base = in_software(host, host_draws, request.size, "host")
+    host_times = times(host, host_draws, *host_base)
+    for one in loops:
+        found = near_times[one.config.solver]
+        solvers[one.config.solver] = {
+            "command": statistics(found.command),
+            "motion": statistics(found.motion),
+            "command_against_host": rank_sum(found.command, host_times.command),
+            "motion_against_host": rank_sum(found.motion, host_times.motion),
+            "within_published": within_published(statistics(found.motion)),
+            "parts": {name: statistics(part) for name, part in found.parts.items() if part.any()},
+            "trials": [
+                {**asdict(decision), "command_ms": float(command), "motion_ms": float(motion)}
+                for decision, command, motion in zip(one.decisions, found.command, found.motion, strict=True)
+            ],
+        }
+    first = loops[0].config.solver
+    software, _, _ = in_software(near, near_draws, request.size, "near, in software")
+    document = {
+        "grid": [request.size, request.size],
+        "clock_mhz": request.clock_mhz,
+        "speed_mm_s": request.speed,
+        "threshold_mm": threshold,
+        "seed": request.seed,
+        "simulator": request.simulator,
+        "machine": machine(),
+        "load_before": load,
+        "published": PUBLISHED,
+        "delays": [asdict(delay) for delay in delays(request, near, host)],
+        "near": solvers,
+        "host": {
+            "command": statistics(host_times.command),
+            "motion": statistics(host_times.motion),
+            "parts": {name: statistics(part) for name, part in host_times.parts.items() if part.any()},
+            "trials": [
+                {"command_ms": float(command), "motion_ms": float(motion)}
+                for command, motion in zip(host_times.command, host_times.motion, strict=True)
+            ],
+        },
+        "sub_frame": sub_frame(loops, request),
+        "same_frame_by_double_precision": int((software == bases[first][0]).sum()),
+        "difference": difference(solvers[first], near),
+        "sensitivity": {
+            "near": sensitivity(near, near_draws, request.size, bases[first], NEAR_NAMES),
+            "host": sensitivity(host, host_draws, request.size, host_base, HOST_NAMES),
+        },
+    }
+    return document, loops, near, near_draws
+
+
+def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
+    """Where in the frame that leaves the deciding depth lies, and what the earlier of two starts is worth."""
+    rows: dict[str, Any] = {}
+    for one in loops:
+        rows[one.config.solver] = {
+            "last_pixel_to_first_depth": one.decisions[0].last_pixel_to_first_depth,
+            "place": statistics(np.array([d.place for d in one.decisions])),
+            "last_pixel_to_contact": statistics(np.array([d.last_pixel_to_contact for d in one.decisions])),
+            "deciding_to_contact": sorted({d.deciding_to_contact for d in one.decisions}),
+        }
+    spectral, tridiagonal = (
+        np.array([d.last_pixel_to_contact for one in loops if one.config.solver == solver for d in one.decisions])
+        for solver in ("spectral", "tridiagonal")
+    )
+    earlier = statistics(spectral - tridiagonal)
+    earlier["mean_us"] = earlier["mean"] / request.clock_mhz
+    return {"solvers": rows, "tridiagonal_earlier_clocks": earlier}
+
+
+def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
+    """What would have to differ for the published mean and spread of contact to command."""
+    mean, spread = PUBLISHED["near"]["command"]
+    middle = near["parts"]["indentation grows to the threshold, and the next exposure comes"]["mean"]
+    growth = middle - setup.frame / 2
+    wanted = growth + mean - near["command"]["mean"]
+    motion, motion_spread = PUBLISHED["near"]["motion"]
+    others = near["motion"]["mean"] - growth
+    slowest, quickest = (motion + sign * motion_spread - others for sign in (1, -1))  # growth, ms
+    clock = setup.frame / math.sqrt(12)
+
+    def approach(other: float) -> float | None:
+        """mm/s for which growing to the threshold takes so many ms; None: none is quick enough."""
+        return setup.speed * growth / other if other > 0 else None
+
+    return {
+        "growth_ms": growth,
+        "growth_for_published_mean_ms": wanted,
+        "speed_for_published_mean_mm_s": approach(wanted),
+        "slowest_within_mm_s": approach(slowest),
+        "quickest_within_mm_s": approach(quickest),
+        "spread_of_frame_clock_ms": clock,
+        "spread_left_ms": math.sqrt(max(spread**2 - clock**2, 0)),
+    }
+
+
+# Tables.
+
+
+def plus_minus(values: dict[str, Any]) -> str:
+    return f"{values['mean']:.1f} +- {values['sd']:.1f}"
+
+
+def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+    """What the command prints and the report shows: title, head and rows of each table."""
+    near, host, published = document["near"], document["host"], document["published"]
+
+    def row(name: str, path: dict[str, Any]) -> tuple[str, ...]:
+        motion = path["motion"]
+        keys = [key for key in ("command_against_host", "motion_against_host") if key in path]
+        against = " / ".join(f"{path[key]['U']:g}" for key in keys) or "-"
+        spread = f"{motion['min']:.1f} to {motion['max']:.1f}"
+        return (name, str(motion["trials"]), plus_minus(path["command"]), plus_minus(motion), spread, against)
+
+    def printed(name: str, path: dict[str, Any], against: str) -> tuple[str, ...]:
+        (command, command_sd), (motion, motion_sd) = path["command"], path["motion"]
+        low, high = path["range"]
+        spread = f"{low:.1f} to {high:.1f}"
+        shown = (f"{command:.1f} +- {command_sd:.1f}", f"{motion:.1f} +- {motion_sd:.1f}")
+        return (name, str(path["trials"]), *shown, spread, against)
+
+    comparison = [
+        *(row(f"near the sensor, {solver}", path) for solver, path in near.items()),
+        printed("near the sensor, published", published["near"], "0 / 0"),
+        row("host", host),
+        printed("host, published", published["host"], "-"),
+    ]
+    first = next(iter(near))
+    parts = [
+        *(
+            (f"near, {first}", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
+            for name, part in near[first]["parts"].items()
+        ),
+        *(("host", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}") for name, part in host["parts"].items()),
+    ]
+    clock = document["clock_mhz"]
+    pixels = math.prod(document["grid"])
+    places = []
+    for solver, found in document["sub_frame"]["solvers"].items():
+        place, contact = found["place"], found["last_pixel_to_contact"]
+        places.append(
+            (
+                solver,
+                f"{found['last_pixel_to_first_depth']:,}",
+                f"{place['mean']:,.0f} ({place['min']:,.0f} to {place['max']:,.0f})",
+                f"{100 * place['mean'] / pixels:.0f} %",
+                f"{contact['mean']:,.0f} ({contact['min']:,.0f} to {contact['max']:,.0f})",
+                f"{contact['mean'] / clock:.1f}",
+                ", ".join(map(str, found["deciding_to_contact"])),
+            )
+        )
+    sensitive = []
+    for path, base in (("near", near[first]), ("host", host)):
+        for line in document["sensitivity"][path]:
+            scaled = [line[f"x{scale:g}"] for scale in SCALES]
+            shifts = [f"{one['mean'] - base['motion']['mean']:+.2f}" if one else "-" for one in scaled]
+            spreads = [f"{one['sd']:.1f}" if one else "-" for one in scaled]
+            name = f"near, {first}" if path == "near" else path
+            sensitive.append((name, line["delay"], f"{line['value']:.4g}", *shifts, *spreads))
+    return {
+        "results": (
+            "Contact to command and to motion, ms",
+            ("path", "trials", "to command", "to motion", "range", "U to command / to motion"),
+            comparison,
+        ),
+        "parts": ("Where the time goes, ms", ("path", "part", "mean", "sd"), parts),
+        "delays": (
+            "The delays",
+            ("path", "delay", "distribution", "source"),
+            [tuple(delay.values()) for delay in document["delays"]],
+        ),
+        "sensitivity": (
+            "Contact to motion with one number halved or doubled, ms",
+            ("path", "number", "value", "mean moves by, x 0.5", "x 2", "sd, x 0.5", "x 2"),
+            sensitive,
+        ),
+        "sub_frame": (
+            f"The deciding depth in the frame that leaves, clocks (at {clock:g} MHz)",
+            (
+                *("solver", "last pixel to first depth", "depths before the deciding one", "of the frame"),
+                *("last pixel to contact", "us", "deciding depth to contact"),
+            ),
+            places,
+        ),
+    }
+
+
+def sentences(document: dict[str, Any]) -> list[str]:
+    """What the tables say, with their numbers."""
+    first, found = next(iter(document["near"].items()))
+    earlier, why = document["sub_frame"]["tridiagonal_earlier_clocks"], document["difference"]
+    share = 100 * earlier["mean_us"] / 1000 / found["command"]["mean"]
+    verdict = "within" if all(one["within_published"] for one in document["near"].values()) else "NOT within"
+    mean, spread = document["published"]["near"]["command"]
+
+    def speed(key: str) -> str:
+        return "infinitely many" if why[key] is None else f"{why[key]:.0f}"
+
+    return [
+        f"contact to motion near the sensor is {verdict} the published mean and trial-to-trial spread, both solvers",
+        f"the tridiagonal solver's early start: {earlier['mean']:,.0f} clocks, {earlier['mean_us']:.1f} us, "
+        f"{share:.1f} % of contact to command",
+        f"growing to the threshold takes {why['growth_ms']:.1f} ms here; the published mean of {mean} ms would leave "
+        f"it {why['growth_for_published_mean_ms']:.1f}, an approach of {speed('speed_for_published_mean_mm_s')} mm/s",
+        f"the mean contact to motion stays within the published mean +- spread for an approach of about "
+        f"{speed('slowest_within_mm_s')} to {speed('quickest_within_mm_s')} mm/s",
+        f"the frame clock alone gives a spread of {why['spread_of_frame_clock_ms']:.2f} ms; of the published {spread} "
+        f"ms {why['spread_left_ms']:.1f} ms are left to what differs from press to press and is not simulated",
+        f"double precision decides in the same frame in {document['same_frame_by_double_precision']} of "
+        f"{found['motion']['trials']} trials ({first})",
+    ]
+
+
+def show(document: dict[str, Any]) -> str:
+    parts = [f"{title}\n\n{markdown.table(head, rows)}" for title, head, rows in tables(document).values()]
+    rows, columns = document["grid"]
+    machine = f"{document['machine']} (load {document['load_before']:.1f} before)"
+    setting = f"{rows} x {columns}, seed {document['seed']}, {machine}"
+    return "\n\n".join([setting, *parts, *["\n".join(sentences(document))]])
+
+
+def run(request: Request) -> None:
+    """Measure, print, and write reflex.json, reflex.png and the video, all or none of them.
+
+    Raises
+    ------
+    InputError, Mismatch, RuntimeError
+    """
+    simulation.check(request.simulator)
+    with results.workspace(request.out, RESULTS) as work:
+        document, loops, setup, draws = measure(request)
+        print(show(document))
+        (work / "reflex.json").write_text(json.dumps(document, indent=1) + "\n")
+        reflex_pictures.plot(work / "reflex.png", document)
+        if request.video is not None:
+            print("drawing the video ..", flush=True)
+            reflex_pictures.video(work / "trial.gif", trial_film(loops[0], setup, draws, request))
+            shutil.copy(work / "trial.gif", draft := request.video.with_name(f".{request.video.name}"))
+            os.replace(draft, request.video)
+        results.replace(work, RESULTS, request.out)
+    print(f"results: {os.path.relpath(request.out)}")
+
+
+def trial_film(one: Loop, setup: Setup, draws: Draws, request: Request) -> reflex_pictures.Film:
+    """The first trial, up to a little after its command."""
+    chosen = [index for index, sent in enumerate(one.sent) if sent.trial == 0 and sent.frame <= one.decisions[0].frame]
+    decision, phase = one.decisions[0], draws.phase[0]
+    per_ms = 1000 * request.clock_mhz
+    return reflex_pictures.Film(
+        frames=one.pixels[chosen],
+        depth_mm=one.codes[chosen] * one.config.depth_lsb_px * scene_pixel_pitch_mm(request.size),
+        begin_ms=np.array([setup.exposed(phase, one.sent[index].frame) for index in chosen]),
+        read_out_ms=setup.read_out * setup.frame,
+        first_depth_ms=setup.read_out * setup.frame + decision.last_pixel_to_first_depth / per_ms,
+        depth_out_ms=request.size**2 / per_ms,
+        command_ms=setup.exposed(phase, decision.frame) + decision.first_pixel_to_contact / per_ms,
+        threshold_mm=setup.threshold,
+        bottom_first=one.config.solver == "tridiagonal",
+        title=f"a pin at {request.speed:g} mm/s, {request.size} x {request.size}, {one.config.solver} solver",
+    )
+
+
+def main() -> None:
+    with variables.reported("reflex", "nothing was written"):
+        run(parse(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()

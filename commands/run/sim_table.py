@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of a run of `make sim`: latencies, the hardware's own counters, and the table that is printed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from commands.run import bench
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.spectral_divide import reciprocal_rom
+from tactile_depth.poisson.thomas_table import thomas_table
+
+ROWS_SHOWN = 16
+
+
+def measure(played: bench.Played) -> dict[str, list[int | None]]:
+    """Latencies of each frame, in clocks, from the events of the bench."""
+    taken, depth, end = (played.clocks(letter) for letter in "tde")
+    first, last = taken[::2], taken[1::2]
+    contact: dict[int, int] = {}
+    frame = -1
+    for letter, numbers in played.events:
+        if letter == "d":
+            frame += 1
+        elif letter == "c":
+            contact[frame] = numbers[0]
+    frames = range(len(end))
+    return {
+        "first_depth_latency_cycles": [depth[i] - first[i] for i in frames],
+        "last_depth_latency_cycles": [end[i] - first[i] for i in frames],
+        "last_pixel_to_first_depth_cycles": [depth[i] - last[i] for i in frames],
+        "frame_interval_cycles": [depth[i] - depth[i - 1] if i else None for i in frames],
+        "contact_latency_cycles": [contact[i] - first[i] if i in contact else None for i in frames],
+    }
+
+
+def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
+    """What the hardware counted against what was seen from outside; one line for each that differs."""
+    total = report["frames"]
+    clipped = sum(report["saturations"].values())
+    expected = {
+        "frames_in": total,
+        "frames_out": total,
+        "frames_dropped": 0,
+        "saturations": min(clipped, 2**32 - 1),
+    }
+    if not stalls:
+        expected["first_depth_latency"] = report["first_depth_latency_cycles"][-1]
+    return [
+        f"register {name.upper()} says {registers[name]}, expected {value}"
+        for name, value in expected.items()
+        if registers[name] != value
+    ]
+
+
+def coefficient_words(config: Configuration) -> int:
+    """Words of the table along the columns: reciprocals (spectral), or coefficients of Thomas's algorithm."""
+    if config.solver == "spectral":
+        return len(reciprocal_rom(config))
+    return len(thomas_table(config).words) + config.columns
+
+
+def table(report: dict, labels: tuple[str, ...]) -> str:
+    """One line a frame, the sequence once; then what holds for all."""
+
+    def cell(value: float | None, digits: int = 5) -> str:
+        return "-" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.{digits}f}"
+
+    head = ("frame", "first depth", "last px > depth", "interval", "contact", "RMS % peak", "max % peak")
+    columns = (
+        "first_depth_latency_cycles",
+        "last_pixel_to_first_depth_cycles",
+        "frame_interval_cycles",
+        "contact_latency_cycles",
+        "rms_percent_of_peak",
+        "max_percent_of_peak",
+    )
+    lines = ["".join(f"{name:>17}" if i else f"{name:<20}" for i, name in enumerate(head))]
+    shown = min(len(labels), ROWS_SHOWN)
+    for i in range(shown):
+        cells = "".join(f"{cell(report[column][i]):>17}" for column in columns)
+        lines.append(f"{labels[i][:19]:<20}{cells}")
+    if report["frames"] > shown:
+        lines.append(f"and {report['frames'] - shown:,} frames more: report.json")
+    rms = [value for value in report["rms_percent_of_peak"] if value is not None]
+    if rms:
+        lines.append(f"mean RMS {np.mean(rms):.5f} % of peak, worst {max(rms):.5f} %")
+    for column in columns[:3]:
+        values = {value for value in report[column] if value is not None}
+        if values:
+            spread = f"{min(values):,}" if len(values) == 1 else f"{min(values):,} to {max(values):,}"
+            lines.append(f"{column.removesuffix('_cycles').replace('_', ' ')}: {spread} cycles, all frames")
+    clipped = report["saturations"]
+    lines.append(
+        f"saturated: {', '.join(f'{node} {count:,}' for node, count in clipped.items())}"
+        if clipped
+        else "no saturation"
+    )
+    return "\n".join(lines)

@@ -1,0 +1,661 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make baselines`: the solve in software, one frame at a time, against the pipeline's fixed count of clocks.
+
+The same 2-D solve (divergence in, depth out, single precision) on the same frames, the contacts of the bench in turn,
+in scipy, ducc0, pyFFTW and PyTorch, on one core and on all, and on CUDA where there is a device, the frames already on
+it. And the tridiagonal solver's method on the CPU: ducc0 along the rows, Thomas's algorithm by numba down the columns.
+Every result is checked by tactile_depth.reference before it is timed: WARM_UPS solves, then RUNS that count, or as many
+as there is time for. Each method is timed in a process of its own, so that none runs beside the threads of another.
+
+Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a result is wrong,
+2 bad input. What is not installed says so in its row: `make baselines` installs requirements-baselines.txt.
+"""
+
+from __future__ import annotations
+
+import gc
+import importlib.metadata
+import importlib.util
+import json
+import math
+import multiprocessing
+import os
+import signal
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import scipy.fft
+from tqdm import tqdm
+
+from commands.common import markdown, repository, results, variables
+from commands.common.machine import machine
+from commands.study.tune import CLOCK_MHZ
+from tactile_depth import reference
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.scenes import render
+from tactile_depth.sensor import synthetic
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt
+
+RESULTS = ("baselines.json", "baselines.png")
+DEFAULT_OUT = repository.ROOT / "build" / "baselines"
+GRIDS = (64, 128, 256, 512)
+SCENE = "bench"
+WARM_UPS, RUNS, FEWEST_RUNS = 100, 1000, 10
+SECONDS = 480  # for all solves together: where threads disturb each other, or other programs do, a solve may take 0.1
+# Of a result, RMS to double precision in % of peak: measured at most 0.00005 (PyTorch's products of matrices at 512).
+TOLERANCE_PERCENT = 0.0001
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+Solve = Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to solve in software.
+
+    Attributes
+    ----------
+    prepare : function (size, threads) to (solve, give, take, synchronise)
+        `give` turns a float32 array into what `solve` takes, `take` its result into an array; neither is timed.
+        `synchronise` waits for a device.
+    packages : tuple of str, as distributions are named
+    device : bool
+        It runs on CUDA.
+    """
+
+    name: str
+    prepare: Callable[[int, int], Prepared]
+    packages: tuple[str, ...]
+    device: bool = False
+
+
+@dataclass(frozen=True)
+class Prepared:
+    solve: Solve
+    give: Callable[[np.ndarray], Any] = np.asarray
+    take: Callable[[Any], np.ndarray] = np.asarray
+    synchronise: Callable[[], None] | None = None
+
+
+def inverse_eigenvalues(size: int) -> np.ndarray:
+    values = reference.eigenvalues(size)
+    return 1 / (values[:, None] + values)
+
+
+def with_scipy(size: int, threads: int) -> Prepared:
+    factor = inverse_eigenvalues(size).astype(np.float32)
+
+    def solve(f: np.ndarray) -> np.ndarray:
+        modes = scipy.fft.dstn(f, type=2, workers=threads)
+        modes *= factor
+        return scipy.fft.idstn(modes, type=2, workers=threads, overwrite_x=True)
+
+    return Prepared(solve)
+
+
+def with_ducc0(size: int, threads: int) -> Prepared:
+    from ducc0.fft import dst
+
+    factor = (inverse_eigenvalues(size) / (2 * size) ** 2).astype(
+        np.float32
+    )  # type 3 undoes type 2 but for 2 N an axis
+    modes, depth = np.empty_like(factor), np.empty_like(factor)
+
+    def solve(f: np.ndarray) -> np.ndarray:
+        dst(f, type=2, out=modes, nthreads=threads)
+        np.multiply(modes, factor, out=modes)
+        return dst(modes, type=3, out=depth, nthreads=threads)
+
+    return Prepared(solve)
+
+
+def with_pyfftw(size: int, threads: int) -> Prepared:
+    import pyfftw
+
+    factor = (inverse_eigenvalues(size) / (2 * size) ** 2).astype(np.float32)
+    f, modes, depth = (pyfftw.empty_aligned((size, size), np.float32) for _ in range(3))
+
+    def plan(source: np.ndarray, target: np.ndarray, kind: str) -> Any:
+        return pyfftw.FFTW(
+            source, target, axes=(0, 1), direction=(kind, kind), threads=threads, flags=("FFTW_MEASURE",)
+        )
+
+    forward, backward = plan(f, modes, "FFTW_RODFT10"), plan(modes, depth, "FFTW_RODFT01")
+
+    def solve(given: np.ndarray) -> np.ndarray:
+        f[:] = given
+        forward.execute()
+        np.multiply(modes, factor, out=modes)
+        backward.execute()
+        return depth
+
+    return Prepared(solve)
+
+
+def with_tridiagonal(size: int, threads: int) -> Prepared:
+    """DST along the rows, Thomas's algorithm down the columns: the tridiagonal solver in floats."""
+    import numba
+    from ducc0.fft import dst
+
+    diagonal = np.tile(reference.eigenvalues(size) - 2, (size, 1))
+    diagonal[[0, -1]] -= 1
+    table = np.empty((size, size))
+    table[0] = 1 / diagonal[0]
+    for row in range(1, size):
+        table[row] = 1 / (diagonal[row] - table[row - 1])
+    coefficients = table.astype(np.float32)
+    share = -(-size // threads)
+    scale = np.float32(0.5 / size)  # what the two transforms along the rows leave
+
+    @numba.njit(fastmath=True, parallel=threads > 1)
+    def columns(modes: np.ndarray, c: np.ndarray, scale: float) -> None:
+        rows = len(modes)
+        for part in numba.prange(threads):
+            begin, end = part * share, min((part + 1) * share, modes.shape[1])
+            for k in range(begin, end):
+                modes[0, k] *= scale * c[0, k]
+            for i in range(1, rows):
+                for k in range(begin, end):
+                    modes[i, k] = (scale * modes[i, k] - modes[i - 1, k]) * c[i, k]
+            for i in range(rows - 2, -1, -1):
+                for k in range(begin, end):
+                    modes[i, k] -= c[i, k] * modes[i + 1, k]
+
+    modes, depth = np.empty_like(coefficients), np.empty_like(coefficients)
+
+    def solve(f: np.ndarray) -> np.ndarray:
+        dst(f, axes=(1,), type=2, out=modes, nthreads=threads)
+        columns(modes, coefficients, scale)
+        return dst(modes, axes=(1,), type=3, out=depth, nthreads=threads)
+
+    return Prepared(solve)
+
+
+def _on(device: str, threads: int) -> tuple[Any, Callable[[np.ndarray], Any], Callable[[Any], np.ndarray], Any]:
+    import torch
+
+    if device == "cpu":
+        torch.set_num_threads(threads)
+    torch.backends.cuda.matmul.allow_tf32 = False
+    synchronise = torch.cuda.synchronize if device == "cuda" else None
+    return torch, lambda array: torch.tensor(array, device=device), lambda tensor: tensor.cpu().numpy(), synchronise
+
+
+def with_torch_fft(size: int, threads: int, device: str = "cpu") -> Prepared:
+    """PyTorch has no DST: Makhoul's way through a real FFT of the same length, as the hardware goes."""
+    torch, give, take, synchronise = _on(device, threads)
+    half = size // 2
+    mode = np.arange(size)
+    phase = np.exp(-0.5j * np.pi * mode / size)
+    forward_phase = give((2 * phase[: half + 1]).astype(np.complex64))
+    factor = give(inverse_eigenvalues(size).astype(np.float32))
+    inverse_phase = give((0.5 * np.conj(phase[: half + 1])).astype(np.complex64))
+    sign = give(np.where(mode % 2, -1, 1).astype(np.float32))
+    order = np.concatenate([mode[::2], mode[1::2][::-1]])  # x0, x2, .., x3, x1
+    to_burst, from_burst = give(order), give(np.argsort(order))
+
+    def forward(x: Any) -> Any:
+        """DST-II of the last axis, unnormalised as scipy's."""
+        c = torch.fft.rfft((x * sign)[..., to_burst]) * forward_phase
+        cosine = torch.cat((c.real, -c.imag[..., 1:half].flip(-1)), -1)  # C[k], then C[N - k]
+        return cosine.flip(-1)
+
+    def backward(y: Any) -> Any:
+        c = y.flip(-1)
+        zero = torch.zeros_like(c[..., :1])
+        other = torch.cat((zero, c.flip(-1)), -1)[..., : half + 1]  # C[N - k]
+        v = torch.complex(c[..., : half + 1], -other) * inverse_phase
+        return torch.fft.irfft(v, n=size)[..., from_burst] * sign
+
+    def solve(f: Any) -> Any:
+        modes = forward(forward(f).mT).mT * factor
+        return backward(backward(modes).mT).mT
+
+    return Prepared(torch.inference_mode()(solve), give, take, synchronise)
+
+
+def with_torch_matmul(size: int, threads: int, device: str = "cpu") -> Prepared:
+    """The transforms as products with a dense matrix of sines."""
+    torch, give, take, synchronise = _on(device, threads)
+    sines = scipy.fft.dst(np.eye(size), type=2, axis=0, norm="ortho")
+    right, left = (give(np.ascontiguousarray(m).astype(np.float32)) for m in (sines.T, sines))
+    factor = give(inverse_eigenvalues(size).astype(np.float32))
+
+    def solve(f: Any) -> Any:
+        return right @ ((left @ f @ right) * factor) @ left
+
+    return Prepared(torch.inference_mode()(solve), give, take, synchronise)
+
+
+def _on_cuda(prepare: Callable[..., Prepared]) -> Callable[[int, int], Prepared]:
+    return lambda size, threads: prepare(size, threads, "cuda")
+
+
+METHODS = (
+    Method("scipy, dstn", with_scipy, ("scipy",)),
+    Method("ducc0, dst", with_ducc0, ("ducc0",)),
+    Method("pyFFTW, RODFT10", with_pyfftw, ("pyFFTW",)),
+    Method("PyTorch, rfft", with_torch_fft, ("torch",)),
+    Method("PyTorch, products of matrices", with_torch_matmul, ("torch",)),
+    Method("ducc0 rows, numba tridiagonal", with_tridiagonal, ("ducc0", "numba")),
+    Method("PyTorch, rfft, CUDA", _on_cuda(with_torch_fft), ("torch",), device=True),
+    Method("PyTorch, products of matrices, CUDA", _on_cuda(with_torch_matmul), ("torch",), device=True),
+)
+
+
+def missing(method: Method) -> str:
+    """Why a method cannot run here; nothing when it can."""
+    absent = []
+    for package in method.packages:
+        try:
+            importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            absent.append(package)
+    return f"{', '.join(absent)} not installed" if absent else ""
+
+
+def frames(size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Divergence of the bench's contacts, float32, and the reference's depth, float64: (frames, size, size) each."""
+    f = divergence(reference.slopes(render(SCENE, size).frames, synthetic())).astype(np.float32)
+    return f, reference.solve(f.astype(np.float64))
+
+
+def percent_of_peak(depth: np.ndarray, wanted: np.ndarray) -> float:
+    """RMS difference over the whole frame, no fitted scale or offset, in % of the peak."""
+    return 100 * math.sqrt(np.mean((depth - wanted) ** 2)) / float(wanted.max())
+
+
+@dataclass(frozen=True)
+class Job:
+    """One of `METHODS`, by its number, for a process of its own.
+
+    Attributes
+    ----------
+    scenes : dict of int to pair of arrays, `frames` by grid
+    until : float
+        When all should be done, by time.monotonic.
+    cells : int
+        Grids of this job and of all that follow it: until then each may take twice its share.
+    """
+
+    number: int
+    threads: int
+    scenes: dict[int, tuple[np.ndarray, np.ndarray]]
+    runs: int
+    until: float
+    cells: int
+
+
+def measure(job: Job) -> list[dict[str, Any]]:
+    """Check and time a method.
+
+    Returns
+    -------
+    list of dict, one a grid: `error_percent`, the worst frame's, and `times_us`; or `problem`
+    """
+    method = METHODS[job.number]
+    if method.device:
+        import torch
+
+        if not torch.cuda.is_available():
+            return [{"problem": "no device"} for _ in job.scenes]
+    found: list[dict[str, Any]] = []
+    for index, (size, (f, wanted)) in enumerate(job.scenes.items()):
+        end = time.monotonic() + 2 * (job.until - time.monotonic()) / (job.cells - index)
+        prepared = method.prepare(size, job.threads)
+        given = [prepared.give(one) for one in f]
+        depths = [np.array(prepared.take(prepared.solve(one)), np.float64) for one in given]
+        error = max(percent_of_peak(*pair) for pair in zip(depths, wanted, strict=True))
+        if not error <= TOLERANCE_PERCENT:
+            found.append({"error_percent": error, "problem": "wrong result"})
+            continue
+        wait = prepared.synchronise or (lambda: None)
+        gc.disable()
+        half = (time.monotonic() + end) / 2
+        times = _timed(prepared.solve, given, wait, WARM_UPS, half) and _timed(
+            prepared.solve, given, wait, job.runs, end
+        )
+        gc.enable()
+        found.append({"error_percent": error, "times_us": times})
+    return found
+
+
+def _timed(solve: Solve, given: Sequence[Any], wait: Callable[[], None], runs: int, end: float) -> list[float]:
+    """Times in us of so many solves, or of those until the end, and FEWEST_RUNS of them at least."""
+    times: list[float] = []
+    while len(times) < runs and (time.monotonic() < end or len(times) < FEWEST_RUNS):
+        one = given[len(times) % len(given)]
+        wait()
+        begin = time.perf_counter_ns()
+        solve(one)
+        wait()
+        times.append((time.perf_counter_ns() - begin) / 1000)
+    return times
+
+
+def in_own_process(job: Job) -> list[dict[str, Any]]:
+    """`measure` there, with as many threads as it is told."""
+    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(job.threads)))
+    try:
+        with ProcessPoolExecutor(
+            1,
+            mp_context=multiprocessing.get_context("spawn"),
+            initializer=signal.signal,
+            initargs=(signal.SIGINT, signal.SIG_DFL),  # ended without a word
+        ) as pool:
+            return pool.submit(measure, job).result()
+    except BrokenProcessPool:
+        return [{"problem": "it crashed"} for _ in job.scenes]
+    except ImportError as error:
+        return [{"problem": " ".join(f"cannot be loaded: {error}".split())} for _ in job.scenes]
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+# The pipeline, in clocks from the last pixel on: what it has to wait for as software does.
+
+
+def pipeline(sizes: Sequence[int], clock_mhz: float) -> list[dict[str, Any]]:
+    rows = []
+    for size in sizes:
+        for solver in COLUMNS:
+            config = Configuration(columns=size, solver=solver)
+            first = last_pixel_to_first_depth(config)
+            last = first + size * size - 1
+            clocks = {"first_depth": first, "last_depth": last}
+            micros = {f"{name}_us": count / clock_mhz for name, count in clocks.items()}
+            rows.append({"grid": size, "solver": solver, **clocks, **micros})
+    return rows
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for."""
+
+    grids: tuple[int, ...]
+    runs: int
+    clock_mhz: float
+    out: Path
+
+
+def parse(arguments: Sequence[str]) -> Request:
+    """KEY=VALUE arguments to a Request; an empty value means the default.
+
+    Raises
+    ------
+    InputError
+    """
+    given = defaultdict(str, variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT")))
+    number = partial(variables.number, given)
+    low, high = COLUMNS["spectral"]
+    try:
+        grids = tuple(int(part) for part in given["GRIDS"].split(",")) if given["GRIDS"] else GRIDS
+    except ValueError:
+        grids = ()
+    if not grids or any(not low <= size <= high or size & (size - 1) for size in grids):
+        raise InputError(f"GRIDS={given['GRIDS']}: accepted are powers of two from {low} to {high}, as 64,128")
+    return Request(
+        grids=tuple(sorted(set(grids))),
+        runs=number("RUNS", RUNS, FEWEST_RUNS, 1_000_000),
+        clock_mhz=number("CLOCK_MHZ", CLOCK_MHZ, 0.001, 10_000, float),
+        out=Path(given["OUT"]) if given["OUT"] else DEFAULT_OUT,
+    )
+
+
+def summarise(row: dict[str, Any]) -> dict[str, Any]:
+    """Percentiles in place of the times."""
+    times = row.pop("times_us", None)
+    if times is not None:
+        low, median, high = np.percentile(times, (1, 50, 99))
+        row |= {
+            "runs": len(times),
+            "p1_us": float(low),
+            "p50_us": float(median),
+            "p99_us": float(high),
+            "max_us": max(times),
+        }
+    return row
+
+
+def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """The document that baselines.json holds, and the rows with every time, for the picture.
+
+    Raises
+    ------
+    RuntimeError
+        A result is not that of the reference.
+    """
+    cores = len(os.sched_getaffinity(0))
+    load = os.getloadavg()[0]
+    jobs = [  # all cores last: where they are not free, that takes longest
+        (number, threads)
+        for threads in sorted({1, cores})
+        for number, method in enumerate(METHODS)
+        if threads == 1 or not method.device
+    ]
+    rows: list[dict[str, Any]] = []
+    scenes = {size: frames(size) for size in request.grids}
+    until = time.monotonic() + SECONDS
+    with tqdm(jobs, leave=False, disable=None) as bar:
+        for done, (number, threads) in enumerate(bar):
+            method = METHODS[number]
+            bar.set_description(f"{method.name}, {threads} threads")
+            job = Job(number, threads, scenes, request.runs, until, (len(jobs) - done) * len(scenes))
+            problem = missing(method)
+            found = [{"problem": problem} for _ in scenes] if problem else in_own_process(job)
+            for size, one in zip(scenes, found, strict=True):
+                rows.append({"grid": size, "method": method.name, "threads": None if method.device else threads, **one})
+    names = [method.name for method in METHODS]
+    rows.sort(key=lambda row: names.index(row["method"]))
+    wrong = [row for row in rows if row.get("problem") == "wrong result"]
+    if wrong:
+        row = wrong[0]
+        raise variables.Mismatch(
+            f"{row['method']} at {row['grid']}, {row['threads']} threads, is {row['error_percent']:.2g} % of peak from "
+            f"the reference: at most {TOLERANCE_PERCENT:g} is right"
+        )
+    packages = sorted({package for method in METHODS for package in method.packages if not missing(method)})
+    document = {
+        "machine": machine(),
+        "load_before": load,
+        "packages": {package: importlib.metadata.version(package) for package in packages},
+        "clock_mhz": request.clock_mhz,
+        "warm_ups": WARM_UPS,
+        "runs": request.runs,
+        "tolerance_percent": TOLERANCE_PERCENT,
+        "software": [summarise(dict(row)) for row in rows],
+        "pipeline": pipeline(request.grids, request.clock_mhz),
+    }
+    return document, rows
+
+
+# What comes of it.
+
+
+def threads_of(row: dict[str, Any]) -> str:
+    return "device" if row["threads"] is None else str(row["threads"])
+
+
+def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+    """Title, head and rows: in short, and for each grid."""
+    made = [summary(document)]
+    head = ("from the frame's last pixel, us", "threads", "p50", "p99", "maximum", "error, % of peak")
+    for size in sorted({row["grid"] for row in document["pipeline"]}):
+        rows: list[tuple[str, ...]] = []
+        for row in document["pipeline"]:
+            if row["grid"] == size:
+                for what in ("first_depth", "last_depth"):
+                    micros = f"{row[f'{what}_us']:.1f}"
+                    name = f"pipeline, {row['solver']}, {what.replace('_', ' ')}"
+                    rows.append((name, f"{row[what]:,} clocks", micros, micros, micros, "-"))
+        for row in document["software"]:
+            if row["grid"] == size:
+                figures = [f"{row[key]:,.1f}" if key in row else "-" for key in ("p50_us", "p99_us", "max_us")]
+                error = row.get("problem") or f"{row['error_percent']:.6f}"
+                if row.get("runs", document["runs"]) < document["runs"]:
+                    error += f" ({row['runs']} solves)"
+                rows.append((row["method"], threads_of(row), *figures, error))
+        made.append((f"{size} x {size}", head, rows))
+    return made
+
+
+def fastest(document: dict[str, Any], size: int) -> dict[str, Any]:
+    """The row of the least median."""
+    timed = [row for row in document["software"] if row["grid"] == size and "p50_us" in row]
+    return min(timed, key=lambda row: row["p50_us"])
+
+
+def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
+    """Title, head and rows of a table with one line a grid."""
+    rows = []
+    for size in sorted({row["grid"] for row in document["pipeline"]}):
+        best = fastest(document, size)
+        ours = [
+            f"{row['first_depth_us']:,.1f} / {row['last_depth_us']:,.1f}"
+            for row in document["pipeline"]
+            if row["grid"] == size
+        ]
+        figures = (f"{best[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us"))
+        rows.append((f"{size} x {size}", f"{best['method']}, {threads_of(best)}", *figures, *ours))
+    pipelines = (f"{solver} pipeline: first depth / whole map" for solver in COLUMNS)
+    head = ("us after the last pixel", "fastest in software, threads", "p50", "p99", "maximum", *pipelines)
+    return "In short", head, rows
+
+
+def sentences(document: dict[str, Any]) -> list[str]:
+    """For each grid, where software is faster and where it is not."""
+
+    def place(micros: float, row: dict[str, Any]) -> str:
+        if micros > row["max_us"]:
+            return "after its maximum: software is faster"
+        if micros > row["p99_us"]:
+            return "after its p99 but not its maximum: software is faster in 99 of 100 solves, not in all"
+        return "after its median but not its p99" if micros > row["p50_us"] else "before its median"
+
+    lines = []
+    for size in sorted({row["grid"] for row in document["pipeline"]}):
+        best = fastest(document, size)
+        parts = [
+            f"the {row['solver']} pipeline's {what} ({row[key]:,.1f}) comes {place(row[key], best)}"
+            for row in document["pipeline"]
+            if row["grid"] == size
+            for what, key in (("whole map", "last_depth_us"), ("first depth", "first_depth_us"))
+        ]
+        name = f"{best['method']} ({threads_of(best)} thread{'' if best['threads'] == 1 else 's'})"
+        lines.append(
+            f"{size} x {size}, us: the fastest software, {name}, takes {best['p50_us']:,.1f}, p99 "
+            f"{best['p99_us']:,.1f}, maximum {best['max_us']:,.1f}; {'; '.join(parts)}"
+        )
+    return lines
+
+
+def setting(document: dict[str, Any]) -> str:
+    packages = ", ".join(f"{name} {version}" for name, version in document["packages"].items())
+    return (
+        f"{document['machine']} (load {document['load_before']:.1f} before); {packages}; {document['warm_ups']} "
+        f"warm-ups and {document['runs']:,} solves timed, one frame at a time, float32; pipeline at "
+        f"{document['clock_mhz']:g} MHz. Software begins with the divergence in memory, the pipeline with the pixels"
+    )
+
+
+def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -> None:
+    """Every solve, a row for each method, and the pipeline's two fixed times as lines."""
+    sizes = sorted({row["grid"] for row in document["pipeline"]})
+    names = list(dict.fromkeys((row["method"], threads_of(row)) for row in rows if "times_us" in row))
+    across = min(2, len(sizes))
+    down = -(-len(sizes) // across)
+    shape = (6.6 * across, 1.2 + down * (0.9 + 0.24 * len(names)))
+    figure, axes = plt.subplots(down, across, figsize=shape, layout="constrained", squeeze=False, sharey=True)
+    jitter = np.random.default_rng(0)
+    styles = {"spectral": ("#08306b", "-"), "tridiagonal": ("#e6550d", "--")}
+    for axis, size in zip(axes.flat, sizes, strict=False):
+        for row in rows:
+            if row["grid"] != size or "times_us" not in row:
+                continue
+            place = names.index((row["method"], threads_of(row)))
+            times = np.array(row["times_us"])
+            at = place + jitter.uniform(-0.3, 0.3, len(times))
+            axis.scatter(times, at, s=2, color="0.6", linewidths=0, rasterized=True)
+            for value, marker in zip(np.percentile(times, (50, 99, 100)), ("|", "d", ">"), strict=True):
+                look = {"markersize": 11 if marker == "|" else 4, "markeredgewidth": 1.5, "linestyle": "none"}
+                axis.plot([value], [place], color="black", marker=marker, **look)
+        for row in document["pipeline"]:
+            if row["grid"] == size:
+                colour, style = styles[row["solver"]]
+                label = f"{row['solver']} pipeline"
+                axis.axvline(row["last_depth_us"], color=colour, linestyle=style, label=f"{label}, whole map")
+                axis.axvline(
+                    row["first_depth_us"],
+                    color=colour,
+                    linestyle=style,
+                    linewidth=0.8,
+                    alpha=0.6,
+                    label=f"{label}, first depth",
+                )
+        axis.set(xscale="log", title=f"{size} x {size}")
+        axis.grid(axis="x", alpha=0.3)
+    for axis in axes.flat[len(sizes) :]:
+        axis.set_axis_off()
+    for axis in axes[-1]:
+        axis.set_xlabel("us after the frame's last pixel")
+    for axis in axes[:, 0]:
+        axis.set_yticks(range(len(names)), [f"{name}, {threads}" for name, threads in names], fontsize=8)
+    axes[0, 0].invert_yaxis()
+    marks = [
+        plt.Line2D([], [], color="black", linestyle="none", marker=marker, label=label, markersize=size)
+        for marker, label, size in (("|", "p50", 9), ("d", "p99", 4), (">", "maximum", 4))
+    ]
+    handles, _ = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles=[*handles, *marks], loc="outside lower center", ncols=4, fontsize=8)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def show(document: dict[str, Any]) -> str:
+    parts = [f"{title}\n\n{markdown.table(head, rows)}" for title, head, rows in tables(document)]
+    return "\n\n".join([setting(document), *parts, "\n".join(sentences(document))])
+
+
+def run(request: Request) -> None:
+    """Measure, print, and write baselines.json and baselines.png, both or none of them.
+
+    Raises
+    ------
+    InputError, Mismatch, RuntimeError
+    """
+    with results.workspace(request.out, RESULTS) as work:
+        document, rows = measure_all(request)
+        print(show(document))
+        (work / "baselines.json").write_text(json.dumps(document, indent=1) + "\n")
+        plot(work / "baselines.png", document, rows)
+        results.replace(work, RESULTS, request.out)
+    print(f"results: {os.path.relpath(request.out)}")
+
+
+def main() -> None:
+    with variables.reported("baselines", "nothing was written"):
+        run(parse(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make certify`: the largest value that each node can be asked to hold, and the frames that ask for it, run.
+
+Takes the variables of `make sim`, and RTL=0 to leave the simulation out. Exit status: 0 when model and RTL saturate
+where the certificate says they can, and nowhere else; 1 when not, 2 on bad input.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import os
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+from tqdm import tqdm
+
+from commands.common import repository, results, variables
+from commands.common import simulator as simulation
+from commands.run import sim, sim_table
+from tactile_depth.certificate import Node, certify, slope_response
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import GRADIENT_MODELS, Configuration
+from tactile_depth.frames import Frames, camera_scale
+from tactile_depth.gradient.gradient_lookup import gradient_codes
+from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import tactile_depth
+
+RESULTS = ("worst.npy", "certificate.json")
+BATCH = 8  # frames that the model runs at a time
+ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: tests/transform/test_dst_forward.py
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """The frame of a calibration's colours that drives a node as far as any of them can.
+
+    Attributes
+    ----------
+    node : Node
+    frame : int
+        Its place among the frames.
+    expected : float
+        Value that it drives the node to, in the node's codes, were arithmetic exact.
+    """
+
+    node: Node
+    frame: int
+    expected: float
+
+
+class Peaks(Monitor):
+    """The largest magnitude of each node in each frame, before it is clipped, and whether it was."""
+
+    def __init__(self, widths: dict[str, int], frames: int) -> None:
+        super().__init__()
+        self.widths = widths
+        self.first = 0  # place of the first frame of those that the model runs now
+        self.peaks = {node: np.zeros(frames, np.int64) for node in widths}
+        self.clips = {node: np.zeros(frames, bool) for node in widths}
+
+    def rounded(self, node: str, values: np.ndarray) -> None:
+        flat = values.reshape(len(values), -1)
+        high, low = flat.max(axis=1), flat.min(axis=1)
+        limit = 1 << (self.widths[node] - 1)
+        now = slice(self.first, self.first + len(values))
+        self.peaks[node][now] = np.maximum(self.peaks[node][now], np.maximum(high, -low))
+        self.clips[node][now] |= (high >= limit) | (low < -limit)
+
+
+def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) -> tuple[np.ndarray, list[Attempt]]:
+    """For each node the frame that drives it furthest: every pixel takes the colour whose slopes add the most.
+
+    Returns
+    -------
+    frames : uint8 array (frames, rows, columns, 3), each once
+    attempts : list of Attempt, one for each node that any frame moves
+    """
+    codes = gradient_codes(calibration, config)
+    bins = _corners(codes)
+    bits = config.bits_per_channel
+    colours = np.stack([bins >> 2 * bits, bins >> bits & (1 << bits) - 1, bins & (1 << bits) - 1], axis=-1)
+    colours = (colours << (8 - bits)).astype(np.uint8)
+    found: dict[bytes, int] = {}
+    frames: list[np.ndarray] = []
+    attempts = []
+    for node in nodes:
+        if not node.reached:
+            continue
+        gain = slope_response(node.response, config.neumann) @ codes[bins].T  # of each corner at each pixel
+        choice = gain.argmax(axis=-1)
+        key = choice.astype(np.int32).tobytes()
+        if key not in found:
+            found[key] = len(frames)
+            frames.append(colours[choice])
+        attempts.append(Attempt(node, found[key], float(gain.max(axis=-1).sum())))
+    return np.stack(frames), attempts
+
+
+def _corners(codes: np.ndarray) -> np.ndarray:
+    """Bins on the hull of a table's slopes: one of them adds the most, whatever the response."""
+    slopes, bins = np.unique(codes, axis=0, return_index=True)
+    try:
+        return bins[ConvexHull(slopes).vertices]
+    except (QhullError, ValueError):  # all on one line, or fewer than three
+        return bins
+
+
+def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], peaks: Peaks) -> list[str]:
+    """What the model did with the frames, against the certificate; one line for each that differs."""
+    order = [node.name for node in nodes]
+    rounding = ROUNDING_STEPS * frames[0, ..., 0].size / (2 * math.pi**2)  # the solve amplifies the lowest mode so much
+    faults = []
+    for attempt in attempts:
+        name, frame = attempt.node.name, attempt.frame
+        before = order[: order.index(name)]
+        if any(peaks.clips[node][frame] for node in before):
+            continue  # the node never saw the input meant for it
+        peak, bound = int(peaks.peaks[name][frame]), attempt.node.slopes / attempt.node.form.lsb
+        if not attempt.expected - rounding <= peak <= bound + rounding:
+            faults.append(f"{name} reached {peak:,}, the certificate says {attempt.expected:,.1f} of {bound:,.1f}")
+    for node in nodes:
+        for frame in np.flatnonzero(peaks.clips[node.name]):
+            upstream = any(peaks.clips[name][frame] for name in order[: order.index(node.name)])
+            if node.slopes_headroom_bits >= 0 and not upstream:
+                faults.append(f"{node.name} saturated, and the certificate says that it cannot")
+    return faults
+
+
+def table(nodes: list[Node]) -> str:
+    """One line a node."""
+
+    def bits(headroom: float) -> str:
+        return "-" if headroom == math.inf else f"{headroom:+.2f}"
+
+    head = f"{'node':<34}{'width':>6}{'fraction':>9}{'holds':>11}"
+    lines = [head + f"{'slopes':>12}{'headroom':>10}{'depths':>12}{'headroom':>10}"]
+    for node in nodes:
+        lines.append(
+            f"{node.name:<34}{node.form.width:>6}{node.form.fraction:>9}{node.form.limit:>11.5g}"
+            f"{node.slopes:>12.5g}{bits(node.slopes_headroom_bits):>10}"
+            f"{node.depths:>12.5g}{bits(node.depths_headroom_bits):>10}"
+        )
+    return "\n".join(lines)
+
+
+def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
+    """What the table says, in sentences."""
+    mm = config.depth_range_px * pixel_pitch_mm  # type: ignore[operator]
+    steep = [node for node in nodes if node.slopes_headroom_bits < 0]
+    deep = [node for node in nodes if node.depths_headroom_bits < 0]
+    lines = [
+        f"depth range {mm:.4g} mm, slopes up to {config.gradient_limit:g}; headroom in bits, negative: it saturates"
+    ]
+    if deep:
+        lines.append(f"a depth within the range can saturate {', '.join(node.name for node in deep)}")
+    else:
+        lines.append("no depth within the range saturates a node")
+    if steep:
+        first = steep[0].name
+        lines.append(f"{len(steep)} of {len(nodes)} nodes saturate for some slopes, {first} first in the stream")
+    else:
+        lines.append("no slopes at all saturate a node")
+    loose = [node for node in nodes if node.reached < (1 - 1e-9) * node.slopes]
+    if loose:
+        lowest = min(loose, key=lambda node: node.reached / node.slopes)
+        share = 100 * lowest.reached / lowest.slopes
+        lines.append(
+            f"{len(nodes) - len(loose)} of {len(nodes)} bounds over slopes are attained; of the others, in the inverse "
+            f"row transform, no more than {share:.3g} % was found ({lowest.name}): upper bounds"
+        )
+    else:
+        lines.append("every bound over slopes is attained")
+    return lines
+
+
+def cost_of_worst(config: Configuration, pixel_pitch_mm: float) -> str:
+    """What a depth range that nothing leaves costs against the default one."""
+    default = dataclasses.replace(config, depth_range_px=None)
+    bits = math.log2(config.depth_lsb_px / default.depth_lsb_px)
+    nm = [1e6 * pixel_pitch_mm * each.depth_lsb_px for each in (config, default)]
+    return f"depth comes in steps of {nm[0]:.3g} nm, by default {nm[1]:.3g} nm: {bits:.2f} bits of resolution"
+
+
+@dataclass(frozen=True)
+class Streamed:
+    """What the RTL made of frames, with the model beside it.
+
+    Attributes
+    ----------
+    codes : int32 array (repeat, frames, rows, columns), in the order of the input
+    saturations : dict
+        Node to number of values clipped, in all repetitions, by the model.
+    registers : dict
+    bit_exact : bool
+        Every code is the model's.
+    differences : list of str
+        Counters of the hardware that differ from what was seen from outside.
+    """
+
+    codes: np.ndarray
+    saturations: dict[str, int]
+    registers: dict[str, int]
+    bit_exact: bool
+    differences: list[str]
+
+
+def stream(request: sim.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:
+    """Send uint8 frames (frames, rows, columns, 3) through the RTL as often as the request says."""
+    labels = tuple(str(index) for index in range(len(frames)))
+    monitor = Monitor()
+    model = tactile_depth(frames, calibration, config, monitor)
+    clipped = {node: count * request.repeat for node, count in sorted(monitor.saturations.items())}
+    with tempfile.TemporaryDirectory() as folder:
+        played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, Path(folder))
+    codes = played.codes.reshape(request.repeat, *model.shape)
+    report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim_table.measure(played)}
+    differences = sim_table.check_registers(played.registers, report, request.stalls)
+    exact = bool((codes == model).all())
+    if config.solver == "tridiagonal":  # it puts the bottom row out first
+        codes = codes[..., ::-1, :]
+    return Streamed(codes, clipped, played.registers, exact, differences)
+
+
+def run(request: sim.Request, rtl: bool = True) -> int:
+    """Everything after parsing; returns the exit status."""
+    if rtl:
+        simulation.check(request.simulator)
+    calibration = sim.load_sensor(request)
+    grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
+    # It holds for all slopes, whatever the colours: they are taken as a table without a reference reads them.
+    calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
+    pixel_pitch_mm = calibration.pixel_pitch_mm
+    config = sim.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
+    shape = f"{config.rows}x{config.columns}"
+    name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
+    if request.depth_range_mm == math.inf:
+        name += "-worst"
+    out = request.out or repository.ROOT / "build" / "certify" / name
+    results.make(out, RESULTS)  # refused before minutes of work
+
+    with tqdm(
+        total=1.0,
+        desc="certifying",
+        leave=False,
+        disable=None,
+        delay=3,
+        bar_format="{desc} {percentage:.0f} % {bar} {remaining}",
+    ) as bar:
+        nodes = certify(config, bar.update)
+    print(table(nodes))
+    for line in summary(nodes, config, pixel_pitch_mm):
+        print(line)
+    if request.depth_range_mm == math.inf:
+        print(cost_of_worst(config, pixel_pitch_mm))
+
+    frames, attempts = worst_frames(nodes, calibration, config)
+    peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
+    for peaks.first in tqdm(range(0, len(frames), BATCH), desc="model", leave=False, disable=None, delay=3):
+        tactile_depth(frames[peaks.first : peaks.first + BATCH], calibration, config, peaks)
+    faults = check_model(frames, attempts, nodes, peaks)
+    clipping = sorted(node for node, clips in peaks.clips.items() if clips.any())
+    if rtl:
+        streamed = stream(dataclasses.replace(request, repeat=1), config, calibration, frames)
+        if not streamed.bit_exact:
+            faults.append("RTL differs from the model")
+        if sorted(streamed.saturations) != clipping:
+            faults.append(f"saturated: {', '.join(streamed.saturations) or 'nothing'}; expected {clipping}")
+        faults += streamed.differences
+    saturate = f"{'model and RTL saturate' if rtl else 'the model saturates'} {', '.join(clipping) or 'nothing'}"
+    print(f"{len(frames)} frames that drive every node furthest, in the colours of {calibration.name}: {saturate}")
+    document = {
+        "grid": [config.rows, config.columns],
+        "solver": request.solver,
+        "boundary": request.boundary,
+        "data_width": config.data_width,
+        "coeff_width": config.coefficient_width,
+        "depth_range_mm": config.depth_range_px * pixel_pitch_mm,  # type: ignore[operator]
+        "gradient_limit": config.gradient_limit,
+        "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
+        "calibration": calibration.name,
+        "nodes": [_record(node, attempts) for node in nodes],
+        "saturated": clipping,
+        "rtl": rtl,
+        "faults": faults,
+    }
+    with results.workspace(out, RESULTS) as work:
+        np.save(work / "worst.npy", frames)
+        (work / "certificate.json").write_text(json.dumps(document, indent=1) + "\n")
+        results.replace(work, RESULTS, out)
+    for fault in faults:
+        print(fault)
+    print(f"results: {os.path.relpath(out)}")
+    return 1 if faults else 0
+
+
+def _record(node: Node, attempts: list[Attempt]) -> dict:
+    own = next((attempt for attempt in attempts if attempt.node is node), None)
+
+    def finite(headroom: float) -> float | None:
+        return None if headroom == math.inf else headroom
+
+    return {
+        "node": node.name,
+        "width": node.form.width,
+        "fraction": node.form.fraction,
+        "holds": node.form.limit,
+        "worst_over_slopes": node.slopes,
+        "attained_over_slopes": node.reached,
+        "slopes_headroom_bits": finite(node.slopes_headroom_bits),
+        "worst_over_depths": node.depths,
+        "depths_headroom_bits": finite(node.depths_headroom_bits),
+        "worst_frame": None if own is None else own.frame,
+        "reached_by_frame": None if own is None else own.expected * node.form.lsb,
+    }
+
+
+def main() -> None:
+    with variables.reported("certify"):
+        given = variables.given(sys.argv[1:], ("RTL", *sim.ACCEPTED))
+        rtl = bool(variables.number(given, "RTL", 1, 0, 1))
+        given.pop("RTL", None)
+        sys.exit(run(sim.parse([f"{key}={value}" for key, value in given.items()]), rtl))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,552 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make extremes`: what happens at the edges of what can come in, one row each, in RTL, model and double precision.
+
+Error, saturations by node, whether the hardware's sticky bit told, codes that wrapped around; long runs for drift; then
+the transforms in the manner of IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the long runs and the largest
+grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import sys
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+import numpy as np
+from scipy.fft import dst, idst
+from tqdm import tqdm
+
+from commands.common import repository, results, variables
+from commands.common import simulator as simulation
+from commands.run import sim
+from commands.study import certify as certificate
+from tactile_depth import reference
+from tactile_depth.certificate import certify
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import COLUMNS, ROWS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.poisson import spectral_solver
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
+from tactile_depth.sensor import load
+from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.transform.orders import bit_reversed, makhoul
+from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
+from tactile_depth.transform.twiddle_multiply import coefficient_gain
+
+RESULTS = ("extremes.json", "extremes.csv", "compliance.csv")
+CALIBRATION = "synthetic"
+LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
+SHORT_MODEL = 96
+BATCH = 96  # frames a model run takes at a time
+REST_COLOUR = round(REST)
+
+Draw = Callable[[Configuration], np.ndarray]  # frames for a configuration
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A row of the table: what comes in, and what the pipeline is beside the default.
+
+    Attributes
+    ----------
+    saturates : bool
+        Whether it must, or must not. Slopes that are the same everywhere do not: with zero depth around the frame they
+        come to no more than the depth range.
+    """
+
+    name: str
+    draw: Draw
+    variables: tuple[str, ...] = ()
+    saturates: bool = False
+    repeat: int = 1
+
+
+@dataclass(frozen=True)
+class Row:
+    """What came of it. Errors against double precision, in % of the peak (None without one) and in codes."""
+
+    extreme: str
+    solver: str
+    grid: str
+    data_width: int
+    coeff_width: int
+    frames: int
+    rms_percent: float | None
+    max_percent: float | None
+    rms_codes: float
+    max_codes: float
+    saturations: dict[str, int]
+    told: bool
+    wrapped: int
+    bit_exact: bool
+    registers_agree: bool
+
+
+# What comes in.
+
+
+def _colour(*rgb: int) -> Draw:
+    return lambda config: np.full((1, config.rows, config.columns, 3), rgb, np.uint8)
+
+
+def _channels(config: Configuration) -> np.ndarray:
+    """Each channel by itself at its lowest and at its highest."""
+    frames = np.full((6, config.rows, config.columns, 3), REST_COLOUR, np.uint8)
+    for index in range(6):
+        frames[index, ..., index // 2] = 255 * (index % 2)
+    return frames
+
+
+def _scene(name: str, press: Press | None = None) -> Draw:
+    return lambda config: render(name, config.rows, config.columns, press=press or Press()).frames
+
+
+def _single_pixel(config: Configuration) -> np.ndarray:
+    """One pixel of the steepest slope on a gel at rest: in the middle, and in two corners."""
+    frames = np.full((3, config.rows, config.columns, 3), REST_COLOUR, np.uint8)
+    for frame, at in zip(frames, ((config.rows // 2, config.columns // 2), (0, 0), (-1, -1)), strict=True):
+        frame[at] = _steepest(config)[0, 0, 0]
+    return frames
+
+
+def _checkerboard(config: Configuration) -> np.ndarray:
+    """The steepest slopes, of the opposite sign in every next pixel."""
+    steep = _steepest(config)
+    white = np.indices((config.rows, config.columns)).sum(axis=0)[..., None] % 2
+    return np.where(white, steep[0], steep[1])[None].astype(np.uint8)
+
+
+def _uniform(gx: float, gy: float) -> Draw:
+    def draw(config: Configuration) -> np.ndarray:
+        height = gx * np.arange(config.columns)[None, :] + gy * np.arange(config.rows)[:, None]
+        return photograph(np.pad(height, ((0, 1), (0, 1)), "reflect", reflect_type="odd"))[None, :-1, :-1]
+
+    return draw
+
+
+def _steepest(config: Configuration) -> np.ndarray:
+    """Everywhere the colour of the largest gx + gy, and of the smallest."""
+    total = load(CALIBRATION).table.sum(axis=-1)
+    step = 256 >> config.bits_per_channel
+    bins = [np.unravel_index(at, total.shape) for at in (total.argmax(), total.argmin())]
+    colours = np.array(bins, np.uint8) * step
+    return np.broadcast_to(colours[:, None, None], (2, config.rows, config.columns, 3))
+
+
+def _worst(config: Configuration) -> np.ndarray:
+    return certificate.worst_frames(certify(config), load(CALIBRATION), config)[0]
+
+
+def _noise(config: Configuration) -> np.ndarray:
+    return np.random.default_rng(1).integers(0, 256, (4, config.rows, config.columns, 3), np.uint8)
+
+
+def _too_deep(config: Configuration) -> np.ndarray:
+    """A cone, steep from the edge of the frame to its tip: nearly twice as deep as the default depth range."""
+    size = min(config.rows, config.columns)
+    y, x = np.indices((config.rows, config.columns)) + 0.5
+    distance = np.hypot(y - config.rows / 2, x - config.columns / 2)
+    return photograph(0.9 * np.maximum(size / 2 - 1 - distance, 0))[None]
+
+
+EXTREMES = (
+    Extreme("all black", _colour(0, 0, 0)),
+    Extreme("all white", _colour(255, 255, 255)),
+    Extreme("saturated channels", _channels),
+    Extreme("no contact", _scene("flat")),
+    Extreme("single pixel", _single_pixel),
+    Extreme("checkerboard", _checkerboard),
+    Extreme("uniform slope", _uniform(0.5, 0.25)),
+    Extreme("steepest slope everywhere", _steepest),
+    Extreme("worst cases of the certificate", _worst, saturates=True),
+    Extreme("... with DEPTH_RANGE=worst", _worst, ("DEPTH_RANGE=worst",)),
+    Extreme("white noise", _noise),
+    Extreme("contact cut by the edge", _scene("ball", Press(at_mm=(SENSOR_WIDTH_MM / 2, 0.0)))),
+    Extreme("contact cut by the corner", _scene("ball", Press(at_mm=(SENSOR_WIDTH_MM / 2, -SENSOR_WIDTH_MM / 2)))),
+    Extreme("press deeper than the format", _too_deep, saturates=True),
+    Extreme("12 bits", _scene("contacts"), ("DATA_WIDTH=12",)),
+    Extreme("32 bits", _scene("contacts"), ("DATA_WIDTH=32", "COEFF_WIDTH=24")),
+)
+
+
+def smallest(solver: str) -> Extreme:
+    grid = {"spectral": ("N=16",), "tridiagonal": (f"ROWS={ROWS[0]}", f"COLS={COLUMNS[solver][0]}")}[solver]
+    return Extreme("smallest grid", _scene("contacts"), grid)
+
+
+def largest(solver: str) -> Extreme:
+    return Extreme("largest grid", _scene("ball"), (f"N={COLUMNS[solver][1]}",))
+
+
+def drift(frames: int) -> Extreme:
+    """The eight contacts over and over, back to back: every pass must give the codes of the first."""
+    return Extreme(f"{frames:,} frames back to back", _scene("contacts"), repeat=frames // 8)
+
+
+def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
+    """Stream it through the RTL, with the model beside it, and measure both against double precision."""
+    given = [*([] if any(v.startswith(("N=", "ROWS=")) for v in extreme.variables) else [f"N={size}"])]
+    given += [f"SOLVER={solver}", f"SIM={simulator}", f"REPEAT={extreme.repeat}", *extreme.variables]
+    request = sim.parse(given)
+    calibration = load(CALIBRATION)
+    config = sim.configure(request, calibration)
+    frames = np.ascontiguousarray(extreme.draw(config))
+    streamed = certificate.stream(request, config, calibration, frames)
+    codes = streamed.codes
+    exact = reference.depth(frames, calibration, config.neumann)
+    want = exact / config.depth_lsb_px
+    error = codes[0] - want
+    percent = sim.errors(codes[0] * config.depth_lsb_px, exact)
+    bit = next(field for field in REGISTERS["STATUS"].fields if field.name == "saturation")
+    full_scale = 2.0 ** (config.data_width - 1)
+    return Row(
+        extreme.name,
+        solver,
+        f"{config.rows}x{config.columns}",
+        config.data_width,
+        config.coefficient_width,
+        extreme.repeat * len(frames),
+        _largest(percent["rms_percent_of_peak"]),
+        _largest(percent["max_percent_of_peak"]),
+        float(np.sqrt((error**2).mean(axis=(1, 2))).max()),
+        float(np.abs(error).max()),
+        streamed.saturations,
+        bool(streamed.registers["status"] & bit.mask),
+        int(np.count_nonzero((np.abs(want) > full_scale / 2) & (codes * np.sign(want) < 0))),
+        streamed.bit_exact,
+        not streamed.differences,
+    )
+
+
+def _largest(values: list[float | None]) -> float | None:
+    present = [value for value in values if value is not None]
+    return max(present, default=None)
+
+
+def faults(extreme: Extreme, row: Row) -> list[str]:
+    """What is not as it must be."""
+    found = []
+    if not row.bit_exact:
+        found.append("RTL differs from the model, or a frame from its repetition")
+    if not row.registers_agree:
+        found.append("the hardware's counters differ from what was seen")
+    if row.told != bool(row.saturations):
+        found.append("the status bit tells of a saturation that was not" if row.told else "a saturation was not told")
+    if row.wrapped:
+        found.append(f"{row.wrapped} codes wrapped around")
+    if extreme.saturates != bool(row.saturations):
+        found.append("it must saturate" if extreme.saturates else "it must not saturate")
+    return [f"{row.extreme}, {row.solver}: {fault}" for fault in found]
+
+
+# Drift of the model: does the error of a frame depend on how many came before?
+
+
+def model_drift(solver: str, size: int, count: int, advance: Callable[[int], object] = lambda frames: None) -> Row:
+    """Contacts in new noise, frame after frame; errors of all, wrap-around and saturations as in the other rows.
+
+    Here `bit_exact` says that the mean error of both halves is the same within DRIFT: the model is its own reference.
+    """
+    config = Configuration(columns=size, solver=solver)
+    calibration = load(CALIBRATION)
+    monitor = Monitor()
+    squares, largest_error, percent, wrapped = [], 0.0, [], 0
+    for start in range(0, count, BATCH):
+        scenes = [
+            render("contacts", size, seed=start + index + 1).frames for index in range(min(BATCH, count) // 8 + 1)
+        ]
+        frames = np.concatenate(scenes)[: min(BATCH, count - start)]
+        codes = tactile_depth(frames, calibration, config, monitor)
+        codes = codes[..., ::-1, :] if solver == "tridiagonal" else codes
+        exact = reference.depth(frames, calibration)
+        error = codes - exact / config.depth_lsb_px
+        squares.append(np.sqrt((error**2).mean(axis=(1, 2))))
+        largest_error = max(largest_error, float(np.abs(error).max()))
+        percent.append(sim.errors(codes * config.depth_lsb_px, exact))
+        wrapped += int(np.count_nonzero((np.abs(exact) > config.depth_limit_px / 2) & (codes * exact < 0)))
+        advance(len(frames))
+    rms = np.concatenate(squares)
+    return Row(
+        f"{count:,} frames on the model",
+        solver,
+        f"{size}x{size}",
+        config.data_width,
+        config.coefficient_width,
+        count,
+        max(_largest(each["rms_percent_of_peak"]) or 0.0 for each in percent),
+        max(_largest(each["max_percent_of_peak"]) or 0.0 for each in percent),
+        float(rms.max()),
+        largest_error,
+        dict(monitor.saturations),
+        bool(monitor.saturations),
+        wrapped,
+        bool(abs(rms[: count // 2].mean() / rms[count // 2 :].mean() - 1) < DRIFT),
+        True,
+    )
+
+
+BIAS = 5.0  # standard errors that a mean error may be from zero
+FEWEST = 32  # random blocks: a standard error from three says nothing
+DRIFT = 0.05  # by which the mean error of the first half of a run may differ from that of the second
+
+
+# IEEE 1180-1990, Standard specifications for the implementations of 8x8 inverse discrete cosine transform: peak, mean
+# square and mean error of each output word over random blocks, in steps of that word, for several amplitudes and both
+# signs. Its own limits are for one 8 x 8 transform of 9-bit words. Noise alone is not enough: it spreads over all modes
+# and leaves the range of each nearly unused, so lone modes at full amplitude come too.
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """Errors of a transform core against double precision, in steps of its output word."""
+
+    core: str
+    size: int
+    input: str
+    blocks: int
+    amplitude: int
+    peak: float
+    worst_mean_square: float
+    mean_square: float
+    worst_mean: float
+    mean: float
+    mean_in_standard_errors: float
+    saturations: int
+    zero_in_zero_out: bool
+
+
+def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int]]:
+    """Name to core (blocks, monitor), the same in double precision, and dimensions; natural order at both ends."""
+    size = config.columns
+    order = makhoul(size)
+    place = size - 1 - bit_reversed(size)  # of the mode at each position of a burst
+    gain = coefficient_gain(config.coefficient_width) ** (twiddle_stages(size) + 1)
+    halved = 2.0 ** -halvings(size, inverse=False)
+    into, out_of = config.row_forward, config.row_modes
+    to_modes, from_modes = config.column_inverse, config.depth_modes
+    last = config.depth
+
+    def forward(blocks: np.ndarray, monitor: Monitor) -> np.ndarray:
+        return spectral_solver.row_forward(blocks, config, monitor)[..., np.argsort(place)]
+
+    def exact_forward(blocks: np.ndarray) -> np.ndarray:
+        scale = gain * halved / 2 * 2.0 ** (out_of.fraction - into.fraction)
+        return dst(blocks, type=2) * scale
+
+    def inverse(modes: np.ndarray, monitor: Monitor) -> np.ndarray:
+        return spectral_solver.row_inverse(modes[..., place], config, monitor)
+
+    def exact_inverse(modes: np.ndarray) -> np.ndarray:
+        return idst(modes, type=2) * (2 / halved * gain * 2.0 ** (last.fraction - from_modes.fraction))
+
+    def forward_2d(blocks: np.ndarray, monitor: Monitor) -> np.ndarray:
+        columns = spectral_solver.row_forward(blocks, config, monitor)[..., np.argsort(place)].swapaxes(-1, -2)
+        return spectral_solver.column_forward(columns[..., order], config, monitor)[..., np.argsort(place)]
+
+    def exact_forward_2d(blocks: np.ndarray) -> np.ndarray:
+        scale = gain * halved / 2 * 2.0 ** (config.column_forward.fraction - out_of.fraction)
+        return dst(exact_forward(blocks).swapaxes(-1, -2), type=2) * scale
+
+    def inverse_2d(modes: np.ndarray, monitor: Monitor) -> np.ndarray:
+        columns = spectral_solver.column_inverse(modes[..., place], config, monitor)[..., np.argsort(order)]
+        return spectral_solver.row_inverse(columns.swapaxes(-1, -2)[..., place], config, monitor)
+
+    def exact_inverse_2d(modes: np.ndarray) -> np.ndarray:
+        scale = 2 / halved * gain * 2.0 ** (from_modes.fraction - to_modes.fraction)
+        return exact_inverse((idst(modes, type=2) * scale).swapaxes(-1, -2))
+
+    return {
+        "dst_forward": (forward, exact_forward, 1),
+        "dst_inverse": (inverse, exact_inverse, 1),
+        "2-D forward": (forward_2d, exact_forward_2d, 2),
+        "2-D inverse": (inverse_2d, exact_inverse_2d, 2),
+    }
+
+
+def _blocks(
+    core: str, size: int, dimensions: int, config: Configuration, count: int
+) -> Iterator[tuple[str, int, np.ndarray]]:
+    """Name, amplitude and blocks: noise of several amplitudes and both signs, lone modes and lone words.
+
+    Full amplitude is what slopes, or a depth as deep as the range, can bring to the core.
+    """
+    shape = (size,) * dimensions
+    inverse = "inverse" in core
+    rng = np.random.default_rng(1180)
+    n, k = np.arange(size), np.arange(1, size + 1)
+    sines = np.sin(np.pi * np.outer(k, 2 * n + 1) / (2 * size))
+    chosen = np.unique(np.concatenate((k[:4], k[size // 2 - 1 : size // 2 + 2], k[-4:]))) - 1
+    if inverse:
+        # Modes of fields of depth from limit to limit within the range.
+        depth = 2.0 ** (config.depth.width - 1) * config.depth_range_px / config.depth_limit_px  # type: ignore[operator]
+        exact = transforms(config)[core][1]
+        unit = np.zeros((1, *shape))
+        unit[(0,) * (dimensions + 1)] = 1
+        per_mode = float(np.abs(exact(unit)).max())  # depth that a lone first mode of 1 makes
+        full = int(depth / per_mode)
+        lone = np.zeros((len(chosen), *shape))
+        for index, mode in enumerate(chosen):
+            lone[(index, *(mode,) * dimensions)] = full
+    else:
+        full = int(2 * config.gradient_limit / config.gradient_lsb)  # of the divergence of lone slopes
+        waves = sines[chosen]
+        lone = full * (waves if dimensions == 1 else waves[:, :, None] * waves[:, None, :])
+    yield "lone modes", full, np.rint(np.concatenate((lone, -lone))).astype(np.int64)
+    for share in (1, 16, 4096):
+        for sign in (1, -1):
+            # Noise spreads: its sum at one word of an inverse transform is far below that of a lone mode.
+            amplitude = max(1, full // share // (size**dimensions if inverse else 1))
+            noise = rng.integers(-amplitude, amplitude + 1, (count, *shape))
+            yield f"noise {'+' if sign > 0 else '-'}", amplitude, sign * noise
+    yield "noise + of 5 steps", 5, rng.integers(-5, 6, (count, *shape))
+
+
+def compliance(config: Configuration, count: int) -> list[Compliance]:
+    """Every transform core of a spectral configuration, over `count` random blocks (2-D: a 32nd, at least `FEWEST`)."""
+    rows = []
+    for core, (fixed, exact, dimensions) in transforms(config).items():
+        size = config.columns
+        zero = not np.any(fixed(np.zeros((1, *(size,) * dimensions), np.int64), Monitor()))
+        drawn = count if dimensions == 1 else max(FEWEST, count // 32)
+        for name, amplitude, blocks in _blocks(core, size, dimensions, config, drawn):
+            monitor = Monitor()
+            error = fixed(blocks, monitor) - exact(blocks.astype(float))
+            square, mean = (error**2).mean(axis=0), error.mean(axis=0)
+            rows.append(
+                Compliance(
+                    core,
+                    size,
+                    name,
+                    len(blocks),
+                    amplitude,
+                    float(np.abs(error).max()),
+                    float(square.max()),
+                    float(square.mean()),
+                    float(np.abs(mean).max()),
+                    float(abs(mean.mean())),
+                    _standard_errors(error),
+                    monitor.saturations.total(),
+                    zero,
+                )
+            )
+    return rows
+
+
+def _standard_errors(error: np.ndarray) -> float:
+    """How far the mean error of blocks (blocks, ..) is from zero, in standard errors: a bias shows as many."""
+    means = error.reshape(len(error), -1).mean(axis=1)
+    spread = float(means.std(ddof=1)) / np.sqrt(len(means))
+    return float(abs(means.mean())) / spread if spread else 0.0
+
+
+# Output.
+
+
+def table(rows: list[Row]) -> str:
+    head = f"{'extreme':<34}{'solver':<12}{'grid':>10}{'bits':>5}{'frames':>7}{'RMS %':>10}{'max %':>10}"
+    lines = [head + f"{'RMS codes':>12}{'max codes':>12}  {'told':<5}{'wrapped':>8}  saturated"]
+    for row in rows:
+        shares = (row.rms_percent, row.max_percent)
+        percent = "".join(f"{'-' if share is None else format(share, '.5f'):>10}" for share in shares)
+        clipped = ", ".join(f"{node} {count:,}" for node, count in row.saturations.items()) or "-"
+        lines.append(
+            f"{row.extreme:<34}{row.solver:<12}{row.grid:>10}{row.data_width:>5}{row.frames:>7,}{percent}"
+            f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.told else 'no':<5}{row.wrapped:>8}"
+            f"  {clipped}"
+        )
+    return "\n".join(lines)
+
+
+def compliance_table(rows: list[Compliance]) -> str:
+    head = f"{'core':<13}{'size':>5}  {'input':<20}{'blocks':>7}{'amplitude':>13}{'peak':>9}"
+    lines = [
+        head
+        + f"{'worst mse':>11}{'mse':>9}{'worst mean':>12}{'mean':>10}{'in s.e.':>8}{'clipped':>9}  zero in, zero out"
+    ]
+    for row in rows:
+        lines.append(
+            f"{row.core:<13}{row.size:>5}  {row.input:<20}{row.blocks:>7,}{row.amplitude:>13,}{row.peak:>9.2f}"
+            f"{row.worst_mean_square:>11.3f}{row.mean_square:>9.3f}{row.worst_mean:>12.4f}{row.mean:>10.5f}{row.mean_in_standard_errors:>8.2f}"
+            f"{row.saturations:>9,}  {'yes' if row.zero_in_zero_out else 'NO'}"
+        )
+    return "\n".join(lines)
+
+
+def write(out: Path, rows: list[Row], measured: list[Compliance]) -> None:
+    """extremes.json, extremes.csv and compliance.csv."""
+    document = {"extremes": [asdict(row) for row in rows], "compliance": [asdict(row) for row in measured]}
+    (out / "extremes.json").write_text(json.dumps(document, indent=1) + "\n")
+    for name, kind, records in (("extremes", Row, rows), ("compliance", Compliance, measured)):
+        with (out / f"{name}.csv").open("w", newline="") as file:
+            writer = csv.DictWriter(file, [field.name for field in fields(kind)])
+            writer.writeheader()
+            for record in records:
+                flat = asdict(record)
+                if "saturations" in flat and isinstance(flat["saturations"], dict):
+                    flat["saturations"] = " ".join(f"{node}:{count}" for node, count in flat["saturations"].items())
+                writer.writerow(flat)
+
+
+def run(size: int, simulator: str, out: Path, short: bool) -> int:
+    """Everything after parsing; returns the exit status."""
+    simulation.check(simulator)
+    for solver in COLUMNS:
+        Configuration(columns=size, solver=solver)
+    results.make(out, RESULTS)  # refused before minutes of work
+    plan = [
+        (extreme, solver)
+        for solver in COLUMNS
+        for extreme in (*EXTREMES, smallest(solver), *([] if short else [largest(solver), drift(LONG_RTL)]))
+    ]
+    rows: list[Row] = []
+    found: list[str] = []
+    with tqdm(total=len(plan), leave=False, disable=None) as bar:
+        for extreme, solver in plan:
+            bar.set_description(f"{extreme.name}, {solver}")
+            rows.append(measure(extreme, solver, size, simulator))
+            found += faults(extreme, rows[-1])
+            bar.update()
+    count = SHORT_MODEL if short else LONG_MODEL
+    for solver in COLUMNS:
+        with tqdm(total=count, desc=f"model, {solver}", unit="frame", leave=False, disable=None) as bar:
+            rows.append(model_drift(solver, size, count, bar.update))
+        if not rows[-1].bit_exact:
+            found.append(f"{rows[-1].extreme}, {solver}: the error drifts")
+    measured = compliance(Configuration(columns=size), 100 if short else 10_000)
+    for row in measured:
+        if not row.zero_in_zero_out:
+            found.append(f"{row.core}: zero in does not give zero out")
+        if row.saturations:
+            found.append(f"{row.core}, {row.input}: {row.saturations} values clipped within the range")
+        if row.mean_in_standard_errors > BIAS:
+            found.append(f"{row.core}, {row.input}: the mean error is {row.mean:.5f}, a bias")
+    print(table(rows))
+    print()
+    print(compliance_table(measured))
+    with results.workspace(out, RESULTS) as work:
+        write(work, rows, measured)
+        results.replace(work, RESULTS, out)
+    for fault in found:
+        print(fault)
+    print(f"results: {os.path.relpath(out)}")
+    return 1 if found else 0
+
+
+def main() -> None:
+    with variables.reported("extremes"):
+        given = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
+        if given["SHORT"] not in ("", "0", "1"):
+            raise InputError(f"SHORT={given['SHORT']}: accepted are 0 and 1")
+        request = sim.parse([f"N={given['N'] or 64}", f"SIM={given['SIM']}"])
+        out = Path(given["OUT"]) if given["OUT"] else repository.ROOT / "build" / "extremes"
+        sys.exit(run(request.columns, request.simulator, out, given["SHORT"] == "1"))
+
+
+if __name__ == "__main__":
+    main()

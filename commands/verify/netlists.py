@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make netlists`: every core after synthesis through its own testbench, and the whole at 32 x 32 with each solver.
+
+CORE=name,.. SEED=1. The netlist is that of Yosys for 7-series logic, whose cells have simulation models in Yosys'
+library: LUT1 to LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as in ram.sv and rom.sv:
+they are where a macro goes. The testbench compares every output with the bit-accurate model, as it does for the RTL.
+Parameters are those at which `make mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tqdm import tqdm
+
+from commands.common import repository, variables
+from commands.common import simulator as simulation
+from commands.verify import mutants, mutate
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
+
+OUT = repository.ROOT / "build" / "netlists"
+WHOLE = "tactile_depth"
+WHOLE_SIZE = 32
+# Of the testbench of the whole: frames alone and on end, contact, faults and a reset, gaps and stalls.
+WHOLE_TESTS = "configuration|one_frame|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=random"
+WHOLE_FIRST = "configuration|one_frame"
+# Icarus sees X, but plays 500 clocks a minute of a whole: there it gets the first of these tests, Verilator all.
+WHOLE_SIMULATORS = {"icarus": WHOLE_FIRST, "verilator": WHOLE_TESTS}
+LIBRARY_AS_IT_IS = "".join(
+    f'lint_off {rule}-file "*{file}"\n'
+    for file in ("cells_sim.v", "netlist.v")
+    for rule in ("", "-rule UNOPTFLAT ", "-rule SPECIFYIGN ", "-rule COMBDLY ", "-rule INITIALDLY ")
+)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A core as its test builds it."""
+
+    core: str
+    name: str
+    structure: mutants.Structure
+    simulators: Mapping[str, str] = field(default_factory=lambda: {"icarus": ""})  # each with a filter of the tests
+
+
+@dataclass(frozen=True)
+class Result:
+    """Cells of a netlist, and how many tests it ran and failed."""
+
+    case: Case
+    cells: Mapping[str, int]
+    tests: int
+    failed: int
+    seconds: float
+
+
+def cases(names: Sequence[str]) -> list[Case]:
+    """Of the cores named, those of `make mutate`; of the whole, both solvers."""
+    found = []
+    for name in names:
+        if name == WHOLE:
+            found += [whole(solver) for solver in COLUMNS]
+            continue
+        for index in mutate.CORES[name].structures:
+            found.append(Case(name, f"{name}-{index}", mutants.structure(name, index)))
+    return found
+
+
+def whole(solver: str) -> Case:
+    choices = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
+    config = Configuration(**choices)
+    structure = mutants.Structure(
+        WHOLE,
+        None,
+        top_parameters(config),
+        repository.testbench(WHOLE),
+        lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
+        {"CONFIGURATION": json.dumps(choices)},
+    )
+    return Case(WHOLE, f"{WHOLE}-{solver}", structure, WHOLE_SIMULATORS)
+
+
+def library() -> Path:
+    """Yosys' simulation models of the cells.
+
+    Raises
+    ------
+    InputError
+    """
+    wheel = importlib.util.find_spec("pyosys")
+    if wheel is None or not wheel.submodule_search_locations:
+        raise InputError("pyosys is not installed in this Python environment: run `make setup`")
+    return Path(wheel.submodule_search_locations[0]) / "share" / "xilinx" / "cells_sim.v"
+
+
+def netlist(case: Case, folder: Path) -> dict[str, int]:
+    """Write netlist.v and wrapper.sv; its cells by type.
+
+    Raises
+    ------
+    RuntimeError
+    """
+    core, outside = case.core, mutate.CORES[case.core].outside
+    if case.structure.roms:
+        case.structure.roms(folder)
+    top = f"{core}_netlist"
+    synth = f"synth_xilinx -family xc7 -noiopad -noclkbuf -flatten -top {top}"
+    mutants.yosys(
+        f"{mutants.base(core, case.structure, outside)}rename {core} {top}\n{synth} -run begin:map_memory\n"
+        f"opt -fast -full\n{synth} -run fine:edif\ntee -q -o cells.json stat -json\nwrite_verilog -noattr netlist.v\n",
+        folder,
+        "netlist",
+    )
+    (folder / "wrapper.sv").write_text(mutants.wrapper(core, folder, mutate.CORES[core].inside, selector=""))
+    return json.loads((folder / "cells.json").read_text())["modules"][f"\\{top}"]["num_cells_by_type"]
+
+
+def run(case: Case, seed: int) -> Result:
+    """Synthesis, and the testbench on what comes of it.
+
+    Raises
+    ------
+    RuntimeError
+    """
+    began = time.monotonic()
+    folder = OUT / case.name
+    folder.mkdir(parents=True, exist_ok=True)
+    cells = netlist(case, folder)
+    (folder / "public.vlt").write_text(mutants.PUBLIC.format(core=case.core) + LIBRARY_AS_IT_IS)
+    files = [folder / "public.vlt", library(), folder / "netlist.v", folder / "wrapper.sv"]
+    package = [path for path in repository.sources(None) if path.stem.endswith("_pkg")]
+    count = failed = 0
+    for simulator, tests in case.simulators.items():
+        place = folder / simulator
+        simulation.build(
+            simulator,
+            case.core,
+            [*package, *files],
+            case.structure.parameters,
+            place,
+            fast=True,
+            log=folder / f"{simulator}-build.log",
+        )
+        ran, wrong = simulation.run(
+            case.core,
+            case.structure.test_module,
+            place,
+            folder,
+            simulator=simulator,
+            seed=seed,
+            environment={**case.structure.environment, **({"COCOTB_TEST_FILTER": tests} if tests else {})},
+            log=folder / f"{simulator}.log",
+        )
+        count, failed = count + ran, failed + wrong
+    return Result(case, cells, count, failed, time.monotonic() - began)
+
+
+COLUMNS_SHOWN = {"LUT": 7, "FF": 7, "DSP": 5, "memories": 10, "tests": 7, "failed": 8, "seconds": 9}
+HEAD = f"{'netlist':<28}" + "".join(f"{name:>{width}}" for name, width in COLUMNS_SHOWN.items())
+
+
+def row(result: Result) -> str:
+    cells = Counter(result.cells)
+    luts = sum(count for cell, count in cells.items() if cell.startswith(("LUT", "INV", "SRL")))
+    registers = sum(count for cell, count in cells.items() if cell.startswith("FD"))
+    numbers = (luts, registers, cells["DSP48E1"], cells["$mem_v2"], result.tests, result.failed, round(result.seconds))
+    shown = "".join(f"{number:>{width},}" for number, width in zip(numbers, COLUMNS_SHOWN.values(), strict=True))
+    verdict = "" if result.tests and not result.failed else "  DIFFERS"
+    return f"{result.case.name:<28}{shown}{verdict}"
+
+
+def parse(arguments: list[str]) -> tuple[list[str], int]:
+    """Names of cores, and the seed.
+
+    Raises
+    ------
+    InputError
+    """
+    given = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
+    given |= variables.given(arguments, given)
+    names = given["CORE"].split(",")
+    for name in names:
+        if name not in mutate.CORES:
+            raise InputError(f"CORE={name} is unknown: accepted are {', '.join(mutate.CORES)}")
+    return names, variables.number(given, "SEED", 1, 0, 10**9)
+
+
+def main() -> None:
+    with variables.reported("netlists"):
+        names, seed = parse(sys.argv[1:])
+        library()
+        for simulator in WHOLE_SIMULATORS:
+            simulation.check(simulator)
+        results = []
+        print(HEAD)
+        with tqdm(cases(names), leave=False, disable=None) as bar:
+            for case in bar:
+                bar.set_description(case.name)
+                results.append(run(case, seed))
+                tqdm.write(row(results[-1]))
+                sys.stdout.flush()
+        sys.exit(verdict(results))
+
+
+def verdict(results: list[Result]) -> int:
+    """Print whether all netlists agree; returns the exit status."""
+    wrong = [result.case.name for result in results if result.failed or not result.tests]
+    tests = sum(result.tests for result in results)
+    print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")
+    print(f", not as the RTL: {', '.join(wrong)}" if wrong else ": all as the RTL")
+    return variables.MISMATCH if wrong else variables.EQUAL
+
+
+if __name__ == "__main__":
+    main()

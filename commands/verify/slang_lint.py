@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Elaborates and analyses SystemVerilog with slang, every warning on, and leaves out what is waived.
+
+    python -m commands.verify.slang_lint TOP[,TOP..] [-GName=Value ..] FILE..
+
+prints what it finds; exit status 1 when there is anything.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pyslang import DiagnosticSeverity, driver
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A diagnostic of slang."""
+
+    option: str  # the warning's name; empty for an error that has none
+    place: str
+    text: str
+    source: str  # from the place to the end of its line
+    types: tuple[str, ...]  # that it speaks of
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.text}" + (f" [-W{self.option}]" if self.option else "")
+
+
+def width(name: str) -> int | None:
+    """Bits of a packed type by its name; None: not one."""
+    if match := re.fullmatch(r"(?:logic|bit|reg)(?: signed)?(?:\[(-?\d+):(-?\d+)\])?", name):
+        return abs(int(match[1]) - int(match[2])) + 1 if match[1] else 1
+    return {"int": 32, "integer": 32}.get(name)
+
+
+def signed(name: str) -> bool:
+    return " signed" in name or name in ("int", "integer")
+
+
+def same_width(finding: Finding) -> bool:
+    return len(finding.types) == 2 and width(finding.types[0]) == width(finding.types[1])
+
+
+@dataclass(frozen=True)
+class Waiver:
+    """Findings that are left out, and why."""
+
+    option: str
+    holds: Callable[[Finding], bool]
+    reason: str
+
+
+WAIVERS = (
+    Waiver(
+        "sign-conversion",
+        same_width,
+        "as many bits on both sides: none changes. Memories and concatenations have no sign",
+    ),
+    Waiver(
+        "sign-compare",
+        lambda f: same_width(f) and f.source.startswith(("==", "!=")),
+        "equality of words of one width compares bits",
+    ),
+    Waiver("case-type", same_width, "equality of words of one width compares bits"),
+    Waiver(
+        "arith-op-mismatch",
+        lambda f: same_width(f) and f.source.startswith(("+", "-")),
+        "sums and differences of words of one width, kept to that width, are the same whatever the sign",
+    ),
+    Waiver(
+        "arith-op-mismatch",
+        lambda f: len(f.types) == 2 and all(map(signed, f.types)),
+        "both are signed, so both are extended by their sign: the factors of a product differ in width",
+    ),
+    Waiver(
+        "useless-cast", lambda f: True, "widths are parameters: what changes nothing here does in another structure"
+    ),
+    Waiver(
+        "unused-but-set-variable",
+        lambda f: re.search(r"'unused_\w+'", f.text) is not None,
+        "named so: it takes up what a port or a slice has too much",
+    ),
+)
+
+# Only for one structure of the whole, which leaves the other solver's cores aside.
+NOT_IN_A_STRUCTURE = ("unused-def", "unused-package-parameter")
+
+
+def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, int] | None = None) -> list[Finding]:
+    """Everything that slang says, waived or not."""
+    engine_driver = driver.Driver()
+    engine_driver.addStandardArgs()
+    arguments = [
+        "slang",
+        "-Weverything",
+        "--error-limit=0",
+        "--allow-dup-initial-drivers",  # $readmemh in an initial gives a memory its contents at power-up
+        *(f"--top={top}" for top in tops),
+        *(f"-G{name}={value}" for name, value in (parameters or {}).items()),
+        *((f"-Wno-{option}" for option in NOT_IN_A_STRUCTURE) if parameters else ()),
+        *map(str, files),
+    ]
+    taken = engine_driver.parseCommandLine(" ".join(arguments), driver.CommandLineOptions())
+    if not (taken and engine_driver.processOptions()):
+        raise ValueError(f"slang does not take: {' '.join(arguments)}")
+    parsed = engine_driver.parseAllSources()
+    compilation = engine_driver.createCompilation()
+    diagnostics = [*compilation.getAllDiagnostics()]
+    engine_driver.diagEngine.clearClients()  # they would print what is waived
+    if parsed and not any(diagnostic.isError() for diagnostic in diagnostics):
+        diagnostics += engine_driver.runAnalysis(compilation).getDiagnostics()
+    engine, manager = engine_driver.diagEngine, engine_driver.sourceManager
+    found = []
+    for diagnostic in diagnostics:
+        if engine.getSeverity(diagnostic.code, diagnostic.location) == DiagnosticSeverity.Ignored:
+            continue
+        location = manager.getFullyOriginalLoc(diagnostic.location)
+        source = manager.getSourceText(location.buffer)[location.offset :].split("\n", 1)[0]
+        place = f"{manager.getFileName(location)}:{manager.getLineNumber(location)}:{manager.getColumnNumber(location)}"
+        text = engine.formatMessage(diagnostic)
+        types = tuple(name for name in re.findall(r"'([^']+)'", text) if width(name) is not None)
+        found.append(Finding(engine.getOptionName(diagnostic.code), place, text, source, types))
+    return found
+
+
+def waiver(finding: Finding) -> Waiver | None:
+    """The waiver that leaves a finding out, if any."""
+    return next((w for w in WAIVERS if w.option == finding.option and w.holds(finding)), None)
+
+
+def main() -> None:
+    tops, *rest = sys.argv[1:]
+    parameters = dict(word[2:].split("=") for word in rest if word.startswith("-G"))
+    files = [Path(word) for word in rest if not word.startswith("-G")]
+    left = Counter(str(f) for f in findings(tops.split(","), files, parameters) if waiver(f) is None)
+    for line, count in left.items():
+        print(line + (f" ({count} times)" if count > 1 else ""))
+    sys.exit(bool(left))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make upsets`: flips bits of registers and memories while frames stream through, and counts what becomes of it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from commands.common import repository, variables
+from commands.common import simulator as simulation
+from tactile_depth.configuration import Configuration
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
+
+CASES: dict[str, dict[str, Any]] = {
+    "spectral": {"columns": 16, "bits_per_channel": 2},
+    "tridiagonal": {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True, "bits_per_channel": 2},
+}
+OUTCOMES = {
+    "hang": "a frame sent after the flip did not come out",
+    "stays wrong": "a frame sent after the flip came out wrong",
+    "flagged": "a frame in flight was damaged or lost, and a sticky bit says so",
+    "not flagged": "a frame in flight was damaged or lost, and nothing says so",
+    "false alarm": "a sticky bit, but every frame was right",
+    "masked": "every frame right, no sticky bit",
+}
+
+
+def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]:
+    """Experiments on one structure, `upsets` for each module and for its memories."""
+    config = Configuration(**CASES[case])
+    write_roms(folder, synthetic(config.bits_per_channel), config)
+    (folder / "sim.vvp").unlink(missing_ok=True)  # the runner would keep one of other parameters
+    log = folder / "run.log"
+    simulation.build("icarus", "tactile_depth", repository.sources(), top_parameters(config), folder, log=log)
+    count, failed = simulation.run(
+        "tactile_depth",
+        "tb.tb_upsets",
+        folder,
+        folder,
+        simulator="icarus",
+        seed=seed,
+        environment={"CONFIGURATION": json.dumps(CASES[case]), "UPSETS": str(upsets)},
+        log=log,
+    )
+    if failed or not count:
+        raise RuntimeError(f"{case}: the experiments failed, see {log}")
+    results: list[dict[str, Any]] = json.loads((folder / "upsets.json").read_text())
+    return results
+
+
+def table(results: list[dict[str, Any]]) -> str:
+    """A row for each module, a column for each outcome; settings, which software rewrites, by themselves."""
+    rows: dict[str, Counter[str]] = {}
+    for result in results:
+        name = "settings (held until rewritten)" if result["setting"] else result["group"]
+        for row in (name, "all but settings") if not result["setting"] else (name,):
+            rows.setdefault(row, Counter())[result["outcome"]] += 1
+    lines = ["".join([f"{'':34}", *(f"{outcome:>13}" for outcome in OUTCOMES)])]
+    for name in sorted(rows, key=lambda row: (row.startswith(("all", "settings")), row)):
+        lines.append("".join([f"{name:34}", *(f"{rows[name][outcome]:13}" for outcome in OUTCOMES)]))
+    return "\n".join(lines)
+
+
+def main() -> None:
+    with variables.reported("upsets"):
+        given = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
+        upsets = variables.number(given, "UPSETS", 60, 1, 100_000)
+        seed = variables.number(given, "SEED", 1, 0, 10**9)
+        sys.exit(campaign(upsets, seed))
+
+
+def campaign(upsets: int, seed: int) -> int:
+    """Flip bits in every case and print tables of the outcomes; returns the exit status."""
+    folders = {case: repository.ROOT / "build" / "upsets" / case for case in CASES}
+    for folder in folders.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    print(f"{upsets} flips in each module and its memories, each in a stream of its own ..", flush=True)
+    with ProcessPoolExecutor(len(CASES)) as pool:
+        runs = {case: pool.submit(run, case, upsets, seed, folder) for case, folder in folders.items()}
+    print()
+    for outcome, meaning in OUTCOMES.items():
+        print(f"{outcome}: {meaning}")
+    bad = 0
+    for case, results in runs.items():
+        print(f"\n{case}\n{table(results.result())}")
+        bad += sum(not r["setting"] and r["outcome"] in ("hang", "stays wrong") for r in results.result())
+    print(f"\n{bad} hang or stay wrong")
+    return variables.MISMATCH if bad else variables.EQUAL
+
+
+if __name__ == "__main__":
+    main()

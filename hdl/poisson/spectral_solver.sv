@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// spectral_solver: Poisson solver for one frame after another, by sine transforms along both directions.
+//
+//   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
+//
+//   row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
+//               -> dst_inverse -> transpose -> dst_inverse -> row_reorder
+//
+// Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
+// one burst of Size words a row. Latency: fixed; models/tactile_depth/latency.py. Formats:
+// models/tactile_depth/configuration.py.
+// Bit-accurate model: models/tactile_depth/poisson/spectral_solver.py.
+
+module spectral_solver #(
+  parameter int Size             = 128,
+  parameter int InWidth          = 23,
+  parameter int DataWidth        = 24,  // of a stored word, and of a depth code
+  parameter int Width            = 27,  // of the arithmetic
+  parameter int CoeffWidth       = 18,
+  parameter int RowForwardOut    = 3,   // fraction bits dropped on the way out of, and into, each transform
+  parameter int ColumnForwardIn  = 1,
+  parameter int ColumnInverseOut = -1,
+  parameter int RowInverseIn     = -3,
+  parameter int RowInverseOut    = -1,
+  parameter int DivideShiftWidth = 4,
+  parameter int DivideDrop       = 23,
+  parameter int Neumann          = 0,   // 1: zero slope at the edge and zero mean, by cosine transforms
+  parameter int StoreStyle       = 1    // of the frame stores, hdl/common/ram.sv
+) (
+  input  logic                        clk,
+  input  logic                        rst,
+  input  logic                        en,
+  input  logic                        in_valid,
+  input  logic                        in_frame_start,   // the first word of a frame
+  input  logic signed [InWidth-1:0]   in_data,
+  output logic                        out_start,
+  output logic                        out_frame_start,  // the first burst of a frame
+  output logic signed [DataWidth-1:0] out_data,
+  output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
+);
+
+  localparam int Alternate = Neumann != 0 ? 0 : 1;
+
+  logic row_start, row_modes_start, column_start, modes_start, divided_start;
+  logic column_out_start, depth_row_start, depth_start, depth_valid;
+  logic row_frame_start, row_modes_frame_start, column_frame_start, modes_frame_start, divided_frame_start;
+  logic column_out_frame_start, depth_row_frame_start, depth_frame_start;
+  logic [InWidth-1:0] row_data;
+  logic [DataWidth-1:0] column_data, depth_row_data, depth_reordered;
+  logic signed [DataWidth-1:0] row_modes, column_out, depth;
+  logic signed [Width-1:0] modes, divided;
+  logic [7:0] clipped_a, clipped_b, clipped_c, clipped_d;
+  logic clipped_divide;
+
+  row_reorder #(.Width(InWidth), .Size(Size), .ToBurst(1)) u_row_in (
+    .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
+    .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
+  );
+
+  dst_forward #(
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
+  ) u_row_forward (
+    .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
+    .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes), .saturations(clipped_a)
+  );
+
+  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle)) u_to_columns (
+    .clk, .rst, .en, .in_start(row_modes_start), .in_frame_start(row_modes_frame_start), .in_data(row_modes),
+    .out_start(column_start), .out_frame_start(column_frame_start), .out_data(column_data)
+  );
+
+  dst_forward #(
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
+  ) u_column_forward (
+    .clk, .rst, .en, .in_start(column_start), .in_frame_start(column_frame_start), .in_data(column_data),
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_b)
+  );
+
+  spectral_divide #(
+    .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size),
+    .ShiftWidth(DivideShiftWidth), .Drop(DivideDrop)
+  ) u_divide (
+    .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
+    .out_start(divided_start), .out_frame_start(divided_frame_start), .out_data(divided), .saturations(clipped_divide)
+  );
+
+  dst_inverse #(
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
+  ) u_column_inverse (
+    .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_data(divided),
+    .out_start(column_out_start), .out_frame_start(column_out_frame_start), .out_data(column_out),
+    .saturations(clipped_c)
+  );
+
+  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
+    .clk, .rst, .en, .in_start(column_out_start), .in_frame_start(column_out_frame_start), .in_data(column_out),
+    .out_start(depth_row_start), .out_frame_start(depth_row_frame_start), .out_data(depth_row_data)
+  );
+
+  dst_inverse #(
+    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
+  ) u_row_inverse (
+    .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_data(depth_row_data),
+    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_d)
+  );
+
+  logic [$clog2(Size)-1:0] unused_position;
+  burst_counter #(.Size(Size)) u_depth_valid (
+    .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
+  );
+  row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
+    .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
+    .out_start, .out_frame_start, .out_data(depth_reordered)
+  );
+  assign out_data = depth_reordered;
+
+  always_ff @(posedge clk) begin
+    saturations <= 8'(clipped_a) + 8'(clipped_b) + 8'(clipped_divide) + 8'(clipped_c) + 8'(clipped_d);
+    if (rst) saturations <= '0;
+  end
+
+endmodule

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""uart_transmit against tactile_depth.boards.uart: every level of every bit; gaps, a reset."""
+
+import os
+import random
+from itertools import groupby
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.boards.uart import BITS, receive, transmit
+from tb.axis import AxisSource, profile
+from tb.stream import CLOCK_NS, parameters
+
+BYTES = 40
+
+
+async def start(dut, offers):
+    """Clock, driver, reset; the levels that leave are kept from here on."""
+    dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+    dut.rst.value = 1
+    source = AxisSource(dut, "in", ("data",), offers=profile(offers))
+    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    await ClockCycles(dut.clk, 3)
+    dut.rst.value = 0
+    await RisingEdge(dut.clk)
+    levels = []
+
+    async def watch():
+        while True:
+            await RisingEdge(dut.clk)
+            levels.append(int(dut.line.value))
+
+    cocotb.start_soon(watch())
+    return source, levels
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(offers=["none", "long", "random"])
+async def words(dut, offers):
+    """Every byte in order; a bit lasts as it should, and a stop bit no less."""
+    (divider,) = parameters(dut, "Divider")
+    source, levels = await start(dut, offers)
+    sent = [0, 255, *random.Random(cocotb.RANDOM_SEED).sample(range(256), BYTES)]
+    await source.send([(byte,) for byte in sent])
+    await ClockCycles(dut.clk, (BITS + 1) * divider)
+    assert receive(levels, divider) == sent
+    runs = [(level, len(list(group))) for level, group in groupby(levels)]
+    for (level, clocks), (wanted, bits) in zip(
+        runs[1:-1], [(level, len(list(group))) for level, group in groupby(transmit(sent))][:-1], strict=True
+    ):
+        assert level == wanted
+        late = clocks - bits * divider  # only where a stop bit ends a run
+        assert late == 0 or (level and late > 0)
+    assert runs[-1][0] == 1
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def reset(dut):
+    """The line is high at once, and the next byte is whole."""
+    (divider,) = parameters(dut, "Divider")
+    source, levels = await start(dut, "none")
+    cocotb.start_soon(source.send([(0,)] * 3))
+    await ClockCycles(dut.clk, 5 * divider)
+    source.abort()
+    dut.rst.value = 1
+    await ClockCycles(dut.clk, 2)
+    dut.rst.value = 0
+    await RisingEdge(dut.clk)
+    levels.clear()
+    await source.send([(0x5A,)])
+    await ClockCycles(dut.clk, (BITS + 1) * divider)
+    assert receive(levels, divider) == [0x5A]

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The top of the ULX3S at its pins: bits of packets in, records and the contact light out, against the models.
+
+Whatever a test sends, `Board.check` feeds the models with the same bytes: what is broken there is broken here, and the
+frame that follows is right.
+"""
+
+import os
+import random
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, FallingEdge, ReadOnly, RisingEdge, Timer
+
+from tactile_depth.boards.serial_link import (
+    END,
+    ESCAPE,
+    FRAME,
+    frame_packet,
+    packet,
+    packets,
+    serial_link,
+    words_of,
+    write_packet,
+)
+from tactile_depth.boards.uart import BITS, transmit
+from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.frame.frame_guard import frame_guard
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.scenes import render
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import tactile_depth
+from tb.stream import CLOCK_NS, configuration, parameters
+
+THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD")
+BREAK_BITS = 25
+RESET_CLOCKS = 8
+
+
+class Board:
+    """The device, its line driven and watched."""
+
+    def __init__(self, dut):
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.config = dut, configuration()
+        self.rows, self.columns = self.config.rows, self.config.columns
+        clock_mhz, baud, self.threshold = parameters(dut, "ClockMhz", "Baud", "Threshold")
+        self.bit_clocks = round(clock_mhz * 10**6 / baud)
+        self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        self.line, self.replies, self.starts, self.lights = [], [], [], []
+        dut.ftdi_txd.value, dut.btn.value = 1, 0
+
+    async def start(self, button=True):
+        Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns").start()
+        if button:
+            self.dut.btn.value = 1
+            await ClockCycles(self.dut.clk_25mhz, RESET_CLOCKS)
+            self.dut.btn.value = 0
+        await ClockCycles(self.dut.clk_25mhz, 2 * RESET_CLOCKS)
+        assert int(self.dut.led.value) == 0x80, "locked, and nothing else"
+        cocotb.start_soon(self.listen())
+        cocotb.start_soon(self.note_starts())
+
+    async def listen(self):
+        """Read the bytes that come back, each with the contact light as it then stands."""
+        while True:
+            await FallingEdge(self.dut.ftdi_rxd)
+            await self.bits(0.5)
+            assert int(self.dut.ftdi_rxd.value) == 0
+            byte = 0
+            for place in range(BITS - 2):
+                await self.bits(1)
+                byte |= int(self.dut.ftdi_rxd.value) << place
+            await self.bits(1)
+            assert int(self.dut.ftdi_rxd.value) == 1, "stop bit"
+            self.replies.append(byte)
+            self.lights.append(int(self.dut.led.value))
+
+    async def note_starts(self):
+        """The pipeline's clock for each frame's first pixel, which stands in the record."""
+        depth = self.dut.u_depth
+        while True:
+            await RisingEdge(depth.s_axis_tvalid)  # tuser may be high from power-up on
+            await ReadOnly()
+            if not depth.s_axis_tuser.value:
+                continue
+            while not depth.s_axis_tready.value:
+                await RisingEdge(self.dut.clk_25mhz)
+                await ReadOnly()
+            self.starts.append(int(depth.now.value))
+
+    async def send(self, data):
+        """Bytes onto the line, back to back; None is a break."""
+        for byte in data:
+            if byte is None:
+                self.dut.ftdi_txd.value = 0
+                await self.bits(BREAK_BITS)
+                self.dut.ftdi_txd.value = 1
+                await self.bits(2)
+            else:
+                for level in transmit([byte]):
+                    self.dut.ftdi_txd.value = level
+                    await self.bits(1)
+            self.line.append(byte)
+
+    async def bits(self, count):
+        """A number of bits' time."""
+        await Timer(round(count * self.bit_clocks * CLOCK_NS), unit="ns")
+
+    def flat(self):
+        return np.full((self.rows, self.columns, 3), 135, np.uint8)
+
+    def touched(self):
+        """A ball, and noise that shows wherever a pixel is lost."""
+        ball = render("ball", self.rows, self.columns).frames[0]
+        return (ball ^ self.rng.integers(0, 8, ball.shape, np.uint8)).astype(np.uint8)
+
+    def records(self):
+        """What the models say of the line so far: the words of each record, and whether the light is on."""
+        taken = serial_link(self.line, self.columns)
+        guarded = frame_guard(taken.pixels, self.rows, self.columns)
+        good = [frame for frame in guarded.frames if not frame.bad]
+        if not good:
+            return []
+        words = np.array([frame.pixels for frame in good])
+        pixels = np.stack([words >> low & 255 for low in (16, 0, 8)], -1).astype(np.uint8)
+        pixels = pixels.reshape(-1, self.rows, self.columns, 3)
+        depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
+        times = iter(self.starts)
+        time_of = {index: next(times) for index, word in enumerate(taken.pixels) if word.user}
+        events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
+        found = []
+        for frame, codes in zip(good, depth, strict=True):
+            on, off = (self.setting(name, taken.writes, frame.last) for name in THRESHOLDS)
+            settings = Settings(on, off, 1, 1)
+            for place, code in enumerate(codes.flat):
+                row_end = place % self.columns == self.columns - 1
+                record = events.beat(
+                    int(code), place == 0, row_end, place == codes.size - 1, settings, time_of[frame.first]
+                )
+            found.append((record.words, bool((codes > on).any())))
+        return found
+
+    def setting(self, name, writes, pixels):
+        """Of a register when a frame whose last pixel is that one leaves; tests write between frames."""
+        written = [value for address, value, before in writes if address == REGISTERS[name].offset and before <= pixels]
+        value = written[-1] if written else self.threshold
+        return value - (value >> 31 << 32)
+
+    async def check(self):
+        """Wait for what is on its way; then every record, and the light at its end."""
+        depth_clocks = 2 * self.rows * self.columns + 8 * self.columns + 1000
+        await ClockCycles(self.dut.clk_25mhz, depth_clocks + 120 * BITS * self.bit_clocks)
+        expected = self.records()
+        found = [words_of(content) for content in packets(self.replies)]
+        assert [words for words, _ in expected] == found
+        ends = [place for place, byte in enumerate(self.replies) if byte == END][1::2]
+        assert [bool(self.lights[place] & 1) for place in ends] == [light for _, light in expected]
+        assert [self.lights[place] >> 1 & 1 for place in ends] == [(number + 1) % 2 for number in range(len(ends))]
+        return len(found)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def wakes(dut):
+    """From any power-up: locked, dark otherwise, and silent."""
+    board = Board(dut)
+    await board.start(button=False)
+    await ClockCycles(dut.clk_25mhz, 1000)
+    assert int(dut.led.value) == 0x80
+    assert int(dut.ftdi_rxd.value) == 1
+    assert not board.replies
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def frames(dut):
+    """Contact and none in turn, a record each, the light on and off."""
+    board = Board(dut)
+    await board.start()
+    for pixels in (board.touched(), board.flat(), board.touched()):
+        await board.send(frame_packet(pixels))
+    assert await board.check() == 3
+    assert [light for _, light in board.records()] == [True, False, True]
+
+
+@cocotb.test(timeout_time=40, timeout_unit="ms")
+async def broken_transfers(dut):
+    """After each kind of broken transfer the next frame is right."""
+    board = Board(dut)
+    await board.start()
+    rng = random.Random(cocotb.RANDOM_SEED)
+    whole = frame_packet(board.touched())
+    middle = len(whole) // 2
+    broken = [
+        whole[:middle],  # and no more: the next packet's first End closes it
+        whole[:middle] + whole[middle + 1 :],  # a byte is missing
+        whole[:-1] + whole[1:4] + whole[-1:],  # a pixel too many
+        (*whole[:middle], None, *whole[middle:]),  # a break
+        (*whole[:middle], ESCAPE, 0, *whole[middle:]),  # a wrong escape
+        whole[:5] + whole[1:],  # no End before
+        packet([3, 1, 2]),  # nothing known
+        bytes(rng.randrange(256) for _ in range(40)),  # noise
+        (None, None, *whole[:30], *whole[:9], END, END, END, *packet([FRAME])),
+    ]
+    for transfer in broken:
+        await board.send(transfer)
+        await ClockCycles(dut.clk_25mhz, rng.choice([0, 500]))
+        await board.send(frame_packet(board.touched()))
+    assert await board.check() >= len(broken)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def registers(dut):
+    """A threshold written over the line holds from the next frame on; a write of another length is none."""
+    board = Board(dut)
+    await board.start()
+    touched = board.touched()
+    highest = int(tactile_depth(touched[None], synthetic(board.config.bits_per_channel), board.config).max())
+    writes = [write_packet(REGISTERS["THRESHOLD"].offset, highest - 1), b""]
+    writes += [
+        write_packet(REGISTERS["THRESHOLD"].offset, highest),
+        write_packet(REGISTERS["OFF_THRESHOLD"].offset, -5),
+    ]
+    long = write_packet(REGISTERS["THRESHOLD"].offset, -(1 << 31))
+    writes += [(*long[:3], None, *long[3:], *long[:-1], 0, END, *long[:-2], END)]
+    for write in writes:
+        await board.send(write)
+        await board.send(frame_packet(touched))
+        await ClockCycles(dut.clk_25mhz, 2 * touched.size + 2000)
+    assert await board.check() == len(writes)
+    assert [light for _, light in board.records()] == [True, True, False, False, False]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def button(dut):
+    """Pressed inside a frame; the next one is the first again, with the threshold of before the writes."""
+    board = Board(dut)
+    await board.start()
+    await board.send(write_packet(REGISTERS["THRESHOLD"].offset, (1 << 31) - 1))
+    await board.send(frame_packet(board.touched())[:100])
+    dut.btn.value = 1
+    await ClockCycles(dut.clk_25mhz, RESET_CLOCKS)
+    dut.btn.value = 0
+    await ClockCycles(dut.clk_25mhz, RESET_CLOCKS)
+    for kept in (board.line, board.starts):
+        kept.clear()
+    await board.send(frame_packet(board.touched()))
+    assert await board.check() == 1

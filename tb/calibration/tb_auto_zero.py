@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""auto_zero against its model in every clock: depths and floors of all kinds, changed over while frames stream."""
+
+from collections import deque
+
+import cocotb
+import numpy as np
+from cocotb.triggers import FallingEdge, RisingEdge
+
+from tactile_depth.calibration.auto_zero import auto_zero, interpolated_floor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import AUTO_ZERO
+from tb.depth_frames import DepthDriver, depth_words, random_depths
+from tb.gains import Gains, Grid
+from tb.stream import Bench, places
+
+WORDS = 2048  # that a test sends, at least
+MARKS = ("user", "last", "frame_end")
+
+
+def first_floor(config):
+    """Of floor_0.hex: every node another, (node rows, node columns)."""
+    rows, columns = config.reference_nodes
+    return places(rows * columns, config.depth.width).reshape(rows, columns)
+
+
+class Floors(Gains):
+    """One channel; entries are nodes."""
+
+    name = "floor"
+    capture_pin = "capture_floor"
+    per_node = 1
+
+    def __init__(self, dut, config):
+        self.width = config.depth.width
+        super().__init__(dut, config)
+
+    def at_power_up(self):
+        return first_floor(self.config)[..., None]
+
+    def random(self, chance):
+        return random_depths((*self.config.reference_nodes, 1), self.width, chance)
+
+    def entries(self, words):
+        return dict(enumerate(words.reshape(-1).tolist()))
+
+
+class Zero:
+    """The device, and what the model says of every word sent."""
+
+    def __init__(self, dut, gap, pause):
+        self.dut, self.gap = dut, gap
+        self.config = Grid.of(dut)
+        self.shape = (self.config.rows, self.config.columns)
+        self.width = self.config.depth.width
+        self.frames = max(3, WORDS // (self.config.rows * self.config.columns))
+        self.large = self.config.rows * self.config.columns > WORDS  # then a few frames must do
+        self.bench = Bench(dut, pause)
+        self.chance = self.bench.random
+        self.floors = Floors(dut, self.config)
+        self.driver = DepthDriver(dut, self.bench, gap)
+        self.monitor = Monitor()
+        self.counted = 0  # of `saturation`
+        self.forget()
+
+    def forget(self):
+        """What was sent: words, the places of those that are inside, and what should leave."""
+        self.sent, self.taken, self.expected, self.used = [], 0, [], []
+        self.inside = deque([None] * AUTO_ZERO)
+        self.clipped = self.begun = False
+
+    async def start(self, written=True):
+        await self.bench.start()
+        await self.floors.settle(written)
+        cocotb.start_soon(self.watch())
+
+    async def watch(self):
+        """Clock by clock: a word leaves AUTO_ZERO enabled clocks after it came, and is counted as it comes out."""
+        dut = self.dut
+        while True:
+            await RisingEdge(dut.clk)
+            if dut.rst.value:
+                continue
+            active = self.begun or any(index is not None and self.sent[index][2] for index in self.inside)
+            assert bool(dut.active.value) == active, f"active is {dut.active.value}"
+            assert bool(dut.saturation.value) == self.clipped, f"saturation is {dut.saturation.value}"
+            self.counted += self.clipped
+            self.clipped = False
+            if not dut.en.value:
+                continue
+            leaves = self.inside.pop()
+            assert bool(dut.out_valid.value) == (leaves is not None), f"out_valid is {dut.out_valid.value}"
+            if leaves is not None:
+                marks = tuple(bool(getattr(dut, f"out_{mark}").value) for mark in MARKS)
+                got = dut.out_data.value.to_signed()
+                assert marks == self.sent[leaves][:3], f"word {leaves}: marks {marks}"
+                assert got == self.expected[leaves][0], f"word {leaves}: {got}, not {self.expected[leaves][0]}"
+            comes = None
+            if dut.in_valid.value:
+                comes, self.taken = self.taken, self.taken + 1
+                word = tuple(bool(getattr(dut, f"in_{mark}").value) for mark in MARKS)
+                assert (*word, dut.in_data.value.to_signed()) == self.sent[comes], "the driver sent something else"
+                self.begun = not word[2]
+            self.inside.appendleft(comes)
+            self.clipped = self.inside[-1] is not None and self.expected[self.inside[-1]][1]
+
+    def depths(self, floor=None):
+        """A frame; with a floor some are at its level, or just within the range and just outside."""
+        if floor is None or self.chance.random() < 0.6:
+            return random_depths(self.shape, self.width, self.chance)
+        low, high = -(1 << self.width - 1), (1 << self.width - 1) - 1
+        generator = np.random.default_rng(self.chance.getrandbits(32))
+        target = generator.choice([low - 1, low, low + 1, -1, 0, 1, high - 1, high, high + 1], self.shape)
+        return np.clip(interpolated_floor(floor, self.config) + target, low, high)
+
+    async def send(self, frames=1, depths=None, count=None):
+        """Frames back to back, or the first words of one; each has the floor that table_bank names as it begins, which
+        may be with the clock behind its first word."""
+        for _ in range(frames):
+            late = self.chance.random() < 0.5
+            floor = None if late else self.floors.begin_frame()[..., 0].copy()
+            frame = self.depths(floor) if depths is None else depths
+            words = depth_words(frame)[:count]
+            self.sent += words
+            await self.driver.words(words[:1])
+            if late:
+                floor = self.floors.begin_frame()[..., 0].copy()
+            self.used.append(floor.tobytes())
+            zeroed = auto_zero(frame, floor, self.config, self.monitor).reshape(-1)
+            clipped = (frame - interpolated_floor(floor, self.config)).reshape(-1) != zeroed
+            self.expected += zip(zeroed.tolist(), clipped.tolist(), strict=True)
+            await self.driver.words(words[1:])
+
+    async def reset(self, en):
+        resetting = cocotb.start_soon(self.bench.reset(en))
+        await FallingEdge(self.dut.clk)  # behind what the clock before did
+        self.forget()
+        await resetting
+
+    async def check(self):
+        """When all has left."""
+        await self.bench.clocks(AUTO_ZERO + 3)
+        assert self.taken == len(self.sent) == len(self.expected)
+        assert not any(index is not None for index in self.inside)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def at_power_up(dut):
+    """The floor of floor_0.hex, in both banks."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start(written=False)
+    for _ in range(2):
+        await device.send()
+        await device.check()
+        assert device.used[-1] == first_floor(device.config).tobytes()
+        device.floors.due = True
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)]))
+async def frames_while_the_bus_rewrites(dut, gap, pause):
+    """The first frame after a change-over has the new floor from first word to last, the one before it the old."""
+    device = Zero(dut, gap, pause)
+    await device.start()
+    await device.floors.write(device.floors.random(device.chance))
+    device.floors.due = True
+    going_on = [True]
+    rewriter = cocotb.start_soon(device.floors.rewrite(device.chance, lambda: going_on[0]))
+    await device.send(device.frames)
+    going_on[0] = False
+    await rewriter
+    await device.check()
+    assert len(set(device.used)) > 1, "no change-over was seen: a poor test"
+    assert device.counted == device.monitor.saturations.total() > 0
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def captured(dut):
+    """All nodes, into both banks; the bus reads the same."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start()
+    for _ in range(2):
+        await device.floors.capture(device.floors.random(device.chance))
+        for index in range(device.floors.banks[0].size):
+            await device.floors.read(index)
+        device.floors.due = True
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+async def differences_at_their_limits(dut):
+    """Floors and depths at both ends: what just fits, what is just clipped, and the largest difference there is."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start()
+    low, high = -(1 << device.width - 1), (1 << device.width - 1) - 1
+    for level in (low,) if device.large else (low, low + 1, -1, 0, 1, high - 1, high):
+        await device.floors.write(np.full((*device.config.reference_nodes, 1), level))
+        device.floors.due = True
+        await device.send()  # takes over the floor
+        await device.floors.changed()
+        for depth in (low + level, low + level - 1, high + level, high + level + 1, low, high):
+            if low <= depth <= high:
+                await device.send(depths=np.full(device.shape, depth))
+    await device.check()
+    assert device.counted == device.monitor.saturations.total() > 0
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut):
+    """In mid-frame: no word of before leaves or is counted; floors stay; a change-over that is due is made."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start()
+    size = device.config.rows * device.config.columns
+    counts = (1, 2, 3, 4, 8, 9, 10, 11, 12, 2 * device.config.columns + 3, size)
+    for turn, count in enumerate(counts[-2:] if device.large else counts):
+        await device.floors.write(device.floors.random(device.chance))
+        await device.send(count=count)
+        if count % 2:
+            device.floors.change()
+        await device.reset(en=turn % 2)
+        if count % 3:
+            await device.bench.clocks(AUTO_ZERO + 2)
+        await device.send()
+        await device.check()

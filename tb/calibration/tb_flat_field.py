@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""flat_field against its model: colours, dark pixels, what is counted; gains changed over while frames stream."""
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.calibration.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import FLAT_FIELD
+from tb.gains import Gains, Grid, random_gains, reads_as_a_pause_ends
+from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
+
+PIXELS = 2048  # that a test sends, at least
+PIXEL = ["pixel", "place"]
+COLOURS = ["red", "green", "blue", "place"]
+
+
+def picture(rows, columns, chance, level):
+    """uint8 (rows, columns, 3): anything, with dark pixels alone, in runs, in whole rows, and pixels nearly dark."""
+    generator = np.random.default_rng(chance.getrandbits(32))
+    pixels = generator.integers(0, 256, (rows, columns, 3))
+    if not level:
+        return pixels.astype(np.uint8)
+    dim = generator.integers(0, level, (rows, columns, 3))
+    dark = generator.random((rows, columns)) < chance.choice((0.05, 0.5, 0.9))
+    dark |= (generator.random(rows) < 0.2)[:, None]  # whole rows
+    dark[:, 0] |= generator.random(rows) < 0.3
+    pixels = np.where(dark[..., None], dim, pixels)
+    nearly = generator.random((rows, columns)) < 0.1
+    one = np.arange(3) == generator.integers(0, 3, (rows, columns, 1))
+    return np.where((nearly[..., None] & one), level, pixels).astype(np.uint8)
+
+
+class Field:
+    """The device, and what the model says of every frame sent."""
+
+    def __init__(self, dut, gap, pause):
+        self.dut, self.gap = dut, gap
+        self.config = Grid.of(dut, "GainWidth")
+        self.quadratic = bool(parameters(dut, "Offset")[0])
+        self.model = deviations if self.quadratic else flat_codes
+        self.places = raster(self.config.rows, self.config.columns)
+        self.frames = max(2, PIXELS // len(self.places))
+        self.large = len(self.places) > PIXELS  # then a few frames must do
+        self.bench = Bench(dut, pause)
+        self.gains = Gains(dut, self.config)
+        self.driver = StreamDriver(dut, "in", "valid", PIXEL)
+        self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
+        unsigned = ["place"] if self.quadratic else COLOURS
+        self.sink = StreamMonitor(dut, "out", "valid", COLOURS, unsigned=unsigned)
+        self.monitor = Monitor()
+        self.sent, self.expected, self.dark, self.darkened = [], [], 0, 0
+        dut.dark_level.value = 0
+
+    async def start(self, written=True):
+        await self.bench.start()
+        await self.gains.settle(written)
+        cocotb.start_soon(self.count())
+
+    async def count(self):
+        while True:
+            await RisingEdge(self.dut.clk)
+            if not self.dut.rst.value:
+                self.darkened += int(self.dut.dark.value)
+
+    async def send(self, frames=1, level=None, pixels=None, named=None):
+        """Frames back to back, each with the gains and the dark level that stand when it begins; the other bank is
+        named behind so many words."""
+        chance = self.bench.random
+        for _ in range(frames):
+            given = chance.choice((0, 1, 16, 100, 255)) if level is None else level
+            frame = picture(self.config.rows, self.config.columns, chance, given) if pixels is None else pixels
+            red, green, blue = frame.astype(np.int64).reshape(-1, 3).T
+            words = list(zip((red << 16 | blue << 8 | green).tolist(), self.places, strict=True))
+            while chance.random() < self.gap:
+                await self.bench.clocks(1)
+            gains = self.gains.begin_frame().copy()
+            self.expected.append(self.model(frame, gains, self.config, given, self.monitor))
+            self.dark += int(dark_pixels(frame, gains, self.config, given).sum())
+            self.sent += words
+            self.dut.dark_level.value = given
+            await send_apart(self.bench, self.driver, words[:1], 0.0)
+            self.dut.dark_level.value = chance.randrange(256)
+            await send_apart(self.bench, self.driver, words[1:named], self.gap)
+            if named:
+                self.gains.change()
+                await send_apart(self.bench, self.driver, words[named:], self.gap)
+
+    async def check(self):
+        await self.bench.clocks(FLAT_FIELD + 3)
+        assert self.source.words == self.sent, "the driver sent something else"
+        colours = np.concatenate([frame.reshape(-1, 3) for frame in self.expected]).astype(np.int64)
+        want = np.column_stack((colours, [place for _, place in self.sent]))
+        np.testing.assert_array_equal(np.array(self.sink.words), want)
+        assert self.sink.starts == [clock + FLAT_FIELD for clock in self.source.starts]
+        assert self.darkened == self.dark, f"{self.darkened} dark pixels counted, the model has {self.dark}"
+        clipped = self.monitor.saturations.total()
+        assert self.bench.saturations == clipped, f"{self.bench.saturations} values clipped, {clipped} in the model"
+
+    def forget(self):
+        self.source.forget()
+        self.sink.forget()
+        self.sent, self.expected, self.monitor = [], [], Monitor()
+        self.dark = self.darkened = 0
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def at_power_up(dut):
+    """The reference is 128 everywhere: codes are the pixels, deviations theirs from 128."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start(written=False)
+    rows, columns = device.config.rows, device.config.columns
+    pixels = picture(rows, columns, device.bench.random, 0)
+    pixels.reshape(-1)[:256] = np.arange(256)
+    await device.send(level=0, pixels=pixels)
+    await device.check()
+    (codes,) = device.expected
+    np.testing.assert_array_equal(codes, (pixels.astype(int) - 128) * 32 if device.quadratic else pixels)
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)]))
+async def frames_while_the_bus_rewrites(dut, gap, pause):
+    device = Field(dut, gap, pause)
+    await device.start()
+    await device.gains.write(random_gains(device.config, device.bench.random))
+    device.gains.due = True
+    going_on = [True]
+    rewriter = cocotb.start_soon(device.gains.rewrite(device.bench.random, lambda: going_on[0]))
+    await device.send(device.frames)
+    going_on[0] = False
+    await rewriter
+    await device.check()
+    assert device.dark, "no dark pixel: a poor test"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def read_as_a_pause_ends(dut):
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    await reads_as_a_pause_ends(device)
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def named_inside_a_frame(dut):
+    """Another bank is that of the next frame, wherever in a frame it is named."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    size = len(device.places)
+    for count in range(3, size, size if device.large else max(device.config.columns + 1, size // 5)):
+        await device.gains.write(random_gains(device.config, device.bench.random))
+        await device.send(named=count)
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def products_at_their_limits(dut):
+    """Ties of the rounding, the largest pixel and the largest gain that is not dark, and just over both limits."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    drop = parameters(dut, "Drop")[0]
+    half = 1 << (drop - 1)
+    gains = (half, 3 * half, (1 << 23) - 1, 1 << 23, (1 << 22) + half // 2)
+    for gain in gains[2:3] if device.large else gains:
+        await device.gains.write(np.full((*device.config.reference_nodes, 3), gain))
+        device.gains.due = True
+        await device.send(level=0)
+        await device.send(level=0, pixels=np.full((device.config.rows, device.config.columns, 3), 255, np.uint8))
+        await device.gains.changed()
+    await device.check()
+    assert device.bench.saturations, "nothing was clipped: a poor test"
+
+
+def beside_ties(gains, drop):
+    """The pixels uint8 (rows, columns, 3) whose products with the gains at their places lie nearest to a tie."""
+    products = np.arange(256)[:, None, None, None] * gains
+    return np.abs(products % (1 << drop) - (1 << drop - 1)).argmin(axis=0).astype(np.uint8)
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+async def products_beside_ties(dut):
+    """Whichever way a product is rounded hangs on the lowest bits of its gain."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    (drop,) = parameters(dut, "Drop")
+    for _ in range(2 if device.large else 2 * MANY):
+        gains = random_gains(device.config, device.bench.random)
+        await device.gains.write(gains)
+        device.gains.due = True
+        await device.send(level=0, pixels=beside_ties(interpolated_gains(gains, device.config), drop))
+        await device.gains.changed()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut):
+    """In mid-frame, at each stage of the pixels before: none of them leaves or is counted; the next frame is right."""
+    device = Field(dut, 0.0, 0.0)
+    await device.start()
+    generator = np.random.default_rng(1)
+    counts = (1, 2, 3, 4, 8, 10, 11, 12, 13, 14, 2 * device.config.columns + 3)
+    for count in counts[-1:] if device.large else counts:
+        await device.gains.write(generator.integers(1 << 19, 1 << 24, device.gains.banks[0].shape))
+        words = [(generator.integers(0, 1 << 24), place) for place in device.places[:count]]
+        device.dut.dark_level.value = 128
+        await send_apart(device.bench, device.driver, words, 0.0)
+        if count % 2:
+            device.gains.change()
+        await device.bench.reset()
+        device.forget()
+        if count % 3 == 0:
+            await device.bench.clocks(FLAT_FIELD + 2)
+            assert not device.sink.starts, f"words left after a reset at {count}"
+            assert not device.darkened
+        await device.send()
+        await device.check()

@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: Apache-2.0
+"""floor_capture against its model in every clock: what it writes and when, requests at any time, resets."""
+
+import itertools
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.calibration.floor_capture import CLOCKS, captured_floor
+from tb.depth_frames import DepthDriver, depth_words, random_depths
+from tb.gains import Grid
+from tb.stream import REGRESS, Bench, parameters
+
+WORDS = 2048  # that a test sends, about
+
+
+class Capture:
+    """The device, and what it should write."""
+
+    def __init__(self, dut, gap, pause):
+        self.dut = dut
+        self.config = Grid.of(dut)
+        (self.largest,) = parameters(dut, "MaxLog2")
+        self.shape = (self.config.rows, self.config.columns)
+        self.size = self.config.rows * self.config.columns
+        self.width = self.config.depth.width
+        self.bench = Bench(dut, pause)
+        self.chance = self.bench.random
+        self.driver = DepthDriver(dut, self.bench, gap)
+        self.frame = None  # that is being sent
+        self.place = 0  # of the next word in its frame
+        self.busy = self.inside = False
+        self.taken, self.count = [], 0  # frames since the request, and how many it wants
+        self.floor = None  # from the last of them on
+        self.writes, self.due = {}, None  # by clock: node and floor; the clock of done
+        self.captures = 0
+        dut.request.value, dut.log2_frames.value = 0, 0
+
+    async def start(self):
+        await self.bench.start()
+        cocotb.start_soon(self.run())
+
+    def stop(self):
+        self.inside, self.floor, self.writes, self.due = False, None, {}, None
+
+    async def run(self):
+        """Clock by clock, as the header has it."""
+        dut = self.dut
+        for clock in itertools.count():
+            await RisingEdge(dut.clk)
+            if dut.rst.value:
+                assert not dut.map_write.value, "a write in reset"
+                self.stop()
+                self.busy, self.place = False, 0
+                continue
+            done = clock == self.due
+            assert bool(dut.done.value) == done, f"done is {dut.done.value}, {self.due and self.due - clock} clocks off"
+            assert bool(dut.busy.value) == self.busy
+            write = self.writes.pop(clock, None)
+            assert bool(dut.map_write.value) == (write is not None), f"map_write is {dut.map_write.value}"
+            if write is not None:
+                assert (int(dut.map_write_node.value), dut.map_write_floor.value.to_signed()) == write
+            if done:
+                self.stop()
+                self.busy = False
+                self.captures += 1
+            if dut.en.value and dut.in_valid.value:
+                self.take(clock)
+            if dut.request.value:
+                self.stop()
+                self.busy, self.taken = True, []
+
+    def take(self, clock):
+        """A word."""
+        row, column = divmod(self.place, self.shape[1])
+        if self.place == 0:
+            self.inside = self.busy and self.floor is None
+            if self.inside:
+                if not self.taken:
+                    self.count = 1 << min(int(self.dut.log2_frames.value), self.largest)
+                self.taken.append(self.frame)
+                if len(self.taken) == self.count:
+                    self.floor = captured_floor(np.array(self.taken), self.config)
+        self.place = (self.place + 1) % self.size
+        log2, (rows, columns) = self.config.reference_block_log2, self.config.reference_nodes
+        last = (1 << log2) - 1
+        node_row, node_column = row >> log2, column >> log2
+        if not self.inside or self.floor is None or node_row >= rows or row & last != last or column & last != last:
+            return
+        node = node_row * columns + node_column
+        self.writes[clock + CLOCKS - 1] = (node, int(self.floor[node_row, node_column]))
+        if node == rows * columns - 1:
+            self.due = clock + CLOCKS
+
+    async def send(self, depths=None, count=None):
+        """A frame, or its first words."""
+        self.frame = random_depths(self.shape, self.width, self.chance) if depths is None else depths
+        await self.driver.words(depth_words(self.frame)[:count])
+
+    async def request(self, log2=None):
+        if log2 is not None:
+            self.dut.log2_frames.value = log2
+        self.dut.request.value = 1
+        await RisingEdge(self.dut.clk)
+        self.dut.request.value = 0
+
+    async def until_done(self, depths=None):
+        """Frames go on until the capture is done, and end with a whole one; one that is not cut follows it."""
+        before = self.captures
+        while self.captures == before:
+            await self.send(depths)
+            for _ in range(self.chance.choice((0, CLOCKS + 2))):
+                await RisingEdge(self.dut.clk)
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3), (0.0, 0.5), (0.6, 0.0)]), log2=[0, 1, 3])
+async def captures(dut, gap, pause, log2):
+    """Of frames in a row; what came before counts for nothing."""
+    device = Capture(dut, gap, pause)
+    await device.start()
+    await device.send()
+    if device.size > WORDS and (log2 > 1 or gap):
+        return
+    for count in range(1, 5):
+        await device.request(log2)
+        await device.until_done()
+        assert device.captures == count
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(high=[False, True])
+async def most_frames(dut, high):
+    """As many as fit the sum, all at one end of the range; more are asked for. The exponent changes meanwhile."""
+    device = Capture(dut, 0.0, 0.0)
+    if device.size << device.largest > 32 * WORDS:
+        return
+    await device.start()
+    depths = np.full(device.shape, (1 << device.width - 1) - 1 if high else -(1 << device.width - 1))
+    for log2 in range(device.largest, 16) if device.largest < 4 else (15,):
+        await device.request(log2)
+        before = device.captures
+        await device.send(depths)
+        dut.log2_frames.value = 0
+        if device.captures == before:  # one frame, cut below its last nodes, is done before it ends
+            await device.until_done(depths)
+        assert device.captures == before + 1
+        assert len(device.taken) == 1 << device.largest
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def depths_of_all_kinds(dut):
+    """Limits, ties of either sign, anything."""
+    device = Capture(dut, 0.0, 0.0)
+    await device.start()
+    for index in range(1 if device.size > WORDS else 30):
+        await device.request(min(index % 4, device.largest))
+        await device.until_done()
+
+
+@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.4])
+async def requests_at_any_time(dut, pause):
+    """While idle, armed, summing, writing; in the clock of a frame's first and last word and in that of done."""
+    device = Capture(dut, 0.0, pause)
+    await device.start()
+    size = device.size
+    waits = [*range(8), *range(size - 2, size + CLOCKS + 4), 2 * size]
+    rows = size - size % (device.shape[1] << device.config.reference_block_log2)  # words before a cut row of blocks
+    waits += range(rows - 3, rows + CLOCKS + 3)
+    waits += [device.chance.randrange(size + CLOCKS) for _ in range(20)]
+    if size > WORDS:
+        waits = device.chance.sample(waits, 1)
+    elif not REGRESS and pause:
+        waits = device.chance.sample(waits, len(waits) // 3)
+    going_on = [True]
+
+    async def frames():
+        while going_on[0]:
+            await device.send()
+
+    sender = cocotb.start_soon(frames())
+    for wait in waits:
+        await device.request(0)
+        while device.busy and not device.inside:  # to a frame's first word, so that the waits mean what they say
+            await RisingEdge(dut.clk)
+        for _ in range(wait):
+            await RisingEdge(dut.clk)
+        await device.request(device.chance.randrange(2))
+        for _ in range(device.chance.randrange(2 * size)):
+            await RisingEdge(dut.clk)
+    while device.busy:
+        await RisingEdge(dut.clk)
+    going_on[0] = False
+    await sender
+    assert device.captures
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def resets(dut):
+    """A reset ends a capture; nothing is written in it or after it; the next request is served."""
+    device = Capture(dut, 0.0, 0.0)
+    await device.start()
+    size, columns = device.shape[0] * device.shape[1], device.shape[1]
+    block = columns << device.config.reference_block_log2  # words of a row of blocks
+    counts = [1, 2, 3, 4, 5, 6, *range(block - columns, block + 8), size - 1, size]
+    for turn, count in enumerate(counts if size <= WORDS else []):
+        for wait in range(CLOCKS + 2) if count == size else (0, 3):
+            await device.request(0)
+            await device.send(count=count)
+            for _ in range(wait):
+                await RisingEdge(dut.clk)
+            await device.bench.reset(en=turn % 2)
+            if turn % 3:
+                await device.send()
+            if turn % 2:
+                await device.request(0)
+                await device.until_done()
+    await device.request(1)
+    await device.until_done()

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: Apache-2.0
+"""gain_map against its model: random and extreme gains, rewritten over the bus and changed over while frames stream."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.calibration.flat_field import interpolated_gains
+from tactile_depth.latency import GAIN_MAP
+from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
+from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
+
+PLACES = 2048  # that a test sends, at least
+
+
+class Nodes(Gains):
+    """Of any width, one to three channels."""
+
+    def __init__(self, dut, config):
+        self.width = config.depth.width
+        (self.count,) = parameters(dut, "Channels")
+        super().__init__(dut, config)
+
+    def at_power_up(self):
+        return first_gains(*self.config.reference_nodes, self.count, self.width)
+
+    def random(self, chance):
+        return random_gains(self.config, chance, self.count, self.width)
+
+
+class Map:
+    """The device, and the gains that each frame sent should get."""
+
+    def __init__(self, dut, gap, pause):
+        self.dut, self.gap = dut, gap
+        self.config = Grid.of(dut)
+        self.places = raster(self.config.rows, self.config.columns)
+        self.frames = max(2, PLACES // len(self.places))
+        self.large = len(self.places) > PLACES  # then a few frames must do
+        self.bench = Bench(dut, pause)
+        self.gains = Nodes(dut, self.config)
+        self.driver = StreamDriver(dut, "in", "valid", ["place"])
+        self.source = StreamMonitor(dut, "in", "valid", ["place"], unsigned=["place"])
+        self.sink = StreamMonitor(dut, "out", "valid", ["gains", "place"], unsigned=["gains", "place"])
+        self.expected = []
+
+    async def start(self, written=True):
+        await self.bench.start()
+        await self.gains.settle(written)
+
+    async def send(self, frames=1):
+        """Frames back to back, each with the bank that stands when it begins."""
+        for _ in range(frames):
+            while self.bench.random.random() < self.gap:
+                await self.bench.clocks(1)
+            self.expected.append(interpolated_gains(self.gains.begin_frame(), self.config))
+            await send_apart(self.bench, self.driver, [(self.places[0],)], 0.0)
+            await send_apart(self.bench, self.driver, [(place,) for place in self.places[1:]], self.gap)
+
+    async def check(self):
+        await self.bench.clocks(GAIN_MAP + 2)
+        sent = [(place,) for _ in self.expected for place in self.places]
+        assert self.source.words == sent, "the driver sent something else"
+        words = np.concatenate([gains.reshape(-1, self.gains.channels) for gains in self.expected]).tolist()
+        want = [
+            (sum(gain << self.gains.width * channel for channel, gain in enumerate(word)), place)
+            for word, (place,) in zip(words, sent, strict=True)
+        ]
+        for index, (got, wanted) in enumerate(zip(self.sink.words, want, strict=True)):
+            frame, pixel = divmod(index, len(self.places))
+            assert got == wanted, f"frame {frame} of {len(self.expected)}, pixel {pixel}: {got}, not {wanted}"
+        assert self.sink.starts == [clock + GAIN_MAP for clock in self.source.starts]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def at_power_up(dut):
+    """What the files say, in both banks."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start(written=False)
+    await device.send()
+    device.gains.change()
+    await device.send()
+    await device.check()
+    assert np.array_equal(device.expected[0], interpolated_gains(device.gains.at_power_up(), device.config))
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)]))
+async def frames_while_the_bus_rewrites(dut, gap, pause):
+    """The first frame after a change-over has the new gains from first pixel to last, the one before it the old."""
+    device = Map(dut, gap, pause)
+    await device.start()
+    await device.gains.write(device.gains.random(device.bench.random))
+    device.gains.due = True
+    going_on = [True]
+    rewriter = cocotb.start_soon(device.gains.rewrite(device.bench.random, lambda: going_on[0]))
+    await device.send(device.frames)
+    going_on.clear()
+    going_on.append(False)
+    await rewriter
+    await device.check()
+    used = {gains.tobytes() for gains in device.expected}
+    assert len(used) > 1, "no change-over was seen: a poor test"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def read_as_a_pause_ends(dut):
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    await reads_as_a_pause_ends(device)
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def named_inside_a_frame(dut, pause):
+    """Another bank is that of the next frame, wherever in a frame it is named."""
+    device = Map(dut, 0.0, pause)
+    await device.start()
+    columns = device.config.columns
+    stride = columns + 1 if REGRESS or len(device.places) < 500 else 3 * columns + 1
+    for count in range(3, len(device.places), len(device.places) if device.large else stride):
+        await device.gains.write(device.gains.random(device.bench.random))
+        device.expected.append(interpolated_gains(device.gains.begin_frame(), device.config))
+        await send_apart(device.bench, device.driver, [(place,) for place in device.places[:count]], 0.0)
+        device.gains.change()
+        await send_apart(device.bench, device.driver, [(place,) for place in device.places[count:]], 0.0)
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def captured(dut):
+    """All nodes at once, into both banks; the bus reads the same; entries left over from before stay."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    for _ in range(2):
+        await device.gains.capture(device.gains.random(device.bench.random))
+        for index in range(0, 4 * device.gains.banks[0][..., 0].size, 5 if device.large else 1):
+            await device.gains.read(index)
+        device.gains.due = True
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut):
+    """In mid-frame: gains and banks stay; a change-over that is due is made; the next frame is right."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    columns = device.config.columns
+    counts = (1, 2, 3, 4, 6, columns, 2 * columns + 3, 5 * columns // 2)
+    for count in counts[-1:] if device.large else counts:
+        await device.gains.write(device.gains.random(device.bench.random))
+        await send_apart(device.bench, device.driver, [(place,) for place in device.places[:count]], 0.0)
+        if count % 2:
+            device.gains.change()
+        await device.bench.reset()
+        device.expected.clear()
+        device.source.forget()
+        device.sink.forget()
+        await device.send()
+        await device.check()

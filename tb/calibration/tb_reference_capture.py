@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""reference_capture against its model: sums and gains in a memory, requests at any time, broken frames, the clock of
+done. The memory refuses what hdl/common/ram.sv leaves open."""
+
+import itertools
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.calibration.reference_capture import reference_capture, reference_capture_clocks
+from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH
+from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, send_apart
+
+PIXELS = 512  # that a test sends, about
+SUM_CLOCKS = 5  # from a pixel to its sum in the memory
+FIELDS = ["pixel", "place", "bad"]
+
+
+class Capture:
+    """The device, a memory, and what should be in it when the capture is done."""
+
+    def __init__(self, dut, gap, pause):
+        self.dut, self.gap = dut, gap
+        self.config = configuration()
+        (self.largest,) = parameters(dut, "MaxLog2")
+        self.clocks = reference_capture_clocks(self.config)
+        self.places = raster(self.config.rows, self.config.columns)
+        self.bench = Bench(dut, pause)
+        self.chance = self.bench.random
+        self.generator = np.random.default_rng(cocotb.RANDOM_SEED)
+        self.driver = StreamDriver(dut, "in", "valid", FIELDS)
+        nodes = self.config.reference_nodes[0] * self.config.reference_nodes[1]
+        self.memory: list[int | None] = [None] * nodes
+        self.busy = self.inside = False
+        self.due, self.gains = None, None  # the clock of done, and what is then in the memory
+        self.divided = 0  # nodes whose gain was written
+        self.captures = 0
+        self.taken = []  # frames since the request: pixels, bad, log2_frames
+        self.frame = None  # that is being sent: pixels, bad
+        self.flipped = None  # what a test put into the memory before the last frame
+        self.sums = []  # to be written for the frames so far: (node, what is added, nothing before it)
+        self.passing = 0  # clocks in which sums of before a request may still be written
+        dut.request.value, dut.log2_frames.value = 0, 0
+
+    async def start(self):
+        await self.bench.start()
+        cocotb.start_soon(self.run())
+
+    async def run(self):
+        """Clock by clock, as the header has it."""
+        dut = self.dut
+        for clock in itertools.count():
+            await RisingEdge(dut.clk)
+            if dut.rst.value:
+                self.busy = self.inside = False
+                self.due = None
+                self.sums = []
+                continue
+            self.serve()
+            done = clock == self.due
+            assert bool(dut.done.value) == done, f"done is {dut.done.value}, {self.due and self.due - clock} clocks off"
+            assert bool(dut.busy.value) == self.busy
+            if done:
+                self.captures += 1
+                self.busy, self.due = False, None
+                got = [[word >> GAIN_WIDTH * c & (1 << GAIN_WIDTH) - 1 for c in range(3)] for word in self.memory]
+                np.testing.assert_array_equal(got, self.gains.reshape(-1, 3), "gains")
+            if dut.en.value and dut.in_valid.value:
+                place = int(dut.in_place.value)
+                if place & 3 == 3:
+                    self.inside = self.busy and self.due is None
+                    if self.inside:
+                        self.sums += self.row_sums(self.frame[0], not self.taken or self.taken[-1][1])
+                        self.taken.append((*self.frame, int(dut.log2_frames.value)))
+                if place & 12 == 12 and self.inside:
+                    found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)
+                    if found:
+                        self.due, self.gains, self.divided = clock + self.clocks, found[1], 0
+                        if self.flipped is not None:
+                            self.gains = self.gains_behind_flips(self.taken[-1][0])
+            if dut.request.value:
+                self.busy, self.due, self.inside = True, None, False
+                self.taken, self.sums, self.passing = [], [], SUM_CLOCKS
+
+    def serve(self):
+        dut = self.dut
+        read, write = bool(dut.map_read.value), bool(dut.map_write.value)
+        if write:
+            node = int(dut.map_write_node.value)
+            assert not (read and int(dut.map_read_node.value) == node), f"node {node} is read while it is written"
+            assert self.busy, "a write after done"
+            if self.passing:
+                pass
+            elif self.sums:
+                wanted, added, first = self.sums.pop(0)
+                before = [0 if first else self.memory[node] >> GAIN_WIDTH * c for c in range(3)]
+                sums = [held + more & (1 << GAIN_WIDTH) - 1 for held, more in zip(before, added, strict=True)]
+                word = sum(word << GAIN_WIDTH * c for c, word in enumerate(sums))
+                assert (node, int(dut.map_write_gains.value)) == (wanted, word), "a sum"
+            else:
+                assert self.due is not None, "a write of nothing"
+                assert node == self.divided, f"gain of node {node}, not {self.divided}"
+                self.divided += 1
+        self.passing = max(0, self.passing - 1)
+        if read:
+            word = self.memory[int(dut.map_read_node.value)]
+            assert word is not None, "a node is read before it was written"
+            dut.map_read_gains.value = word
+        if write:
+            self.memory[node] = int(dut.map_write_gains.value)
+
+    def pixels(self):
+        """uint8 (rows, columns, 3): anything, black, white, nearly black, gains about to saturate."""
+        shape = (self.config.rows, self.config.columns, 3)
+        match self.chance.randrange(6):
+            case 0:
+                return np.full(shape, self.chance.choice((0, 255)), np.uint8)
+            case 1:
+                return (self.generator.random(shape) < 0.1).astype(np.uint8)
+            case 2:
+                darkest = 1 << GAIN_FRACTION - GAIN_WIDTH  # the mean at which a gain just saturates
+                return (darkest + self.generator.choice([-1, 0, 0, 0, 0, 0, 0, 1], shape)).astype(np.uint8)
+            case 3:
+                return np.broadcast_to(self.generator.integers(0, 256, 3, dtype=np.uint8), shape)
+        return self.generator.integers(0, 256, shape, dtype=np.uint8)
+
+    def row_sums(self, frame, first):
+        """What is written for a frame, in order: node, the colours of a block's row, whether they begin a sum."""
+        block = 1 << self.config.reference_block_log2
+        rows, columns = self.config.reference_nodes
+        whole = frame[: rows * block, : columns * block].astype(np.int64)
+        sums = whole.reshape(rows * block, columns, block, 3).sum(axis=2)
+        return [
+            (row // block * columns + column, sums[row, column].tolist(), first and row % block == 0)
+            for row in range(rows * block)
+            for column in range(columns)
+        ]
+
+    def gains_behind_flips(self, frame):
+        """Of sums that are what the memory was made to hold and those of the last frame, modulo their word."""
+        block = 1 << self.config.reference_block_log2
+        rows, columns = self.config.reference_nodes
+        whole = frame[: rows * block, : columns * block].astype(np.int64)
+        sums = whole.reshape(rows, block, columns, block, 3).sum(axis=(1, 3)).reshape(-1, 3)
+        sums = sums + self.flipped & (1 << GAIN_WIDTH) - 1
+        dividend = 2 * len(self.taken) * block * block << GAIN_FRACTION
+        return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << GAIN_WIDTH) - 1)
+
+    async def send(self, bad=False):
+        """A frame."""
+        self.frame = (self.pixels(), bad)
+        red, green, blue = self.frame[0].astype(np.int64).reshape(-1, 3).T
+        pixels = (red << 16 | blue << 8 | green).tolist()
+        marks = [bad if place & 12 == 12 else self.chance.randrange(2) for place in self.places]
+        await send_apart(self.bench, self.driver, list(zip(pixels, self.places, marks, strict=True)), self.gap)
+
+    async def request(self, log2=None):
+        if log2 is not None:
+            self.dut.log2_frames.value = log2
+        self.dut.request.value = 1
+        await RisingEdge(self.dut.clk)
+        self.dut.request.value = 0
+
+    async def until_done(self, bad=0.0):
+        """Frames go on until the capture is done, and end with a whole one."""
+        before = self.captures
+        while self.captures == before:
+            await self.send(self.chance.random() < bad)
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), log2=[0, 1, 3])
+async def captures(dut, gap, pause, log2):
+    """Of frames in a row, without and with broken ones between."""
+    device = Capture(dut, gap, pause)
+    await device.start()
+    await device.send()
+    if len(device.places) > PIXELS and (log2 > 1 or gap):
+        return
+    for bad in (0.0, 0.3):
+        await device.request(log2)
+        await device.until_done(bad)
+    assert device.captures == 2
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def most_frames(dut):
+    """As many as fit the sum; more are asked for. The exponent changes while the capture goes on."""
+    device = Capture(dut, 0.0, 0.0)
+    if len(device.places) << device.largest > 128 * PIXELS:
+        return
+    await device.start()
+    await device.request(15)
+    await device.send()
+    dut.log2_frames.value = 0
+    await device.until_done()
+    assert len(device.taken) >= 1 << device.largest
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def any_sum(dut):
+    """The memory holds something else before the last frame: sums of all bits, which frames this small do not make."""
+    device = Capture(dut, 0.0, 0.0)
+    if len(device.places) > PIXELS:
+        return
+    await device.start()
+    for _ in range(10):
+        await device.request(1)
+        await device.send()
+        for _ in range(8):  # until its last sum is written
+            await RisingEdge(dut.clk)
+        device.flipped = device.generator.integers(0, 1 << GAIN_WIDTH, (len(device.memory), 3))
+        for node, (red, green, blue) in enumerate(device.flipped.tolist()):
+            device.memory[node] = red | green << GAIN_WIDTH | blue << 2 * GAIN_WIDTH
+        await device.until_done()
+    assert device.captures == 10
+
+
+@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.4])
+async def requests_at_any_time(dut, pause):
+    """While idle, armed, summing, dividing; in the clock of a frame's first and last pixel and in that of done."""
+    device = Capture(dut, 0.0, pause)
+    await device.start()
+    size = len(device.places)
+    waits = [0, 1, 2, 3, 5, size - 1, size, size + 1, size + 2, size + 3, size + 4, size + 5, 2 * size]
+    waits += [size + device.clocks + offset for offset in (-90, -30, -4, -3, -2, -1, 0, 1, 2)]
+    waits += [device.chance.randrange(size + device.clocks) for _ in range(5)]
+    if size > PIXELS:
+        waits = device.chance.sample(waits, 1)
+    elif not REGRESS and pause:
+        waits = device.chance.sample(waits, len(waits) // 3)
+    going_on = [True]
+
+    async def frames():
+        while going_on[0]:
+            await device.send()
+
+    sender = cocotb.start_soon(frames())
+    for wait in waits:
+        await device.request(0)
+        while device.busy and not device.inside:  # to a frame's first pixel, so that the waits mean what they say
+            await RisingEdge(dut.clk)
+        for _ in range(wait):
+            await RisingEdge(dut.clk)
+        await device.request(device.chance.randrange(2))
+        for _ in range(device.chance.randrange(2 * size)):
+            await RisingEdge(dut.clk)
+    while device.busy:
+        await RisingEdge(dut.clk)
+    going_on[0] = False
+    await sender
+    assert device.captures
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def resets(dut):
+    """A reset ends a capture; nothing is written after it; the next request is served."""
+    device = Capture(dut, 0.0, 0.0)
+    await device.start()
+    size = len(device.places)
+    counts = [1, 2, 3, 4, 5, 6, size - 1, size, size + 1, size + 3, size + 4, size + 90, size + device.clocks - 2]
+    for count in counts if size <= PIXELS else []:
+        await device.request(0)
+        sender = cocotb.start_soon(device.send())
+        for _ in range(count):
+            await RisingEdge(dut.clk)
+        await device.bench.reset()
+        if not sender.done():
+            await sender
+        for _ in range(8):
+            await RisingEdge(dut.clk)
+    await device.request(0)
+    await device.until_done()

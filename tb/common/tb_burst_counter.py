@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""burst_counter against tactile_depth.common.burst_counter: bursts apart, back to back, begun again; pauses; reset."""
+
+import random
+
+import cocotb
+
+from tactile_depth.common.burst_counter import burst_counter
+from tb.stream import drive, parameters
+
+
+def starts(size, chance):
+    """Start in each clock: two bursts back to back, one apart, one begun again, random ones, silence."""
+    burst = [1] + [0] * (size - 1)
+    random_ones = [int(chance.random() < 2 / size) for _ in range(10 * size)]
+    return [*burst, *burst, *[0] * 5, *burst, *burst[:3], *burst, *random_ones, *[0] * (size + 3)]
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.3], before=[0, 2])
+async def positions(dut, pause, before):
+    (size,) = parameters(dut, "Size")
+    chance = random.Random(cocotb.RANDOM_SEED)
+    lost = [{"rst": 0, "start": int(n == 0)} for n in range(before)] + [{"rst": 1, "start": 0}]
+    kept = [{"rst": 0, "start": start} for start in (0, *starts(size, chance))]
+    seen = await drive(dut, [*lost, *kept], ["position", "active"], pause)
+    begun = [bool(start) for start in seen["start"][len(lost) :]]
+    pairs = zip(seen["position"][len(lost) :], seen["active"][len(lost) :], strict=True)
+    got = [int(position) if active else None for position, active in pairs]
+    assert got == burst_counter(begun, size)

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""multiply against tactile_depth.common.multiply: every combination of extremes, random words, pauses."""
+
+import itertools
+import random
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.multiply import multiply
+from tactile_depth.latency import MULTIPLY
+from tb.stream import drive, parameters
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def products(dut, pause):
+    chance = random.Random(cocotb.RANDOM_SEED)
+    limits = [(-(1 << (width - 1)), (1 << (width - 1)) - 1) for width in parameters(dut, "AWidth", "BWidth")]
+    operands = list(itertools.product(*((low, -1, 0, 1, high) for low, high in limits)))
+    operands += [tuple(chance.randint(low, high) for low, high in limits) for _ in range(300)]
+    operands += [(0, 0)] * MULTIPLY
+    seen = await drive(dut, [{"a": a, "b": b} for a, b in operands], ["product"], pause)
+    factors = [np.array([word.to_signed() for word in seen[pin]]) for pin in ("a", "b")]
+    got = [word.to_signed() for word in seen["product"][MULTIPLY:]]
+    np.testing.assert_array_equal(got, multiply(*factors)[:-MULTIPLY])

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+"""rom against tactile_depth.common.rom: every word, twice over in random order, with pauses."""
+
+import random
+from pathlib import Path
+
+import cocotb
+
+from tactile_depth.common.rom import rom
+from tactile_depth.latency import MEMORY_READ
+from tb.stream import drive, parameters
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def every_word(dut, pause):
+    (depth,) = parameters(dut, "Depth")
+    words = [int(line, 16) for line in Path("rom.hex").read_text().split()]
+    places = random.Random(cocotb.RANDOM_SEED).sample(range(depth), depth)
+    stimuli = [{"address": place} for place in (*range(depth), *places, *[0] * MEMORY_READ)]
+    seen = await drive(dut, stimuli, ["data"], pause)
+    addresses = [int(address) for address in seen["address"]]
+    assert [int(word) for word in seen["data"][MEMORY_READ:]] == rom(words, addresses)[:-MEMORY_READ]

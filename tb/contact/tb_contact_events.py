@@ -1,0 +1,472 @@
+# SPDX-License-Identifier: Apache-2.0
+"""contact_events against its model in every clock, and every field of a record against numpy on the map."""
+
+import os
+import random
+from fractions import Fraction
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.contact.contact_events import CLOCKS_TO_TOUCHING, WORDS, ContactEvents, Packets, Settings, latency
+from tb.axis import PROFILES, profile
+from tb.stream import CLOCK_NS, REGRESS, parameters
+
+FRAMES = {0.0: 1000, 0.1: 1000 if REGRESS else 200}  # by the share of gaps
+WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
+
+
+def numpy_fields(depth, threshold, first_row_last):
+    """The fields of a record from the map of a frame, row 0 at the top, by numpy alone."""
+    rows, columns = np.nonzero(depth > threshold)
+    if not rows.size:
+        return [0] * 14
+    masked = np.where(depth > threshold, depth, np.iinfo(np.int64).min)
+    if first_row_last:
+        row, column = np.unravel_index(np.argmax(masked[::-1]), depth.shape)
+        row = depth.shape[0] - 1 - row
+    else:
+        row, column = np.unravel_index(np.argmax(masked), depth.shape)
+    centroid = [round(16 * Fraction(int(places.sum()), places.size)) for places in (rows, columns)]  # ties to even
+    limits = [rows.min(), columns.min(), rows.max(), columns.max()]
+    sums = [columns.sum(), rows.sum(), depth[depth > threshold].sum()]
+    return [int(value) for value in (rows.size, masked.max(), row, column, *limits, *sums, *centroid, 1)]
+
+
+def seen_fields(words):
+    """The same, from the words of a packet."""
+    halves = np.array(words, np.uint32)
+    signed = halves.view(np.int32)
+
+    def place(index):
+        return [int(halves[index]) >> 16, int(halves[index]) & 0xFFFF]
+
+    volume = int(signed[11]) << 32 | int(halves[10])
+    area = int(halves[3])
+    sums = [int(halves[8]), int(halves[9]), volume]
+    return [area, int(signed[4]), *place(5), *place(6), *place(7), *sums, *place(12), int(area > 0)]
+
+
+class Events:
+    """Whether it touches, from the areas of all frames so far."""
+
+    def __init__(self):
+        self.touching, self.contrary = False, []
+
+    def frame(self, area, minimum, debounce):
+        """Status bits of the frame."""
+        self.contrary.append((area >= minimum) != self.touching)
+        needed = max(debounce, 1)
+        if len(self.contrary) < needed or not all(self.contrary[-needed:]):
+            return int(self.touching)
+        self.touching, self.contrary = not self.touching, []
+        return 0b011 if self.touching else 0b100
+
+
+class Bench:
+    """Drives one clock at a time; every output must be what the model makes of the clocks before."""
+
+    def __init__(self, dut, accepts="none", gap=0.0):
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.gap = dut, gap
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        self.width, self.rows, self.columns, self.bottom_first = parameters(
+            dut, "Width", "Rows", "Columns", "BottomFirst"
+        )
+        self.pixels = self.rows * self.columns
+        self.low, self.high = -(1 << self.width - 1), (1 << self.width - 1) - 1
+        self.latency = latency(self.rows, self.columns)
+        self.accepts = profile(accepts)
+        self.model = ContactEvents(self.rows, self.columns, bool(self.bottom_first))
+        self.packets = Packets()
+        self.driven = {}  # what stands on the pins
+        self.now, self.lost = 0, 0
+        self.moved = False  # the record, since it was read
+        self.records, self.sent = [], []  # words of each record as it was new, of each packet
+        self.forget()
+
+    def forget(self):
+        """What is due, in the clock in which it is."""
+        self.touching, self.record = False, (0,) * WORDS
+        self.touching_due, self.record_due, self.open = {}, {}, []
+
+    async def start(self):
+        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        self.dut.in_valid.value, self.dut.m_event_tready.value, self.dut.rst.value = 0, 0, 1
+        await RisingEdge(self.dut.clk)
+        await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+
+        cocotb.start_soon(self.watch())
+
+    async def watch(self):
+        while True:
+            await self.dut.record.value_change
+            self.moved = True
+
+    async def reset(self):
+        self.dut.rst.value = 1
+        await self.edge(False)
+        self.dut.rst.value = 0
+        self.model.reset()
+        self.packets.reset()
+        self.forget()
+
+    def drive(self, **pins):
+        for name, value in pins.items():
+            if self.driven.get(name) != value:  # a write costs more than a clock
+                getattr(self.dut, name).value = self.driven[name] = value
+
+    async def edge(self, valid, data=0, user=False, last=False, frame_end=False, settings=None, time=None):
+        """One clock. Settings and time that are not given do not count in it."""
+        ready = next(self.accepts)
+        self.drive(in_valid=int(valid), in_data=data, in_user=int(user), in_last=int(last))
+        self.drive(in_frame_end=int(frame_end), m_event_tready=int(ready))
+        if settings is not None:
+            self.drive(**settings._asdict(), in_time=time)
+        await RisingEdge(self.dut.clk)
+        self.check(ready)
+        if valid:
+            record = self.model.beat(data, user, last, frame_end, settings, time)
+            if record is not None:
+                self.touching_due[self.now + CLOCKS_TO_TOUCHING] = self.model.touching
+                self.record_due[self.now + self.latency] = record.words
+        if settings is not None:
+            chance = self.random
+            others = [chance.randint(self.low, self.high), chance.randint(self.low, self.high)]
+            others = Settings(*others, chance.randint(0, 2), chance.randint(0, 2))
+            self.drive(**others._asdict(), in_time=chance.getrandbits(32))
+        self.now += 1
+
+    def check(self, ready):
+        """Outputs as they stand at the end of the clock."""
+        dut, now = self.dut, self.now
+        self.touching = self.touching_due.pop(now, self.touching)
+        new = self.record_due.pop(now, None)
+        self.record = new or self.record
+        assert bool(dut.touching.value) == self.touching, "touching"
+        assert bool(dut.record_valid.value) == (new is not None), "record_valid"
+        if new or self.moved:  # its many bits are read when they have changed, or should have
+            value = int(dut.record.value)
+            words = tuple(value >> 32 * word & 0xFFFF_FFFF for word in range(WORDS))
+            assert words == self.record, f"record {words}, the model says {self.record}"
+            self.moved = False
+        if new:
+            self.records.append(words)
+        sending = self.packets.sending
+        assert bool(dut.m_event_tvalid.value) == bool(sending), "m_event_tvalid"
+        if sending:
+            assert int(dut.m_event_tdata.value) == sending[0], f"word {WORDS - len(sending)} of a packet"
+            assert bool(dut.m_event_tlast.value) == (len(sending) == 1), "m_event_tlast"
+            if ready:
+                self.open.append(sending[0])
+        lost = self.packets.clock(self.record_due.get(now + 1), ready)
+        assert bool(dut.event_lost.value) == lost, "event_lost"
+        self.lost += lost
+        if not sending or len(sending) == WORDS:
+            self.sent += [tuple(self.open)] * bool(self.open)
+            self.open = []
+
+    async def idle(self, clocks=1):
+        for _ in range(clocks):
+            coin = self.random.getrandbits
+            await self.edge(False, coin(self.width) + self.low, coin(1), coin(1), coin(1))
+
+    async def frame(self, depth, settings, time=0, words=None):
+        """Send a map, row 0 at the top, or its first words."""
+        stream = depth[::-1] if self.bottom_first else depth
+        for index, data in enumerate(stream.ravel().tolist()[:words]):
+            while self.gap and self.random.random() < self.gap:
+                await self.idle()
+            user, last = index == 0, index % self.columns == self.columns - 1
+            end = index == self.pixels - 1
+            await self.edge(True, data, user, last, end, *((settings, time) if user else ()))
+
+    async def settle(self):
+        """Until the last record has left or waits behind a sink that does not take it."""
+        await self.idle(self.latency + 2)
+
+    def full(self, value):
+        return np.full((self.rows, self.columns), value, np.int64)
+
+    def lone(self, value, *places):
+        """A map of the lowest code, but for a few places."""
+        depth = self.full(self.low)
+        for row, column in places:
+            depth[row, column] = value
+        return depth
+
+
+def random_map(bench, rng):
+    """A frame of one of the kinds that matter."""
+    shape, low, high = (bench.rows, bench.columns), bench.low, bench.high
+    match rng.integers(10):
+        case 0:  # anything
+            return rng.integers(low, high, shape, endpoint=True)
+        case 1:  # few values: ties
+            return rng.integers(-2, 3, shape)
+        case 2:  # all equal
+            return np.full(shape, rng.choice([low, -1, 0, 1, high, rng.integers(low, high)]))
+        case 3:  # ends of the range
+            return rng.choice([low, high], shape)
+        case 4:  # negative throughout
+            return rng.integers(low, 0, shape)
+        case 5:  # lone peaks, equal ones too
+            depth = np.full(shape, rng.choice([low, 0, -5]))
+            for _ in range(rng.integers(1, 4)):
+                depth[tuple(rng.integers(shape))] = rng.choice([high, 1, 2])
+            return depth
+        case 6:  # the edge
+            depth = np.zeros(shape, np.int64)
+            depth[:: bench.rows - 1] = rng.integers(-1, 4, bench.columns)
+            depth[:, :: bench.columns - 1] += rng.integers(-1, 4, (bench.rows, 1))
+            return depth
+    y, x = np.indices(shape)  # caps, over the edge too, on a noisy floor
+    depth = rng.normal(0, 1, shape)
+    for _ in range(rng.integers(1, 4)):
+        centre = rng.uniform(-1, 1 + np.array(shape))
+        radius, height = rng.uniform(1, max(shape) / 2), 2.0 ** rng.uniform(2, bench.width - 1)
+        cap = 1 - ((y - centre[0]) ** 2 + (x - centre[1]) ** 2) / radius**2
+        depth = np.maximum(depth, np.where(cap > 0, np.floor(height * cap), depth))
+    return np.clip(np.rint(depth), low, high).astype(np.int64)
+
+
+def random_settings(bench, rng, depth):
+    """Thresholds near the map's own values, areas near what is above."""
+    values = [*rng.choice(depth.ravel(), 3), 0, depth.max(), depth.min(), depth.max() - 1]
+    on, off = np.clip(rng.choice(values, 2) - rng.integers(0, 2, 2), WORD_LOW, WORD_HIGH)
+    if rng.random() < 0.05:
+        on, off = rng.choice([WORD_LOW, WORD_HIGH, bench.low, bench.high], 2)
+    area = int(np.count_nonzero(depth > rng.choice([on, off])))
+    minimum = rng.choice([0, 1, area, max(area - 1, 0), area + 1, bench.pixels, bench.pixels + 1, 2**32 - 1],
+                         p=[0.02, 0.1, 0.28, 0.2, 0.3, 0.04, 0.04, 0.02])  # fmt: skip
+    return Settings(int(on), int(off), int(minimum), int(rng.choice([0, 1, 2, 3], p=[0.2, 0.3, 0.3, 0.2])))
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(gap=[0.0, 0.1])
+async def random_frames(dut, gap):
+    """Every field of every record equals numpy on the map; frames back to back, or with gaps."""
+    bench = Bench(dut, gap=gap)
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    events, want = Events(), []
+    for number in range(FRAMES[gap]):
+        depth = random_map(bench, rng)
+        settings, time = random_settings(bench, rng, depth), int(rng.integers(1 << 32))
+        threshold = settings.off_threshold if events.touching else settings.on_threshold
+        fields = numpy_fields(depth, threshold, bench.bottom_first)
+        status = events.frame(fields[0], settings.minimum_area, settings.debounce)
+        want.append(((status, number + 1, time), fields))
+        await bench.frame(depth, settings, time)
+    await bench.settle()
+    got = [(words[:3], seen_fields(words)) for words in bench.records]
+    for index, (ours, theirs) in enumerate(zip(got, want, strict=True)):
+        assert ours == theirs, f"frame {index}: {ours}, numpy says {theirs}"
+    await bench.idle(WORDS + 2)
+    assert bench.sent == bench.records, "packets are not the records"
+    assert not bench.lost
+    touching = [status & 1 for (status, _, _), _ in want]
+    changes = np.count_nonzero(np.diff(touching))
+    assert changes > len(want) // 20, f"{changes} changes in {len(want)} frames: a poor test"
+    assert sum(not fields[0] for _, fields in want) > len(want) // 50, "hardly a frame with nothing above: a poor test"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def ties_and_edges(dut):
+    """The first of equal peaks in stream order; a lone one in each corner; all and nothing above."""
+    bench = Bench(dut)
+    await bench.start()
+    bottom, right = bench.rows - 1, bench.columns - 1
+    corners = [(0, 0), (0, right), (bottom, 0), (bottom, right)]
+    settings = Settings(0, 0, 1, 1)
+    maps = [bench.lone(bench.high, place) for place in corners]
+    maps += [bench.lone(1, *corners), bench.lone(1, (1, 2), (1, 3), (2, 1)), bench.full(bench.high), bench.full(0)]
+    for depth in maps:
+        await bench.frame(depth, settings)
+    await bench.frame(bench.full(bench.low), Settings(WORD_LOW, WORD_LOW, 1, 1))
+    await bench.settle()
+    want = [numpy_fields(depth, 0, bench.bottom_first) for depth in maps]
+    want.append(numpy_fields(bench.full(bench.low), bench.low - 1, bench.bottom_first))
+    if bench.low == WORD_LOW:  # no threshold lies below the lowest code
+        want[-1] = numpy_fields(bench.full(bench.low), bench.low, bench.bottom_first)
+    assert [seen_fields(words) for words in bench.records] == want
+    assert bench.records[4][5] == (bottom << 16 if bench.bottom_first else 0), "not the first of the equals"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def centroids_between_two(dut):
+    """A mean that lies half way goes to the even one: 32 pixels above, since 16 sum / 32 has halves."""
+    bench = Bench(dut)
+    await bench.start()
+    want, halves = [], set()
+    for _ in range(24):
+        depth = np.zeros(bench.pixels, np.int64)
+        depth[bench.random.sample(range(bench.pixels), 32)] = 1
+        depth = depth.reshape(bench.rows, bench.columns)
+        await bench.frame(depth, Settings(0, 0, 1, 1))
+        want.append(numpy_fields(depth, 0, bench.bottom_first))
+        halves |= {total % 4 for total in want[-1][8:10]}
+    await bench.settle()
+    assert [seen_fields(words) for words in bench.records] == want
+    assert halves == {0, 1, 2, 3}, "not both ties: a poor test"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def hysteresis(dut):
+    """Between the thresholds the state stays, whichever it is; on its own threshold nothing counts as above."""
+    bench = Bench(dut)
+    await bench.start()
+    settings, status = Settings(20, 10, 2, 1), []
+    levels = [0, 15, 20, 21, 15, 11, 10, 15, 21, 21, 0, 15]
+    for level in levels:
+        await bench.frame(bench.lone(level, (1, 1), (2, 3)), settings)
+    for places in ([(1, 1), (2, 2)], [(1, 1)]):  # too small an area ends it
+        await bench.frame(bench.lone(30, *places), settings)
+    await bench.settle()
+    status = [words[0] for words in bench.records]
+    assert status == [0, 0, 0, 3, 1, 1, 4, 0, 3, 1, 4, 0, 3, 4]
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(debounce=[0, 1, 2, 5, 255 if REGRESS else 20])
+async def debounce(dut, debounce):
+    """It takes so many frames in a row to begin and to end, and one less does not; a frame between starts anew."""
+    bench = Bench(dut)
+    await bench.start()
+    pressed, free = bench.full(1), bench.full(0)
+    settings, needed = Settings(0, 0, 1, debounce), max(debounce, 1)
+    turns = []
+    for one, other, state in ((pressed, free, False), (free, pressed, True)):
+        for depth in [one] * (needed - 1) + [other] * (needed > 1) + [one] * needed:
+            await bench.frame(depth, settings)
+        turns += [int(state)] * (needed - 1 + (needed > 1) + needed - 1) + [4 if state else 3]
+    await bench.settle()
+    assert [words[0] for words in bench.records] == turns
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def a_debounce_that_is_lowered(dut):
+    """What has been counted stays: the next frame that differs turns it."""
+    bench = Bench(dut)
+    await bench.start()
+    for frames in (9, 9, 9, 9, 2):
+        await bench.frame(bench.full(1), Settings(0, 0, 1, frames))
+    await bench.settle()
+    assert [words[0] for words in bench.records] == [0, 0, 0, 0, 3]
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def large_areas(dut):
+    """A minimum beyond any frame is never reached, in any of its bits; 0 always is."""
+    bench = Bench(dut)
+    await bench.start()
+    for bit in range(32):
+        if 1 << bit > bench.pixels:
+            await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, 1))
+    await bench.frame(bench.full(1), Settings(0, 0, bench.pixels, 1))
+    await bench.frame(bench.full(0), Settings(0, 0, 1, 1))
+    await bench.frame(bench.full(0), Settings(0, 0, 0, 1))
+    await bench.settle()
+    status = [words[0] for words in bench.records]
+    assert status == [0] * (len(status) - 3) + [3, 4, 3]
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def frame_numbers(dut):
+    """They count on through every bit, and over the end."""
+    bench = Bench(dut)
+    await bench.start()
+    for bits in range(6, 33):
+        dut.frame.value = bench.model.frames = (1 << bits) - 1
+        await bench.frame(bench.full(0), Settings(0, 0, 1, 1))
+        await bench.settle()
+    assert [words[1] for words in bench.records] == [*(1 << bits for bits in range(6, 32)), 0]
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def interrupted_frames(dut):
+    """A frame that begins inside another begins afresh, and its settings are its own."""
+    bench = Bench(dut)
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for words in [*range(1, bench.pixels), *rng.integers(1, bench.pixels, 20)]:
+        await bench.frame(random_map(bench, rng), Settings(-3, 5, 1, 1), 7, words=int(words))
+        if words % 3 == 0:
+            depth = random_map(bench, rng)
+            await bench.frame(depth, Settings(0, 0, 1, 1), 8)
+            await bench.settle()
+            assert seen_fields(bench.records[-1]) == numpy_fields(depth, 0, bench.bottom_first)
+            assert bench.records[-1][1:3] == (len(bench.records), 8)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(accepts=[*PROFILES, "rarely", "never"])
+async def packets(dut, accepts):
+    """Whole packets of records, in order; a slow sink misses some, as many as are said to be lost."""
+    PROFILES["rarely"] = lambda rng: (rng.random() < 0.05 for _ in iter(int, 1))
+    PROFILES["never"] = lambda rng: iter(lambda: False, True)
+    bench = Bench(dut, accepts, gap=0.1)
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for _ in range(60):
+        await bench.frame(random_map(bench, rng), Settings(0, -1, 3, 2))
+        if rng.random() < 0.2:
+            await bench.idle(int(rng.integers(3 * bench.pixels)))
+    await bench.settle()
+    bench.accepts = profile("none")
+    await bench.idle(3 * WORDS)
+    assert len(bench.records) == 60
+    assert len(bench.sent) == 60 - bench.lost
+    assert bench.sent == [bench.records[words[1] - 1] for words in bench.sent]
+    assert bench.sent[-1] == bench.records[-1], "the newest record was lost"
+    assert sorted(bench.sent, key=lambda words: words[1]) == bench.sent
+    if accepts == "never":
+        assert bench.lost == 58, "one is sent, one waits"
+    if accepts in ("none", "one_in_4"):
+        assert not bench.lost
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def the_sink_takes_the_last_word(dut):
+    """In any clock around a new record: the one that waits leaves or is lost, never both."""
+    bench = Bench(dut)
+    await bench.start()
+    for late in range(-3, 4):
+        await bench.reset()
+        bench.records, bench.sent, bench.lost = [], [], 0
+        await bench.frame(bench.full(1), Settings(0, 0, 1, 1))
+        await bench.settle()
+        left = len(bench.packets.sending) + WORDS * (bench.packets.waiting is not None)
+        bench.accepts = iter([True] * (left - 1) + [False] * (1 << 20))
+        await bench.idle(WORDS)
+        assert len(bench.packets.sending) == 1
+        await bench.frame(bench.full(2), Settings(0, 0, 1, 1))
+        await bench.settle()
+        await bench.frame(bench.full(3), Settings(0, 0, 1, 1))
+        bench.accepts = iter([False] * (bench.latency - 2 + late) + [True] * (1 << 20))
+        await bench.settle()
+        await bench.idle(3 * WORDS)
+        assert bench.lost == (late > 0), late
+        assert bench.sent == bench.records[: 1 if bench.lost else 3] + bench.records[2:] * bench.lost
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut):
+    """In any clock of a frame and after it: no trace is left, registers read zero."""
+    bench = Bench(dut, accepts="alternate")
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    total = bench.pixels + bench.latency + 2 * WORDS + 3
+    for clocks in sorted({*range(1, total, 3), *range(bench.pixels - 1, total)}):
+        await bench.frame(random_map(bench, rng), Settings(0, 0, 0, 1), 9, words=clocks)
+        await bench.idle(max(0, clocks - bench.pixels))
+        await bench.reset()
+        bench.records, bench.sent = [], []
+        await bench.idle(int(rng.integers(0, bench.latency + 3)))
+        assert not bench.records, f"a record after a reset at {clocks}"
+        await bench.frame(bench.full(1), Settings(0, 0, 1, 2))
+        await bench.settle()
+        assert [words[:2] for words in bench.records] == [(0, 1)]

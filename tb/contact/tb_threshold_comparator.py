@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""threshold_comparator against tactile_depth.contact.threshold_comparator: contact in every clock."""
+
+import os
+import random
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.contact.threshold_comparator import ThresholdComparator
+from tb.stream import CLOCK_NS, parameters
+
+CLOCKS = 5000
+WORD_BITS = 32
+
+
+class Bench:
+    """Drives one clock at a time; contact must be what the model makes of the beats of the clocks before."""
+
+    def __init__(self, dut):
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.model = dut, ThresholdComparator()
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        (width,) = parameters(dut, "Width")
+        self.lowest, self.highest = -(1 << width - 1), (1 << width - 1) - 1
+        self.threshold, self.hold = self.highest, False
+
+    async def start(self):
+        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        self.dut.rst.value = 1
+        await self.edge(valid=False)
+        self.dut.rst.value = 0
+        await self.idle()
+
+    async def edge(self, valid, data=0, user=False):
+        self.dut.in_valid.value, self.dut.in_user.value, self.dut.in_data.value = int(valid), int(user), data
+        self.dut.threshold.value, self.dut.hold.value = self.threshold, int(self.hold)
+        await RisingEdge(self.dut.clk)
+
+    async def idle(self):
+        """A clock without a beat, whose data and user must not count."""
+        await self.edge(False, self.highest, bool(self.random.getrandbits(1)))
+        self.check()
+
+    def check(self):
+        contact = bool(self.dut.contact.value)
+        assert contact == self.model.contact, f"contact is {contact}, threshold {self.model.threshold}"
+
+    async def beat(self, data, user=False):
+        await self.edge(True, data, user)
+        self.check()  # as it was before this beat: it counts one clock later, neither sooner nor further on
+        self.model.beat(data, user, self.threshold, self.hold)
+
+    async def contact_after(self, *frame):
+        """Send a frame of data; contact in the clock after its last beat."""
+        for index, data in enumerate(frame):
+            await self.beat(data, user=index == 0)
+        await self.idle()
+        return bool(self.dut.contact.value)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def boundaries(dut):
+    """A depth is above the threshold from one more than it; at and beyond both full scales of the data."""
+    bench = Bench(dut)
+    await bench.start()
+    low, high = bench.lowest, bench.highest
+    word_low, word_high = -(1 << WORD_BITS - 1), (1 << WORD_BITS - 1) - 1
+    for threshold in sorted({0, 1, -1, 1000, -1000, low, low + 1, high, high - 1, word_low, word_high}):
+        bench.threshold = threshold
+        for data in sorted({threshold - 1, threshold, threshold + 1, low, -1, 0, 1, high}):
+            if low <= data <= high:
+                for first in (True, False):
+                    frame = (data,) if first else (low, data)
+                    want = max(frame) > threshold
+                    assert await bench.contact_after(*frame) == want, f"{frame} over {threshold}"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def clearing(dut):
+    """The next frame's first beat clears contact; its second does not, and one above sets it all the same."""
+    bench = Bench(dut)
+    await bench.start()
+    bench.threshold = 10
+    assert await bench.contact_after(0, 11, 0, 0)
+    assert not await bench.contact_after(0), "not cleared by a first beat"
+    assert await bench.contact_after(11)
+    for _ in range(5):
+        await bench.idle()
+    await bench.beat(11, user=True)  # contact stays high through this beat: checked in every clock
+    await bench.idle()
+    assert dut.contact.value, "clearing won over setting"
+    assert not await bench.contact_after(10, 10, 10)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def hold(dut):
+    """Held as long as the bit is set; cleared by the first beat after that."""
+    bench = Bench(dut)
+    await bench.start()
+    bench.threshold, bench.hold = 10, True
+    assert not await bench.contact_after(0, 0), "hold alone raised it"
+    assert await bench.contact_after(0, 11)
+    assert await bench.contact_after(0, 0, 0)
+    bench.hold = False
+    await bench.beat(0)
+    await bench.idle()
+    assert dut.contact.value, "cleared inside a frame"
+    assert not await bench.contact_after(0, 0)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def threshold_change(dut):
+    """One written inside a frame counts from the next on; one written between frames from there."""
+    bench = Bench(dut)
+    await bench.start()
+    bench.threshold = 10
+    await bench.beat(0, user=True)
+    bench.threshold = -10
+    await bench.beat(0)
+    await bench.idle()
+    assert not dut.contact.value, "a lower threshold counted in the frame it was written in"
+    assert await bench.contact_after(0), "it did not count in the next"
+    bench.threshold = 10
+    await bench.beat(5)
+    assert not await bench.contact_after(5)
+    bench.threshold = 4
+    await bench.idle()
+    assert await bench.contact_after(5)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def random_frames(dut):
+    """Beats near a threshold that moves, gaps, hold and resets at random."""
+    bench = Bench(dut)
+    await bench.start()
+    rng = bench.random
+    left = 0
+    raised = 0
+    for _ in range(CLOCKS):
+        if rng.random() < 0.05:
+            bench.threshold = rng.choice((0, 3, -3, bench.lowest, bench.highest, rng.randint(-100, 100)))
+        if rng.random() < 0.05:
+            bench.hold = rng.random() < 0.3
+        if rng.random() < 0.01:
+            dut.rst.value = 1
+            await bench.edge(False)
+            dut.rst.value = 0
+            bench.model.reset()
+            left = 0
+        elif rng.random() < 0.3:
+            await bench.idle()
+        else:
+            near = bench.threshold + rng.randint(-20, 1)
+            await bench.beat(min(max(near, bench.lowest), bench.highest), user=left == 0)
+            left = left - 1 if left else rng.randint(0, 12)
+        raised += bench.model.contact
+    assert CLOCKS // 10 < raised < CLOCKS * 9 // 10, f"contact in {raised} of {CLOCKS} clocks: a poor test"

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: Apache-2.0
+"""depth_gate against its model, every output in every clock; and what it promises, from the pins alone."""
+
+import os
+import random
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.frame.depth_gate import DepthGate, Word
+from tb.axis import PROFILES, AxisMonitor, profile
+from tb.stream import CLOCK_NS, parameters
+
+ROWS, COLUMNS = 3, 5
+FIELDS = ("data", "user", "last", "frame_end")
+
+
+class Bench:
+    """Drives one clock at a time.
+
+    `frames` are the words of each frame that began, `waits` whether it came in with drop_frames at 0, `sent` the words
+    of each that left; `looked` are all words that were looked at.
+    """
+
+    def __init__(self, dut, accepts="none"):
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut = dut
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        (self.width,) = parameters(dut, "Width")
+        self.accepts, self.drop_frames = profile(accepts), False
+        self.model = DepthGate()
+        self.monitor = AxisMonitor(dut, "m", FIELDS)  # the rules of the stream
+        self.forget()
+
+    def forget(self):
+        self.frames, self.waits, self.dropped, self.looked = [], [], [], []
+        self.left, self.came, self.looks = [], [], []  # clocks
+        self.stood, self.now = 0, 0
+        self.monitor.forget()
+
+    async def start(self):
+        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        self.dut.in_valid.value, self.dut.m_ready.value, self.dut.drop_frames.value = 0, 0, 0
+        self.dut.rst.value = 1
+        for _ in range(2):
+            await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+        await self.clock()
+
+    async def reset(self):
+        self.dut.rst.value, self.dut.in_valid.value = 1, 0
+        await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+        self.model.reset()
+        self.forget()
+        await self.clock()
+
+    async def clock(self, word=None):
+        """One clock, with a word present or none; whether it moved. Marks without a word do not count."""
+        dut, ready, coin = self.dut, next(self.accepts), self.random.getrandbits
+        dut.in_valid.value, dut.m_ready.value = int(word is not None), int(ready)
+        dut.drop_frames.value = int(self.drop_frames)
+        for name, value in zip(FIELDS, word or (coin(self.width), coin(1), coin(1), coin(1)), strict=True):
+            getattr(dut, f"in_{name}").value = int(value)
+        await RisingEdge(dut.clk)
+        model = self.model
+        assert bool(dut.en.value) == model.en, "en"
+        assert bool(dut.event_dropped.value) == model.dropped(word), "event_dropped"
+        assert bool(dut.m_valid.value) == bool(model.sending), "m_valid"
+        if model.sending:
+            assert self.pins("m") == model.sending[0], "a word offered"
+        look = model.look(ready)
+        assert bool(dut.look_valid.value) == (look is not None), "look_valid"
+        if look is not None:
+            assert self.pins("look") == look, "a word looked at"
+            self.looked.append(look)
+            self.looks.append(self.now)
+        if model.sending and ready:
+            self.left.append(self.now)
+        moves = word is not None and model.en
+        if moves:
+            self.came.append(self.now)
+        if model.dropped(word):
+            self.dropped.append(len(self.frames) - 1)
+        self.stood += not model.en
+        model.clock(word, ready, self.drop_frames)
+        self.now += 1
+        return moves
+
+    def pins(self, name):
+        data, *marks = (int(getattr(self.dut, f"{name}_{field}").value) for field in FIELDS)
+        return Word(data, *map(bool, marks))
+
+    async def frame(self, rows=ROWS, columns=COLUMNS, words=None, each=None):
+        """Send a frame, or its first words; `each`: called before every clock."""
+        total = rows * columns
+        self.frames.append([])
+        self.waits.append(not self.drop_frames)
+        for place in range(total if words is None else words):
+            last = place % columns == columns - 1
+            word = Word(self.random.getrandbits(self.width), place == 0, last, place == total - 1)
+            self.frames[-1].append(word)
+            moved = False
+            while not moved:
+                if each:
+                    each()
+                moved = await self.clock(word)
+
+    async def idle(self, clocks=1):
+        for _ in range(clocks):
+            await self.clock()
+
+    async def drain(self):
+        self.accepts = profile("none")
+        await self.idle(4)
+
+    def check(self):
+        """Words of each frame that left: the first ones, all of them unless it was given up; every word was seen."""
+        assert self.looked == [word for frame in self.frames for word in frame]
+        words = [Word(data, *map(bool, marks)) for data, *marks in self.monitor.words]
+        sent = []
+        for number, frame in enumerate(self.frames):
+            count = 0
+            while count < len(frame) and words[: count + 1] == frame[: count + 1]:
+                count += 1
+            sent.append(count)
+            words = words[count:]
+            assert (count < len(frame)) == (number in self.dropped), f"{count} words left of frame {number}"
+            assert count == len(frame) or not self.waits[number], f"frame {number} is not whole"
+        assert not words, "words that belong to no frame, or not there"
+        assert len(set(self.dropped)) == len(self.dropped), "counted twice"
+        return sent
+
+
+async def started(dut, *arguments):
+    bench = Bench(dut, *arguments)
+    await bench.start()
+    return bench
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
+async def waiting(dut, accepts, gap):
+    """Nothing is lost, and each word is looked at in the clock in which it leaves."""
+    bench = await started(dut, accepts)
+    for _ in range(15):
+        await bench.frame()
+        await bench.idle(bench.random.randint(0, gap))
+    await bench.drain()
+    assert set(bench.check()) == {ROWS * COLUMNS}
+    assert bench.looks == bench.left
+    if accepts == "none":
+        assert {left - came for came, left in zip(bench.came, bench.left, strict=True)} == {1}
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
+async def dropping(dut, accepts, gap):
+    """The pipeline never waits; each word is looked at a clock after it came, whatever the sink does."""
+    bench = await started(dut, accepts)
+    bench.drop_frames = True
+    await bench.idle()
+    stood = bench.stood
+    for _ in range(40):
+        await bench.frame()
+        await bench.idle(bench.random.randint(0, gap))
+    await bench.drain()
+    sent = bench.check()
+    assert bench.stood == stood, "the pipeline waited"
+    assert {look - came for came, look in zip(bench.came, bench.looks, strict=True)} == {1}
+    if accepts == "none":
+        assert bench.left == bench.looks
+        assert not bench.dropped
+    else:
+        assert bench.dropped
+    if accepts in ("random", "long"):
+        assert set(sent) & set(range(1, ROWS * COLUMNS)), "no frame was cut: a poor test"
+    if accepts == "long":
+        assert 0 in sent, "no frame was dropped whole: a poor test"
+        assert ROWS * COLUMNS in sent
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
+async def words_left_standing(dut, stands, gap):
+    """When 0 turns to 1 with words in the gate, they are looked at first; when 1 turns to 0, none is twice."""
+    bench, total = await started(dut), ROWS * COLUMNS
+    for ready_after in range(8):
+        await bench.reset()
+        # The sink takes all but the last words of the first frame, then nothing for a while.
+        bench.drop_frames = False
+        await bench.frame(words=total - stands)
+        await bench.drain()
+        bench.accepts = iter([False] * (stands + gap + 3 * ready_after) + [True] * (1 << 20))
+        bench.drop_frames = True
+        for word in rest(bench, total, stands):
+            while not await bench.clock(word):
+                pass
+        await bench.idle(gap)
+        await bench.frame(each=lambda: setattr(bench, "drop_frames", False))
+        await bench.frame()
+        await bench.drain()
+        bench.waits[1] = False
+        bench.check()
+
+
+def rest(bench, total, stands):
+    """The last words of the frame that is being sent."""
+    words = []
+    for place in range(total - stands, total):
+        last = place % COLUMNS == COLUMNS - 1
+        words.append(Word(bench.random.getrandbits(bench.width), False, last, place == total - 1))
+    bench.frames[-1] += words
+    return words
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(accepts=list(PROFILES))
+async def changes_at_random(dut, accepts):
+    """The bit moves in any clock: a frame keeps what it began with."""
+    bench = await started(dut, accepts)
+
+    def coin():
+        if bench.random.random() < 0.1:
+            bench.drop_frames = not bench.drop_frames
+
+    for _ in range(200):
+        for _ in range(bench.random.choice([0, 0, 0, 1, 2, 9])):
+            coin()
+            await bench.clock()
+        before = bench.model.dropping
+        await bench.frame(bench.random.randint(1, 3), bench.random.randint(2, 4), each=coin)
+        bench.waits[-1] = not before
+    await bench.drain()
+    bench.check()
+    assert bench.dropped or accepts == "none"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(drop_frames=[False, True])
+async def resets(dut, drop_frames):
+    """In any clock of a stalled frame: nothing of it is left."""
+    bench = await started(dut)
+    bench.drop_frames = drop_frames
+    for words in range(1, ROWS * COLUMNS + 1):
+        await bench.idle()
+        bench.accepts = profile("none") if not drop_frames else profile("random")
+        await bench.frame(words=words)
+        bench.accepts = iter([False] * (1 << 20))
+        await bench.clock(bench.frames[-1][-1]._replace(user=False, frame_end=False) if words < 3 else None)
+        await bench.reset()
+        bench.accepts = profile("none")
+        await bench.idle(2)
+        assert not bench.looked
+        assert not bench.left
+        await bench.frame()
+        await bench.drain()
+        assert bench.check() == [ROWS * COLUMNS]

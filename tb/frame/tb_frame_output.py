@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_output against tactile_depth.frame.frame_output: what leaves, side-bands and marks, in every enabled clock."""
+
+import os
+import random
+
+import cocotb
+from cocotb.clock import Clock as ClockOf
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.frame.frame_output import Clock, frame_output
+from tb.stream import CLOCK_NS, parameters
+
+
+class Bench:
+    """Drives the inputs of a clock, keeps the outputs, compares them with the model at the end."""
+
+    def __init__(self, dut, pause=0.0):
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.pause = dut, pause
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        self.width, self.rows, self.columns = parameters(dut, "Width", "Rows", "Columns")
+
+    async def start(self):
+        self.dut.en.value = 1
+        await self.reset()
+
+    async def reset(self):
+        dut = self.dut
+        dut.in_start.value, dut.in_frame_start.value, dut.in_due.value, dut.rst.value = 0, 0, 0, 1
+        await RisingEdge(dut.clk)
+        dut.rst.value = 0
+        self.inputs, self.beats, self.clocks, self.ends, self.out_of_step = [], [], [], [], []
+
+    async def clock(self, start=False, frame_start=False, due=False, bad=None):
+        """in_bad is right with in_due only: elsewhere anything."""
+        dut, coin = self.dut, self.random.random
+        bad = coin() < 0.5 if bad is None else bad
+        word = Clock(start, frame_start, self.random.getrandbits(self.width), due, bad)
+        dut.in_start.value, dut.in_frame_start.value, dut.in_data.value = int(start), int(frame_start), word.data
+        dut.in_due.value, dut.in_bad.value = int(due), int(bad)
+        en = False
+        while not en:
+            en = coin() >= self.pause
+            dut.en.value = int(en)
+            await RisingEdge(dut.clk)
+        now = len(self.inputs)
+        self.inputs.append(word)
+        if dut.out_valid.value:
+            self.beats.append((int(dut.out_data.value), int(dut.out_last.value), int(dut.out_user.value)))
+            self.clocks.append(now)
+            assert dut.active.value
+        if dut.frame_end.value:
+            self.ends.append(now)
+        if dut.out_of_step.value:
+            self.out_of_step.append(now)
+
+    async def frame(self, bad=False, rows=None, due=True, begins=True):
+        for row in range(self.rows if rows is None else rows):
+            for column in range(self.columns):
+                first = row == column == 0
+                await self.clock(column == 0, first and begins, first and due, bad if first else None)
+
+    async def idle(self, clocks):
+        for _ in range(clocks):
+            await self.clock()
+
+    def check(self):
+        want = frame_output(self.inputs, self.rows, self.columns)
+        assert self.out_of_step == want.out_of_step
+        assert self.beats == want.beats
+        assert self.clocks == want.clocks
+        assert self.ends == want.ends
+        return want
+
+
+async def started(dut, **arguments):
+    ClockOf(dut.clk, CLOCK_NS, unit="ns").start()
+    bench = Bench(dut, **arguments)
+    await bench.start()
+    return bench
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
+async def frames(dut, gap, pause):
+    """Those marked bad do not leave, the others do; nothing is out of step."""
+    bench = await started(dut, pause=pause)
+    marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
+    for bad in marks:
+        await bench.idle(bench.random.randint(0, gap))
+        await bench.frame(bool(bad))
+    await bench.idle(2)
+    out = bench.check()
+    assert not out.out_of_step
+    assert len(out.beats) == marks.count(0) * bench.rows * bench.columns
+    assert len(out.ends) == len(marks)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def out_of_step(dut):
+    """A frame that is not due, a due one that does not come, rows too early, late or without a start."""
+    bench = await started(dut)
+    await bench.frame(due=False)
+    await bench.frame()
+    await bench.frame(begins=False)
+    await bench.frame(rows=1)
+    await bench.idle(bench.rows * bench.columns - bench.columns)
+    await bench.frame()
+    await bench.clock(start=True)
+    await bench.clock(frame_start=True)
+    await bench.clock(due=True, bad=False)
+    await bench.idle(3)
+    await bench.frame()
+    good = bench.check()
+    assert len(good.out_of_step) > 5
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def whatever_comes(dut):
+    """Each input by chance: frames keep their form, whatever the bursts do."""
+    bench = await started(dut, pause=0.1)
+    chance = bench.random.random
+    for _ in range(2000):
+        await bench.clock(chance() < 0.2, chance() < 0.1, chance() < 0.05)
+    bench.check()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(bad=[False, True])
+async def resets(dut, bad):
+    """A frame cut short by a reset, in any of its rows, leaves no trace."""
+    bench = await started(dut)
+    for row in range(1, bench.rows + 1):
+        await bench.frame(bad, rows=row)
+        await bench.reset()
+        await bench.idle(bench.columns + 1)
+        bench.check()
+        assert not bench.beats, f"words left after a reset in row {row}"
+        await bench.frame()
+        bench.check()
+        await bench.reset()

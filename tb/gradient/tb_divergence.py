@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""divergence against its model: codes, latency; frame on frame with gaps, pauses, extremes, reset."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.latency import DIVERGENCE
+from tb.stream import (
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    extremes,
+    interrupt,
+    parameters,
+    send_apart,
+    uniform,
+)
+
+FIELDS = ["gx", "gy", "first_row", "first_column", "last_row", "last_column"]
+
+
+def pixels(gradient):
+    """Gradients (frames, rows, columns, 2) as words of FIELDS."""
+    marks = np.zeros((*gradient.shape[:3], 4), np.int64)
+    marks[:, 0, :, 0] = marks[:, :, 0, 1] = marks[:, -1, :, 2] = marks[:, :, -1, 3] = 1
+    return np.concatenate((gradient, marks), axis=-1).reshape(-1, len(FIELDS)).tolist()
+
+
+async def check(dut, gradient, gap=0.0, pause=0.0, interrupts=()):
+    (neumann,) = parameters(dut, "Neumann")
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", FIELDS)
+    source = StreamMonitor(dut, "in", "valid", FIELDS, unsigned=FIELDS[2:])
+    sink = StreamMonitor(dut, "out", "valid", ["data"])
+    await bench.start()
+
+    async def send(count):
+        await send_apart(bench, driver, pixels(gradient)[:count], gap)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=DIVERGENCE + 2)
+    await send_apart(bench, driver, pixels(gradient), gap)
+    await bench.clocks(DIVERGENCE + 2)
+    seen = np.array(source.words)[:, :2].reshape(gradient.shape)
+    np.testing.assert_array_equal(seen, gradient, "the driver sent something else")
+    np.testing.assert_array_equal(np.array(sink.words).reshape(gradient.shape[:3]), divergence(seen, bool(neumann)))
+    assert sink.starts == [clock + DIVERGENCE for clock in source.starts]
+    check_frame_starts([sink], gradient[0, ..., 0].size)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), rows=[1, 4])
+async def frames(dut, gap, pause, rows):
+    width, columns = parameters(dut, "Width", "Columns")
+    await check(dut, uniform((3, rows, columns, 2), width), gap, pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut):
+    """Rows of each kind, then with their fields exchanged; the last frame is a chequer board.
+
+    On the board neighbours stand at opposite limits everywhere: the largest and smallest results there are.
+    """
+    width, columns = parameters(dut, "Width", "Columns")
+    rows = extremes(columns, width, 2)
+    board = np.where(np.indices((2, columns)).sum(axis=0) % 2, -(1 << (width - 1)), (1 << (width - 1)) - 1)
+    frames = [np.stack((rows, rows[:, :, ::-1]), axis=1), np.stack((board, board), axis=-1)[None]]
+    await check(dut, np.concatenate(frames))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def reset_in_mid_frame(dut):
+    """At each of the first words, and in the second row."""
+    width, columns = parameters(dut, "Width", "Columns")
+    await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 5 * columns // 4])

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: Apache-2.0
+"""gradient_lookup against its model: both banks, rewritten and read while frames stream; gaps, pauses, reset.
+
+The reference follows the pins, clock by clock: a pixel's slopes are those that its frame's bank holds.
+"""
+
+import cocotb
+import numpy as np
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.gradient.gradient_lookup import Banks, gradient_codes, gradient_lookup
+from tactile_depth.latency import GRADIENT_LOOKUP
+from tactile_depth.sensor import synthetic
+from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
+
+PIXEL = ["pixel", "place"]
+SLOPES = ["gx", "gy", "place"]
+FIRST = 0b0011  # place of the first pixel: in the first row and the first column
+READ_CLOCKS = 2  # from table_read to its words
+
+
+def every_colour(bits, random):
+    """Each bin of the table once, in random order, its lower bits random; and each again in reverse."""
+    bins = np.array(random.sample(range(1 << 3 * bits), 1 << 3 * bits))
+    top = np.stack((bins >> 2 * bits, bins >> bits, bins), axis=-1) & (1 << bits) - 1
+    low = np.array([random.getrandbits(8 - bits) for _ in range(3 * len(bins))]).reshape(-1, 3)
+    colours = (top << (8 - bits) | low).astype(np.uint8)
+    return np.concatenate((colours, colours[::-1]))
+
+
+def colours_of(pixels):
+    """RGB of words R 23:16, B 15:8, G 7:0."""
+    words = np.array(pixels, np.int64)
+    return np.stack([words >> low & 255 for low in (16, 0, 8)], axis=-1).astype(np.uint8)
+
+
+class Lookup:
+    """The device, its reference, and what software does at the table."""
+
+    banks = None  # what stands in them; no reset touches it, so the next test begins with it
+
+    def __init__(self, dut, gap, pause):
+        self.dut, self.gap = dut, gap
+        self.width, self.bits = parameters(dut, "Width", "BitsPerChannel")
+        self.bins = 1 << 3 * self.bits
+        self.bench = Bench(dut, pause)
+        self.driver = StreamDriver(dut, "in", "valid", PIXEL)
+        self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
+        self.sink = StreamMonitor(dut, "out", "valid", SLOPES, unsigned=SLOPES[2:])
+        self.power_up = gradient_codes(synthetic(self.bits), configuration())
+        self.expected, self.tables = [], set()  # slopes of the pixels taken; banks that frames used
+        dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
+        dut.in_place.value = 0
+
+    async def start(self):
+        """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
+        both banks anew, and what they hold at power-up is tested on Icarus and by the top."""
+        at_power_up = Lookup.banks is None
+        if at_power_up:
+            Lookup.banks = Banks.of(self.power_up)
+        self.banks.wanted = self.banks.in_use = 0  # by the reset
+        await self.bench.start()
+        cocotb.start_soon(self.follow())
+        if at_power_up and cocotb.SIM_NAME.lower().startswith("verilator"):
+            for _ in range(2):
+                await self.rewrite(self.power_up)
+                await self.commit()
+                await self.frame()
+        self.tables.clear()
+
+    async def follow(self):
+        dut, table = self.dut, self.banks.words[0]
+        while True:
+            await RisingEdge(dut.clk)
+            assert int(dut.table_in_use.value) == self.banks.in_use
+            if dut.table_read.value:  # in the clock of a change-over: of the bank that comes into use
+                self.to_read = self.banks.spare[int(dut.table_index.value)].tolist()
+            self.banks.wanted = int(dut.table_bank.value)
+            if dut.table_write.value:
+                word = (dut.table_gx.value.to_signed(), dut.table_gy.value.to_signed())
+                self.banks.write(int(dut.table_index.value), word)
+            if dut.rst.value:
+                table = self.banks.begin_frame()
+                self.expected.clear()
+            elif dut.en.value and dut.in_valid.value:
+                if int(dut.in_place.value) & FIRST == FIRST:
+                    table = self.banks.begin_frame()
+                    self.tables.add(self.banks.in_use)
+                pixel = colours_of(int(dut.in_pixel.value))
+                self.expected.append(gradient_lookup(pixel, table, self.bits).copy())
+
+    # Software.
+
+    async def write(self, index, gx, gy):
+        """One entry of the bank not in use, in one clock, whether or not the pipeline moves."""
+        for pin, value in (("write", 1), ("index", index), ("gx", gx), ("gy", gy)):
+            getattr(self.dut, f"table_{pin}").value = int(value)
+        await RisingEdge(self.dut.clk)
+        self.dut.table_write.value = 0
+        for pin in ("index", "gx", "gy"):
+            getattr(self.dut, f"table_{pin}").value = self.bench.random.getrandbits(1)
+
+    async def rewrite(self, codes, order=None):
+        for index in order or range(self.bins):
+            await self.write(index, *codes[index])
+
+    async def read(self, index):
+        """The slopes of an entry of the bank not in use."""
+        dut = self.dut
+        dut.table_read.value, dut.table_index.value = 1, index
+        await RisingEdge(dut.clk)
+        dut.table_read.value, dut.table_index.value = 0, self.bench.random.randrange(self.bins)
+        await ClockCycles(dut.clk, READ_CLOCKS)
+        for _ in range(self.bench.random.choice((1, 1, 4))):
+            got = [dut.table_read_gx.value.to_signed(), dut.table_read_gy.value.to_signed()]
+            assert got == self.to_read, f"entry {index} reads {got}, not {self.to_read}"
+            await RisingEdge(dut.clk)
+
+    async def commit(self):
+        """Ask for the other bank; the frames that begin from now on use it."""
+        self.dut.table_bank.value = 1 - self.banks.in_use
+        await RisingEdge(self.dut.clk)
+
+    # Frames.
+
+    def words(self, colours):
+        """A frame: the first pixel has its place, the others any but that."""
+        random = self.bench.random
+        marks = [FIRST | random.getrandbits(2) << 2]
+        marks += [random.choice([m for m in range(16) if m & FIRST != FIRST]) for _ in colours[1:]]
+        red, green, blue = colours.astype(np.int64).T
+        return list(zip((red << 16 | blue << 8 | green).tolist(), marks, strict=True))
+
+    async def frame(self):
+        """Every colour; then compare."""
+        await send_apart(self.bench, self.driver, self.words(every_colour(self.bits, self.bench.random)), self.gap)
+        await self.compare()
+
+    async def compare(self):
+        await self.bench.clocks(GRADIENT_LOOKUP + 2)
+        marks = [place for _, place in self.source.words]
+        assert len(self.expected) == len(marks)
+        np.testing.assert_array_equal(np.array(self.sink.words), np.column_stack((np.array(self.expected), marks)))
+        assert self.sink.starts == [clock + GRADIENT_LOOKUP for clock in self.source.starts]
+        self.source.forget()
+        self.sink.forget()
+        self.expected.clear()
+
+
+TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@TRAFFIC
+async def whole_table_then_rewritten(dut, gap, pause):
+    lookup = Lookup(dut, gap, pause)
+    await lookup.start()
+    await lookup.frame()
+    for _ in range(2):
+        codes = uniform((lookup.bins, 2), lookup.width)
+        await lookup.rewrite(codes, lookup.bench.random.sample(range(lookup.bins), lookup.bins))
+        for index in lookup.bench.random.sample(range(lookup.bins), min(lookup.bins, 64)):
+            await lookup.read(index)
+        await lookup.frame()  # of the old table
+        await lookup.commit()
+        await lookup.frame()
+        np.testing.assert_array_equal(lookup.banks.words[lookup.banks.in_use], codes)
+    assert lookup.tables == {0, 1}
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@TRAFFIC
+async def rewritten_while_frames_stream(dut, gap, pause):
+    """Short frames without a pause between; writes, reads and commits in every clock of theirs."""
+    lookup = Lookup(dut, gap, pause)
+    await lookup.start()
+    random, running, changes = lookup.bench.random, True, 0
+
+    async def software():
+        nonlocal changes
+        while running:
+            for _ in range(random.randrange(6)):
+                await lookup.write(random.randrange(lookup.bins), *(random.getrandbits(lookup.width - 1) for _ in "xy"))
+            for _ in range(random.randrange(4)):
+                await lookup.read(random.randrange(lookup.bins))
+            await ClockCycles(dut.clk, random.randrange(1, 4))
+            await lookup.commit()
+            while running and lookup.banks.in_use != int(dut.table_bank.value):
+                if random.random() < 0.5:  # while the change-over is due, in the clock of it, after it
+                    await lookup.read(random.randrange(lookup.bins))
+                else:
+                    await RisingEdge(dut.clk)
+            changes += 1
+
+    working = cocotb.start_soon(software())
+    for _ in range(300):
+        pixels = np.array([[random.getrandbits(8) for _ in range(3)] for _ in range(random.randrange(4, 24))], np.uint8)
+        await send_apart(lookup.bench, lookup.driver, lookup.words(pixels), gap)
+    running = False
+    await working
+    await lookup.compare()
+    assert changes > 50, "a poor test: the table hardly changed"
+    await lookup.frame()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def reset_keeps_the_table_and_takes_the_bank_over(dut):
+    lookup = Lookup(dut, 0.0, 0.0)
+    await lookup.start()
+    await lookup.write(0, 1, -2)
+    await send_apart(lookup.bench, lookup.driver, lookup.words(np.zeros((3, 3), np.uint8)), 0.0)
+    for changes in (False, True, False):
+        if changes:
+            await lookup.commit()
+        await lookup.bench.reset()
+        lookup.source.forget()
+        lookup.sink.forget()
+        await lookup.frame()
+    assert (lookup.banks.words[lookup.banks.in_use][0] == (1, -2)).all()
+    lookup.dut.table_read.value = 1  # a read that a reset cuts short
+    await RisingEdge(dut.clk)
+    lookup.dut.table_read.value = 0
+    await lookup.bench.reset()
+    await lookup.read(0)

@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: Apache-2.0
+"""quadratic_gradient against its model: both banks, rewritten and read while frames stream; gaps, limits, reset.
+
+The reference follows the pins, clock by clock: a frame's slopes are those of the words that the bank held which it
+began with.
+"""
+
+import itertools
+from pathlib import Path
+
+import cocotb
+import numpy as np
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.gradient.quadratic_gradient import coefficients, slope_codes
+from tactile_depth.latency import QUADRATIC_GRADIENT
+from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
+
+COLOURS = ["red", "green", "blue"]
+DEVIATIONS = [*COLOURS, "place"]
+SLOPES = ["gx", "gy", "place"]
+WORDS = (2, 3, 6)  # axes, colours, terms
+COUNT = 36
+READ_CLOCKS = 3  # from table_read to its word
+SMALLEST = [(2, 4), (3, 4), (2, 7)]  # rows and columns
+
+
+def place(row, column, rows, columns):
+    return int(row == 0) | int(column == 0) << 1 | int(row == rows - 1) << 2 | int(column == columns - 1) << 3
+
+
+class Gradient:
+    """The device, its reference, and what software does at the words."""
+
+    banks, in_use = None, 0  # what stands in them; no reset touches it, so the next test begins with it
+
+    def __init__(self, dut, gap=0.0, pause=0.0):
+        self.dut, self.gap = dut, gap
+        names = ("Width", "DeviationWidth", "CoeffWidth", "WordWidth", "Drop")
+        self.width, self.deviation_width, self.coefficient_width, self.word_width, self.drop = parameters(dut, *names)
+        self.bench = Bench(dut, pause)
+        self.random = self.bench.random
+        self.driver = StreamDriver(dut, "in", "valid", DEVIATIONS)
+        self.source = StreamMonitor(dut, "in", "valid", DEVIATIONS, unsigned=DEVIATIONS[3:])
+        self.sink = StreamMonitor(dut, "out", "valid", SLOPES, unsigned=SLOPES[2:])
+        self.frames, self.used = [], set()  # words and pixels (row, column, colours) taken; banks that frames used
+        self.wanted = 0
+        dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
+        dut.in_place.value = 0
+
+    async def start(self):
+        """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
+        both banks anew, and what they hold at power-up is tested on Icarus."""
+        at_power_up = Gradient.banks is None
+        if at_power_up:
+            lines = Path("quadratic.hex").read_text().split()
+            raw = np.array([int(line, 16) for line in lines]).reshape(COUNT, 2).T
+            Gradient.banks = raw - (raw >> (self.word_width - 1) << self.word_width)
+        await self.bench.start()
+        Gradient.in_use = 0  # by the reset
+        cocotb.start_soon(self.follow())
+        if at_power_up and cocotb.SIM_NAME.lower().startswith("verilator"):
+            for words in self.banks[::-1].copy():
+                await self.rewrite(words)
+                await self.commit()
+                await self.send(2, 4)
+            await self.compare()
+        self.used.clear()
+        self.bench.saturations = 0
+
+    async def follow(self):
+        dut = self.dut
+        while True:
+            await RisingEdge(dut.clk)
+            assert int(dut.table_in_use.value) == self.in_use
+            self.wanted = int(dut.table_bank.value)
+            if dut.table_write.value:
+                assert self.wanted == self.in_use, "written while a change-over is due"
+                self.banks[1 - self.in_use][int(dut.table_index.value)] = dut.table_word.value.to_signed()
+            if dut.rst.value:
+                Gradient.in_use = self.wanted
+                self.frames.clear()
+            elif dut.en.value and dut.in_valid.value:
+                marks = int(dut.in_place.value)
+                if marks & 3 == 3:
+                    Gradient.in_use = self.wanted
+                    self.used.add(self.in_use)
+                    self.frames.append((self.banks[self.in_use].copy(), []))
+                    row = column = 0
+                elif marks & 2:
+                    row, column = row + 1, 0
+                else:
+                    column += 1
+                colours = [getattr(dut, f"in_{colour}").value.to_signed() for colour in COLOURS]
+                self.frames[-1][1].append((row, column, colours))
+            if dut.table_read.value:  # in the clock of a change-over: of the bank that is left
+                self.to_read = int(self.banks[1 - self.in_use][int(dut.table_index.value)])
+
+    # Software.
+
+    async def write(self, index, word):
+        """One word of the bank not in use, in one clock, whether or not the pipeline moves."""
+        for pin, value in (("write", 1), ("index", index), ("word", word)):
+            getattr(self.dut, f"table_{pin}").value = int(value)
+        await RisingEdge(self.dut.clk)
+        self.dut.table_write.value = 0
+        for pin in ("index", "word"):
+            getattr(self.dut, f"table_{pin}").value = self.random.getrandbits(1)
+
+    async def rewrite(self, words):
+        for index in self.random.sample(range(COUNT), COUNT):
+            await self.write(index, words[index])
+
+    async def read(self, index):
+        dut = self.dut
+        dut.table_read.value, dut.table_index.value = 1, index
+        await RisingEdge(dut.clk)
+        dut.table_read.value, dut.table_index.value = 0, self.random.randrange(COUNT)
+        await ClockCycles(dut.clk, READ_CLOCKS)
+        for _ in range(self.random.choice((1, 1, 4))):
+            got = dut.table_read_word.value.to_signed()
+            assert got == self.to_read, f"word {index} reads {got}, not {self.to_read}"
+            await RisingEdge(dut.clk)
+
+    async def commit(self):
+        """Ask for the other bank; the frames that begin from now on use it."""
+        self.dut.table_bank.value = 1 - self.in_use
+        await RisingEdge(self.dut.clk)
+
+    async def use(self, words):
+        """The next frame uses these words."""
+        await self.rewrite(words)
+        await self.commit()
+
+    # Frames.
+
+    def any_words(self):
+        """At their limits, over the whole range, small ones, planes, and constants."""
+        kind = self.random.randrange(5)
+        if kind == 0:
+            return corners_of(self.random, COUNT, self.word_width)
+        width = self.word_width - (self.random.randrange(self.word_width // 2) if kind > 1 else 0)
+        words = np.array([self.random.randrange(-1 << width - 1, 1 << width - 1) for _ in range(COUNT)])
+        words = words.reshape(WORDS)
+        if kind == 3:
+            words[:, :, [2, 4, 5]] = 0
+        if kind == 4:
+            words[:, :, 1:] = 0
+        return words.reshape(COUNT)
+
+    def any_deviation(self):
+        """Over the whole range or a part of it, at its limits, or a multiple of half a step of the result: ties."""
+        width = self.deviation_width
+        kind = self.random.randrange(4)
+        if kind == 0:
+            return corners_of(self.random, 3, width)
+        if kind == 1:
+            width = self.random.randrange(1, width)
+        grain = min(max(self.drop - 1, 0), width - 1) if kind == 2 else 0
+        return [self.random.randrange(-1 << width - 1, 1 << width - 1) >> grain << grain for _ in COLOURS]
+
+    async def send(self, rows, columns, pixels=None, deviations=None):
+        """A frame, or its first pixels."""
+        words = []
+        for index in range(rows * columns if pixels is None else pixels):
+            colours = self.any_deviation() if deviations is None else deviations[index]
+            words.append((*colours, place(*divmod(index, columns), rows, columns)))
+        await send_apart(self.bench, self.driver, words, self.gap)
+
+    async def compare(self, last=0):
+        """All pixels, or the last ones, which are the last frame. Returns how many values were clipped."""
+        await self.bench.clocks(QUADRATIC_GRADIENT + 2)
+        assert self.sink.starts == [clock + QUADRATIC_GRADIENT for clock in self.source.starts]
+        if last:
+            self.source.forget_but(last)
+            self.sink.forget_but(last)
+            del self.frames[:-1]
+        slopes, clipped = [], Monitor()
+        for words, pixels in self.frames:
+            rows, columns, colours = (np.array(part) for part in zip(*pixels, strict=True))
+            factors = coefficients(
+                words.reshape(WORDS), rows.max() + 1, columns.max() + 1, self.word_width, self.coefficient_width
+            )
+            factors = factors[:, :, rows, columns][:, :, None]
+            slopes.append(slope_codes(colours[None], factors, self.drop, self.width, clipped)[0])
+        marks = [word[-1] for word in self.source.words]
+        expected = np.column_stack((np.concatenate(slopes), marks))
+        np.testing.assert_array_equal(np.array(self.sink.words), expected)
+        total = clipped.saturations.total()
+        assert last or self.bench.saturations == total, f"{self.bench.saturations} values clipped, {total} in the model"
+        self.forget()
+        return total
+
+    def forget(self):
+        self.source.forget()
+        self.sink.forget()
+        self.frames.clear()
+        self.bench.saturations = 0
+
+
+def corners_of(random, count, width):
+    """Mostly the lowest and the highest."""
+    low, high = -1 << width - 1, (1 << width - 1) - 1
+    return np.array([random.choice((*6 * [low, high], -1, 0)) for _ in range(count)])
+
+
+TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@TRAFFIC
+async def both_banks(dut, gap, pause):
+    """Frames of what stands there, then of words written since, every one read back before it is used."""
+    device = Gradient(dut, gap, pause)
+    await device.start()
+    await device.send(5, 8)
+    await device.compare()
+    for _ in range(2):
+        words = device.any_words()
+        await device.rewrite(words)
+        for index in device.random.sample(range(COUNT), COUNT):
+            await device.read(index)
+        await device.send(3, 5)  # of the old words
+        await device.commit()
+        await device.send(5, 8)
+        await device.compare()
+        np.testing.assert_array_equal(device.banks[device.in_use], words)
+    assert device.used == {0, 1}
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@TRAFFIC
+async def limits(dut, gap, pause):
+    """Words and deviations of every kind, so that sums clip in both directions, and polynomials run over."""
+    device = Gradient(dut, gap, pause)
+    await device.start()
+    clipped = 0
+    for _ in range(25):
+        await device.use(device.any_words())
+        await device.send(3, 5)
+        clipped += await device.compare()
+    for word in (-1 << device.word_width - 1, (1 << device.word_width - 1) - 1):
+        await device.use(np.where(np.arange(COUNT) % 6, 0, word))
+        low, high = -1 << device.deviation_width - 1, (1 << device.deviation_width - 1) - 1
+        await device.send(2, 4, deviations=[[low] * 3, [high] * 3] * 4)
+        clipped += await device.compare()
+    largest = (3 << device.deviation_width + device.coefficient_width - 2) * 2.0**-device.drop
+    assert clipped or largest < 2 ** (device.width - 1), "a poor test: nothing was clipped"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@TRAFFIC
+async def rewritten_while_frames_stream(dut, gap, pause):
+    """Frames without a pause between; writes, reads and commits in every clock of theirs."""
+    device = Gradient(dut, gap, pause)
+    await device.start()
+    random, running, changes = device.random, True, 0
+
+    async def software():
+        nonlocal changes
+        while running:
+            words = device.any_words()
+            for index in random.sample(range(COUNT), random.randrange(COUNT)):
+                await device.write(index, words[index])
+            for _ in range(random.randrange(4)):
+                await device.read(random.randrange(COUNT))
+            await ClockCycles(dut.clk, random.randrange(1, 4))
+            await device.commit()
+            while running and device.in_use != int(dut.table_bank.value):
+                if random.random() < 0.5:  # while the change-over is due, in the clock of it, after it
+                    await device.read(random.randrange(COUNT))
+                else:
+                    await RisingEdge(dut.clk)
+            changes += 1
+
+    working = cocotb.start_soon(software())
+    for _ in range(120):
+        await device.send(*random.choice(SMALLEST))
+    running = False
+    await working
+    await device.compare()
+    assert changes > 20, "a poor test: the words hardly changed"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def reset_keeps_the_words_and_takes_the_bank_over(dut):
+    """Of pixels that are all clipped: none may be counted after it."""
+    device = Gradient(dut)
+    await device.start()
+    lowest = [[-1 << device.deviation_width - 1] * 3]
+    words = np.where(np.arange(COUNT) % 6, 0, -1 << device.word_width - 1)
+    for pixels, moving in itertools.product((*range(1, 14), 15, 20), (False, True)):
+        await device.use(words)
+        await device.send(3, 8, pixels, lowest * pixels)
+        if device.random.random() < 0.5:
+            await device.commit()
+        if moving:  # with en
+            dut.rst.value = 1
+            await RisingEdge(dut.clk)
+            dut.rst.value = 0
+        else:
+            await device.bench.reset()
+        device.forget()
+        if pixels % 2:
+            await device.bench.clocks(QUADRATIC_GRADIENT + 2)
+            assert not device.sink.starts, f"pixels left after a reset at {pixels}"
+            assert device.bench.saturations == 0, f"clipped words were counted after a reset at {pixels}"
+        await device.use(device.any_words())
+        await device.send(3, 4)
+        await device.compare()
+    await device.read(3)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@TRAFFIC
+async def a_cut_frame_does_no_harm_to_the_next(dut, gap, pause):
+    """Nobody sends one; but a mark may be upset, and that shall heal."""
+    device = Gradient(dut, gap, pause)
+    await device.start()
+    for pixels in (*range(1, 14), 20):
+        await device.use(device.any_words())
+        await device.send(3, 8, pixels)
+        await device.use(device.any_words())
+        await device.send(3, 8, pixels)
+        await device.send(3, 4)
+        await device.compare(last=12)

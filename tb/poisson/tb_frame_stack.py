@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_stack against its model: places, latency, rows without a pause; gaps, pauses, reset."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import FRAME_STACK
+from tactile_depth.poisson.frame_stack import frame_stack
+from tb.stream import check_bursts, parameters, places
+
+FRAMES = 4  # in place, the order of rows in the memory flips with every frame
+
+
+async def check(dut, frames=FRAMES, **behaviour):
+    size, width, rows = parameters(dut, "Size", "Width", "Rows")
+
+    def model(x, monitor):
+        return frame_stack(x.reshape(-1, rows, size))
+
+    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a place stays
+    source, sink = await check_bursts(
+        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=rows, **behaviour
+    )
+    last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
+    assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [FRAME_STACK] * frames
+    apart = np.diff(np.array(sink.starts).reshape(frames, rows), axis=1)
+    assert np.all(apart == size), "the rows of a frame follow each other without a pause"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
+async def frames(dut, gap, pause):
+    await check(dut, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(halves=[1, 3, 5])
+async def reset_in_mid_frame(dut, halves):
+    size, rows = parameters(dut, "Size", "Rows")
+    await check(dut, frames=2, interrupts=[halves * size * rows // 2 + size // 2])
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def resets_as_a_frame_begins_to_leave(dut):
+    """With the last row's first words, and around its end: each register that says so is set in one of these clocks."""
+    size, rows = parameters(dut, "Size", "Rows")
+    clocks = (1, 2, 3, size, size + 1, size + 2)
+    await check(dut, frames=2, interrupts=[(rows - 1) * size + clock for clock in clocks])
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    await check(dut, frames=2, strays=strays)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""spectral_divide against its model: whole frames, so all positions; gaps, pauses, extremes, reset."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import SPECTRAL_DIVIDE
+from tactile_depth.poisson.spectral_divide import spectral_divide
+from tb.stream import MANY, check_bursts, configuration, corners, extremes, parameters, uniform
+
+
+async def check(dut, x, **behaviour):
+    config = configuration()
+
+    def model(x, monitor):
+        return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
+
+    behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.columns}
+    return await check_bursts(dut, x, model, SPECTRAL_DIVIDE, **behaviour)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), amplitude=[0.001, 1.0])
+async def frames(dut, gap, pause, amplitude):
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((3 * size, size, 1), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.01, 0.2, None])
+async def many_frames(dut, amplitude):
+    """Ties of the rounding, and values that just clip."""
+    size, width = parameters(dut, "Size", "Width")
+    shape = (MANY * size, size, 1)
+    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut):
+    """Each kind of burst fills a frame of its own: every position sees it, and the lowest modes clip."""
+    size, width = parameters(dut, "Size", "Width")
+    _, sink = await check(dut, np.repeat(extremes(size, width), size, axis=0))
+    assert not np.any(sink.words[: size * size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_frame(dut, late):
+    """As the first words enter and leave; in the midst of a second frame."""
+    size, width = parameters(dut, "Size", "Width")
+    first = 3 * size * size // 2 + size // 2 if late else 1
+    await check(dut, uniform((size, size, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((size, size, 1), width), strays=strays)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""spectral_solver against its model: codes, fixed latency, one frame every N^2 clocks, saturations; reset."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import spectral_solver_latency
+from tactile_depth.poisson.spectral_solver import spectral_solver
+from tb.stream import (
+    MANY,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    configuration,
+    corners,
+    interrupt,
+    send_apart,
+    uniform,
+)
+
+
+def codes(frames, amplitude):
+    """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
+    config = configuration()
+    shape, width = (frames, config.columns, config.columns), config.divergence.width
+    return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+
+
+async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
+    config = configuration()
+    size = config.columns
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", ["data"])
+    source = StreamMonitor(dut, "in", "valid", ["data"])
+    sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
+    await bench.start()
+
+    words = f.reshape(-1, 1).tolist()
+
+    async def send(count):
+        await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap, size * size)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=spectral_solver_latency(size))
+    await send_apart(bench, driver, words[:strays], gap, size * size)
+    await send_apart(bench, driver, words, gap, size * size)
+    await bench.clocks(spectral_solver_latency(size) + size * size)
+
+    source.forget_but(len(words))
+    sink.forget_but(len(words) // size)
+    np.testing.assert_array_equal(np.array(source.words), words, "the driver sent something else")
+    monitor = Monitor()
+    z = spectral_solver(np.array(source.words).reshape(f.shape), config, monitor)
+    np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)
+    assert strays or bench.saturations == monitor.saturations.total()
+    check_frame_starts([source], size * size)
+    check_frame_starts([sink], size)
+    last_pixels = source.starts[size * size - 1 :: size * size]
+    first_depths = sink.starts[::size]
+    latency = {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)}
+    assert latency == {spectral_solver_latency(size)}
+    if not gap:
+        assert set(np.diff(first_depths)) <= {size * size}
+    return bench
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
+async def frames_that_fit(dut, gap, pause):
+    await check(dut, codes(3, 0.002), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.002, 0.05, None])
+async def many_frames(dut, amplitude):
+    """Ties of every rounding, and clips of every one that can."""
+    await check(dut, codes(MANY, amplitude))
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+async def frames_that_saturate(dut):
+    f = codes(3, 1.0)
+    f[1], f[2] = f.max(), f.min()
+    bench = await check(dut, f, gap=0.1)
+    assert bench.saturations > 0, "full scale everywhere must clip somewhere"
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.002, 1.0])
+async def reset_in_mid_frame(dut, amplitude):
+    """The third frame arrives as the first one leaves: every core is at work, and clips if it can."""
+    size = configuration().columns
+    first = 2 * size * size + 10 * size + size // 2
+    await check(dut, codes(1, amplitude), interrupts=[first, first + size // 3])
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(rows=[1, 3])
+async def a_frame_begins_afresh(dut, rows):
+    """After rows of a frame that is not completed, and part of one more."""
+    columns = configuration().columns
+    await check(dut, codes(2, 0.002), strays=rows * columns + 5)

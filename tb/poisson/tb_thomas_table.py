@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""thomas_table against its model: every position of every row."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import THOMAS_TABLE
+from tactile_depth.poisson.thomas_table import thomas_table
+from tb.stream import configuration, drive
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def every_entry(dut, pause):
+    config = configuration()
+    table = thomas_table(config)
+    places = [(row, position) for row in range(config.rows) for position in range(config.columns)]
+    stimuli = [{"row": row, "position": position} for row, position in places]
+    stimuli += THOMAS_TABLE * stimuli[-1:]
+    seen = await drive(dut, stimuli, ["coefficient", "shift"], pause)
+    coefficients = np.vstack((table.rows(config.rows - 1), table.last)).ravel()
+    shifts = np.vstack((np.zeros((config.rows - 1, config.columns), np.int64), table.last_shift)).ravel()
+    np.testing.assert_array_equal([v.to_signed() for v in seen["coefficient"][THOMAS_TABLE:]], coefficients)
+    np.testing.assert_array_equal([int(v) for v in seen["shift"][THOMAS_TABLE:]], shifts)

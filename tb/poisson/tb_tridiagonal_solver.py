@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tridiagonal_solver against its model: codes, fixed latency, one frame every rows x columns clocks, saturations."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.latency import tridiagonal_solver_latency
+from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
+from tb.stream import (
+    MANY,
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    configuration,
+    corners,
+    interrupt,
+    send_apart,
+    uniform,
+)
+
+
+async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
+    """Frames f (frames, rows, columns) through the device; for `interrupts` see stream.interrupt."""
+    config = configuration()
+    pixels = config.rows * config.columns
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", ["data"])
+    source = StreamMonitor(dut, "in", "valid", ["data"])
+    sink = StreamMonitor(dut, "out", "start", ["data"], length=config.columns)
+    await bench.start()
+    words = f.reshape(-1, 1).tolist()
+    latency = tridiagonal_solver_latency(config.columns)
+
+    async def send(count):
+        await send_apart(bench, driver, words[:count], gap, pixels)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=latency + pixels)
+    await send_apart(bench, driver, words[:strays], gap, pixels)
+    await send_apart(bench, driver, words, gap, pixels)
+    await bench.clocks(latency + pixels + config.columns)
+
+    source.forget_but(len(words))
+    sink.forget_but(len(words) // config.columns)
+    monitor = Monitor()
+    z = tridiagonal_solver(np.array(source.words).reshape(f.shape), config, monitor)
+    np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)
+    assert strays or bench.saturations == monitor.saturations.total()
+    check_frame_starts([source], pixels)
+    check_frame_starts([sink], config.rows)
+    last_pixels, first_depths = source.starts[pixels - 1 :: pixels], sink.starts[:: config.rows]
+    assert {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)} == {latency}
+    if not gap:
+        assert set(np.diff(first_depths)) == {pixels}
+    return monitor.saturations
+
+
+def codes(frames, amplitude):
+    """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
+    config = configuration()
+    shape, width = (frames, config.rows, config.columns), config.divergence.width
+    return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)]))
+async def frames(dut, gap, pause):
+    assert not await check(dut, codes(4, 0.002), gap, pause)
+
+
+@cocotb.test(timeout_time=200, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.002, 0.05, None])
+async def many_frames(dut, amplitude):
+    """Ties of every rounding, and clips of every one that can."""
+    await check(dut, codes(MANY, amplitude))
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def full_scale_saturates(dut):
+    assert await check(dut, codes(3, 1.0)), "full scale everywhere must clip somewhere"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def a_frame_does_not_know_the_one_before(dut):
+    f = codes(3, 0.002)
+    f[2] = f[0]
+    await check(dut, f)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.002, 1.0])
+async def reset_in_mid_frame(dut, amplitude):
+    """At places in a row of the second frame, as the first one leaves: every core is at work, and clips if it can."""
+    config = configuration()
+    first = 3 * config.rows * config.columns // 2 + 3
+    places = [first + step * (config.columns // 4 + 1) for step in range(4)]
+    await check(dut, codes(2, amplitude), interrupts=places)
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(rows=[1, 3])
+async def a_frame_begins_afresh(dut, rows):
+    """After rows of a frame that is not completed, and part of one more."""
+    columns = configuration().columns
+    await check(dut, codes(2, 0.002), strays=rows * columns + 5)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""row_reorder against its model: places, latency from the last word; gaps inside rows, pauses, reset."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import ROW_REORDER
+from tactile_depth.transform.row_reorder import row_reorder
+from tb.stream import Bench, StreamDriver, StreamMonitor, check_frame_starts, interrupt, parameters, places, send_apart
+
+ROWS = 7
+FRAME = 3  # rows
+
+
+async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
+    size, width, to_burst = parameters(dut, "Size", "Width", "ToBurst")
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", ["data"])
+    source = StreamMonitor(dut, "in", "valid", ["data"])
+    sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
+    await bench.start()
+    words = places(ROWS * size, width).reshape(-1, 1).tolist()
+
+    async def send(count):
+        await send_apart(bench, driver, words[-count:], gap, FRAME * size)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=ROW_REORDER + 2)
+    await send_apart(bench, driver, words[:strays], gap, FRAME * size)
+    await send_apart(bench, driver, words, gap, FRAME * size)
+    await bench.clocks(ROW_REORDER + size + 4)
+    source.forget_but(len(words))
+    sink.forget_but(ROWS)
+
+    assert source.words == [tuple(word) for word in words], "the driver sent something else"
+    rows = np.array(source.words).reshape(ROWS, size)
+    np.testing.assert_array_equal(np.array(sink.words).reshape(rows.shape), row_reorder(rows, bool(to_burst)))
+    check_frame_starts([source], FRAME * size)
+    check_frame_starts([sink], FRAME)
+    ends = source.starts[size - 1 :: size]
+    assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [ROW_REORDER] * ROWS
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
+async def rows(dut, gap, pause):
+    await check(dut, gap, pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_row(dut):
+    """At each word of a row, and while it leaves."""
+    (size,) = parameters(dut, "Size")
+    await check(dut, interrupts=range(1, size + size // 2))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def a_frame_begins_afresh(dut):
+    """After part of a row."""
+    (size,) = parameters(dut, "Size")
+    for strays in (1, size - 1, size + 1):
+        await check(dut, strays=strays)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""transpose against its model: places, latency, columns without a pause; gaps, pauses, reset."""
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import TRANSPOSE
+from tactile_depth.transform.transpose import transpose
+from tb.stream import check_bursts, parameters, places
+
+FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
+
+
+async def check(dut, frames=FRAMES, **behaviour):
+    size, width, makhoul_in, makhoul_out = parameters(dut, "Size", "Width", "MakhoulIn", "MakhoulOut")
+
+    def model(x, monitor):
+        return transpose(x.reshape(-1, size, size), bool(makhoul_in), bool(makhoul_out))
+
+    words = places(frames * size * size, width)
+    source, sink = await check_bursts(
+        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=size, **behaviour
+    )
+    last_rows, first_columns = source.starts[size - 1 :: size], sink.starts[::size]
+    assert [out - row for out, row in zip(first_columns, last_rows, strict=True)] == [TRANSPOSE] * frames
+    columns = np.diff(np.array(sink.starts).reshape(frames, size), axis=1)
+    assert np.all(columns == size), "the columns of a frame follow each other without a pause"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
+async def frames(dut, gap, pause):
+    await check(dut, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_frame(dut, late):
+    """As the first words enter, or as the last row does, when reading begins; with a third frame half in."""
+    (size,) = parameters(dut, "Size")
+    first = (size - 1) * size if late else 1
+    await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut, strays):
+    """After part of a frame, and after more than one without a start in between."""
+    await check(dut, frames=2, strays=strays)

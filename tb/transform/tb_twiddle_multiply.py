@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""twiddle_multiply against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+import os
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import TWIDDLE_MULTIPLY
+from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
+from tb.stream import check_bursts, extremes, parameters, uniform
+
+FIELDS = ["re", "im"]
+
+
+def factors_of(dut):
+    coeff, block = parameters(dut, "CoeffWidth", "Block")
+    kind, direction = os.environ["FACTORS"].split("_")
+    return {"twiddle": twiddle_factors, "phase": phase_factors}[kind](block, direction == "inverse", coeff)
+
+
+async def check(dut, x, **behaviour):
+    width, drop, real_only = parameters(dut, "OutWidth", "Drop", "RealOnly")
+    factors = factors_of(dut)
+
+    def model(x, monitor):
+        out = twiddle_multiply(x[..., 0], x[..., 1], factors, drop, width, monitor, real_only=bool(real_only))
+        return np.stack(out, axis=-1)
+
+    return await check_bursts(dut, x, model, TWIDDLE_MULTIPLY, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0])
+async def bursts(dut, gap, pause, amplitude):
+    size, width = parameters(dut, "Size", "InWidth")
+    await check(dut, uniform((6, size, 2), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits(dut):
+    size, width = parameters(dut, "Size", "InWidth")
+    _, sink = await check(dut, extremes(size, width, 2))
+    assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(part=[0, 1])
+async def ties(dut, part):
+    """A burst of products that drop just half a step, then for each lower bit one of half a step and that bit alone.
+
+    What they keep is even, so each of those bits decides between down and up. Where the factor's real part is odd
+    there is a word for any rest of the product, whatever the other part of the word.
+    """
+    size, width, drop = parameters(dut, "Size", "InWidth", "Drop")
+    half, modulus = 1 << drop - 1, 1 << drop + 1
+    rests = [half, *(half + (1 << bit) for bit in range(drop - 1))]
+    words = uniform((len(rests), size, 2), width, 0.3)
+    factors = [tuple(map(int, pair)) for pair in factors_of(dut)] * (size // len(factors_of(dut)))
+    for burst, rest in zip(words, rests, strict=True):
+        for word, (re, im) in zip(burst, factors, strict=True):
+            if re % 2:
+                other = int(word[1 - part]) * im * (-1 if part else 1)
+                wanted = (rest + other) * pow(re, -1, modulus) % modulus
+                word[part] = wanted - modulus * (wanted >= modulus // 2)
+    assert any(re % 2 for re, _ in factors), "a poor test: no factor is odd"
+    await check(dut, words)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_burst(dut):
+    """In each clock of a burst, as it enters and as it leaves."""
+    size, width = parameters(dut, "Size", "InWidth")
+    await check(dut, uniform((2, size, 2), width), interrupts=range(1, size + TWIDDLE_MULTIPLY + 2))

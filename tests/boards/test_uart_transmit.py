@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""uart_transmit: RTL against the model."""
+
+import pytest
+
+from commands.common.repository import ROOT
+
+
+@pytest.mark.structures("divider", both=[(33,)], icarus=[(4,)])
+def test_rtl(run_tb, divider):
+    run_tb("uart_transmit", [], {"Divider": divider}, files=[ROOT / "boards" / "ulx3s" / "uart_transmit.sv"])

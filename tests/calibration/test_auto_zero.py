@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""auto_zero: RTL against the model; what the model does."""
+
+import numpy as np
+import pytest
+
+from tactile_depth.calibration.auto_zero import auto_zero, exact_zero, interpolated_floor, no_floor
+from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.rom_files import write_floor
+from tb.stream import REGRESS, places
+
+SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
+
+
+@pytest.mark.structures(
+    "columns rows block_log2 width",
+    both=[(16, 15, 2, 4), (16, 8, 1, 24)],
+    icarus=[
+        *((4, 2, 1, 5), (16, 16, 1, 12), (32, 21, 1, 16), (128, 8, 3, 32)),
+        *([(64, 64, 2, 24)] if REGRESS else []),
+    ],
+)
+def test_rtl(run_tb, columns, rows, block_log2, width):
+    floor = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
+    run_tb(
+        "auto_zero",
+        SOURCES,
+        {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width},
+        roms=lambda folder: write_floor(folder, floor, width),
+    )
+
+
+CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")
+HIGHEST = (1 << CONFIG.depth.width - 1) - 1
+
+
+def codes(count=2, limit=HIGHEST):
+    return np.random.default_rng(1).integers(-limit - 1, limit, (count, 21, 32), endpoint=True)
+
+
+def test_no_floor_changes_nothing():
+    monitor = Monitor()
+    np.testing.assert_array_equal(auto_zero(codes(), no_floor(CONFIG), CONFIG, monitor), codes())
+    assert not monitor.saturations
+
+
+@pytest.mark.parametrize("level", [-1000, -1, 1, 77777])
+def test_a_flat_floor_is_subtracted_everywhere(level):
+    floor = np.full(CONFIG.reference_nodes, level)
+    assert np.all(interpolated_floor(floor, CONFIG) == level)
+    low = codes(limit=HIGHEST // 2)
+    np.testing.assert_array_equal(auto_zero(low, floor, CONFIG), low - level)
+
+
+def test_what_is_clipped_is_counted():
+    monitor = Monitor()
+    floor = np.full(CONFIG.reference_nodes, -2)
+    depths = np.zeros((21, 32), np.int64)
+    depths[3, 4:9] = HIGHEST - np.arange(5)
+    zeroed = auto_zero(depths, floor, CONFIG, monitor)
+    assert zeroed[3, 4:9].tolist() == [HIGHEST, HIGHEST, HIGHEST, HIGHEST - 1, HIGHEST - 2]
+    assert monitor.saturations == {"auto_zero": 2}
+    auto_zero(np.full((21, 32), -HIGHEST - 1), np.full(CONFIG.reference_nodes, 1), CONFIG, monitor)
+    assert monitor.saturations == {"auto_zero": 2 + 21 * 32}
+
+
+def test_exact_zero_is_the_same_but_for_rounding():
+    untouched, depths = codes(4, 5000), codes(3, 100000)
+    zeroed = auto_zero(depths, captured_floor(untouched, CONFIG), CONFIG)
+    exact = exact_zero(depths.astype(float), untouched.astype(float), CONFIG)
+    assert 0 < np.abs(zeroed - exact).max() <= 1
+
+
+def test_a_floor_that_is_a_plane_is_taken_off_between_the_centres_of_blocks():
+    """A cut row of blocks has no node: there, and outside the outermost centres, the floor stands still."""
+    row, column = np.mgrid[:21, :32]
+    plane = 400 * row - 600 * column + 5000
+    zeroed = auto_zero(plane, captured_floor(plane[None], CONFIG), CONFIG)
+    assert not zeroed[1:19, 1:31].any()
+    assert zeroed[20].any()

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""floor_capture: RTL against the model, and the model against exact fractions."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
+from tactile_depth.configuration import Configuration
+from tb.stream import REGRESS
+
+SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
+
+
+@pytest.mark.structures(
+    "columns rows block_log2 width largest",
+    both=[(16, 8, 1, 24, LARGEST_LOG2 if REGRESS else 5)],
+    icarus=[
+        (4, 5, 1, 4, 2),
+        (4, 2, 1, 6, 1),
+        *([(32, 21, 1, 12, 1), (16, 16, 2, 24, 3), (128, 20, 3, 16, 1), (16, 9, 1, 32, 0)] if REGRESS else []),
+    ],
+)
+def test_rtl(run_tb, columns, rows, block_log2, width, largest):
+    parameters = {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "MaxLog2": largest}
+    run_tb("floor_capture", SOURCES, parameters)
+
+
+@pytest.mark.parametrize("count", [1, 2, 8])
+@pytest.mark.parametrize("limit", [2, 1 << 23])
+def test_a_floor_is_the_mean_to_the_nearest_with_ties_to_even(count, limit):
+    config = Configuration(columns=32, rows=21, solver="tridiagonal")
+    frames = np.random.default_rng(count).integers(-limit, limit, (count, 21, 32))
+    floor = captured_floor(frames, config)
+    block = 1 << config.reference_block_log2
+    for row, column in np.ndindex(*config.reference_nodes):
+        words = frames[:, row * block : (row + 1) * block, column * block : (column + 1) * block]
+        assert floor[row, column] == round(Fraction(int(words.sum()), words.size))

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""make baselines: every method that is installed is right, a wrong one is refused, bad input is told."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+
+from commands.common.variables import Mismatch
+from commands.study import baselines, report
+from commands.study.baselines import METHODS, WARM_UPS, Method, Prepared
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("GRID=64", "unknown variable"),
+        ("GRIDS=64,100", "powers of two from 16 to 512"),
+        ("GRIDS=1024", "powers of two from 16 to 512"),
+        ("GRIDS=,", "powers of two from 16 to 512"),
+        ("RUNS=1", "a whole number from 10"),
+        ("CLOCK_MHZ=nan", "a number from"),
+    ],
+)
+def test_bad_input(given, says):
+    with pytest.raises(InputError, match=says):
+        baselines.parse([given])
+
+
+def test_out_is_a_file(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="is a file: give a folder"):
+        baselines.run(baselines.parse([f"OUT={tmp_path / 'file'}"]))
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("method", [method for method in METHODS if not method.device], ids=lambda method: method.name)
+def test_methods_equal_the_reference(method, threads):
+    if problem := baselines.missing(method):
+        pytest.skip(f"{problem}: `make baselines` installs it")
+    prepared = method.prepare(32, threads)
+    f, wanted = baselines.frames(32)
+    for given, want in zip(f, wanted, strict=True):
+        depth = np.array(prepared.take(prepared.solve(prepared.give(given))), np.float64)
+        assert baselines.percent_of_peak(depth, want) <= baselines.TOLERANCE_PERCENT
+
+
+def job(runs, seconds=100):
+    return baselines.Job(0, 1, {16: baselines.frames(16)}, runs, time.monotonic() + seconds, 1)
+
+
+def test_a_wrong_result_is_not_timed(monkeypatch):
+    wrong = Method("wrong", lambda size, threads: Prepared(lambda f: 0.999 * f), ())
+    monkeypatch.setattr(baselines, "METHODS", (wrong,))
+    (row,) = baselines.measure(job(10))
+    assert row["problem"] == "wrong result"
+    assert "times_us" not in row
+    monkeypatch.setattr(baselines, "in_own_process", baselines.measure)
+    with pytest.raises(Mismatch, match="wrong at 16"):
+        baselines.measure_all(baselines.parse(["GRIDS=16"]))
+
+
+def test_a_slow_method_is_cut_short():
+    (row,) = baselines.measure(job(1000, seconds=0))
+    assert len(row["times_us"]) == baselines.FEWEST_RUNS
+    (row,) = baselines.measure(job(1000))
+    assert len(row["times_us"]) == 1000
+
+
+def test_the_pipeline_beside_them():
+    for row in baselines.pipeline((64,), 100.0):
+        config = Configuration(columns=64, solver=row["solver"])
+        assert row["first_depth"] == last_pixel_to_first_depth(config)
+        assert row["last_depth"] == first_depth_latency(config)  # a frame takes as long to leave as to come
+        assert row["last_depth_us"] == row["last_depth"] / 100
+
+
+def test_percentiles():
+    row = baselines.summarise({"times_us": list(range(101))})
+    assert row == {"runs": 101, "p1_us": 1, "p50_us": 50, "p99_us": 99, "max_us": 100}
+    assert baselines.summarise({"problem": "no device"}) == {"problem": "no device"}
+
+
+def test_a_small_run(tmp_path, monkeypatch):
+    absent = Method("absent", METHODS[0].prepare, ("no-such-package",))
+    monkeypatch.setattr(baselines, "METHODS", (METHODS[0], absent))
+    monkeypatch.setattr(baselines.os, "sched_getaffinity", lambda process: {0})
+    baselines.run(baselines.parse(["GRIDS=16", "RUNS=20", f"OUT={tmp_path}"]))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["baselines.json", "baselines.png"]
+    document = json.loads((tmp_path / "baselines.json").read_text())
+    timed, missing = document["software"]
+    assert timed["runs"] == 20
+    assert document["warm_ups"] == WARM_UPS
+    assert 0 < timed["p50_us"] <= timed["p99_us"] <= timed["max_us"]
+    assert timed["error_percent"] <= baselines.TOLERANCE_PERCENT
+    assert missing["problem"] == "no-such-package not installed"
+    assert "absent" in baselines.show(document)
+
+    monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)  # make report takes what is there
+    section = report.baselines_figure(report.document_of(baselines, "baselines")).section()
+    assert "data:image/png" in section
+    assert "no-such-package not installed" in section
+
+
+def test_the_report_runs_what_has_not_been_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)
+    monkeypatch.setattr(baselines, "run", lambda request: (request.out / "baselines.json").write_text('{"runs": 3}'))
+    assert report.document_of(baselines, "baselines") == {"runs": 3}

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""make calibrate: what it writes and prints, and what is said of bad variables. test_fitting.py tests the fit."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from commands.common import repository
+from commands.run.calibrate import parse, run
+from tactile_depth.errors import InputError
+from tactile_depth.fitting import fit_presses
+from tactile_depth.frames import read_picture
+from tactile_depth.sensor import FOLDER, load
+from tests.ball_presses import CAMERA, PITCH, read, real_folder, table_rows, write_folder, write_table
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return write_folder(tmp_path_factory.mktemp("ball") / "presses")
+
+
+@pytest.fixture
+def folder(made, tmp_path):
+    return Path(shutil.copytree(made, tmp_path / "presses"))
+
+
+def refused(*variables: str) -> str:
+    with pytest.raises(InputError) as caught:
+        run(parse(list(variables)))
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_the_command_writes_a_calibration_a_picture_and_a_table(made, tmp_path, capsys):
+    out = tmp_path / "new" / "mine.npz"
+    assert run(parse([f"PRESSES={made}", f"OUT={out}", "EXPOSURE_US=8000"])) == 0
+    report = capsys.readouterr()
+    assert not report.err
+    sensor, fit = load(str(out)), fit_presses(read(made))
+    np.testing.assert_array_equal(sensor.coefficients, fit.sensor.coefficients)
+    np.testing.assert_array_equal(sensor.gradient, fit.sensor.gradient)
+    assert sensor.height_errors == fit.sensor.height_errors
+    assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)
+    assert read_picture(out.with_suffix(".png")).shape[1] > 1000
+    assert str(fit.evaluation) in report.out
+    for words in ("of its bins", "circles found in 24 pictures", "the better model is quadratic"):
+        assert words in report.out
+    assert sorted(path.name for path in out.parent.iterdir()) == ["mine.npz", "mine.png"]
+
+
+@pytest.mark.parametrize("model", ["lut", "quadratic"])
+def test_one_model_alone_is_written_alone(made, tmp_path, model):
+    out = tmp_path / "one.npz"
+    assert run(parse([f"PRESSES={made}", f"OUT={out}", f"GRADIENT={model}", "BITS=3"])) == 0
+    sensor = load(str(out))
+    assert sensor.models == (model,)
+    assert tuple(sensor.height_errors) == tuple(sensor.fitted_slope) == (model,)
+    if model == "lut":
+        assert sensor.bits_per_channel == 3
+
+
+def test_presses_held_out_in_turn_are_in_the_file(made, tmp_path, capsys):
+    out = tmp_path / "each.npz"
+    assert run(parse([f"PRESSES={made}", f"OUT={out}", "GRADIENT=quadratic", "HELD_OUT=each"])) == 0
+    count = sum(view.is_whole for view in read(made).views)
+    assert load(str(out)).height_errors["quadratic"].presses == count
+    assert "every whole press in turn" in capsys.readouterr().out
+
+
+def test_a_table_of_frames_and_diameters_alone_serves(folder, tmp_path):
+    rows = [{**row, "ball_diameter_mm": row["diameter_mm"]} for row in table_rows()]
+    write_table(folder, rows, ["frame", "ball_diameter_mm"])
+    out = tmp_path / "found.npz"
+    assert run(parse([f"PRESSES={folder}", f"PITCH={PITCH}", "GRADIENT=quadratic", f"OUT={out}"])) == 0
+    assert load(str(out)).height_errors["quadratic"].mean == pytest.approx(1, abs=0.06)
+
+
+def test_what_is_left_out_is_printed(folder, tmp_path, capsys):
+    (folder / "03.png").unlink()
+    assert run(parse([f"PRESSES={folder}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"])) == 0
+    assert re.fullmatch(r"make calibrate: \S+03\.png: no such file.*: left out\n", capsys.readouterr().err)
+
+
+@pytest.mark.parametrize(
+    ("variables", "said"),
+    [
+        (["BITS=7"], "BITS=7: accepted is a whole number from 1 to 6"),
+        (["BITS=x"], "BITS=x"),
+        (["PITCH=0"], "PITCH=0"),
+        (["PITCH=nan"], "PITCH=nan"),
+        (["GRADIENT=cubic"], "GRADIENT=cubic: accepted are both, lut, quadratic"),
+        (["CIRCLES=drawn"], "CIRCLES=drawn: accepted are table"),
+        (["HELD_OUT=all"], "HELD_OUT=all: accepted are second and each"),
+        (["EXPOSURE_US=0"], "EXPOSURE_US=0: accepted is a number"),
+        (["N=3"], "N=3: unknown variable"),
+        (["OUT=x.txt"], "OUT=x.txt: give the name of an .npz file"),
+    ],
+)
+def test_bad_variables_are_named(variables, said):
+    with pytest.raises(InputError, match=re.escape(said)):
+        parse(variables)
+
+
+def test_a_folder_that_is_missing_says_how_to_get_one(tmp_path, monkeypatch):
+    monkeypatch.setenv("TACTILE_DATA", str(tmp_path))
+    assert "rpl-cmu/gelslam" in refused()
+
+
+@pytest.mark.parametrize("out", ["file/mine.npz", "folder.npz"])
+def test_a_result_that_cannot_be_written_is_named_before_the_fit(tmp_path, out):
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder.npz").mkdir()
+    assert f"OUT={tmp_path / out} cannot be written" in refused(f"PRESSES={tmp_path}", f"OUT={tmp_path / out}")
+
+
+def test_bad_input_ends_with_status_2_and_one_line(tmp_path):
+    command = [sys.executable, "-m", "commands.run.calibrate", f"PRESSES={tmp_path}", f"OUT={tmp_path}/mine.npz"]
+    result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert re.fullmatch(r"make calibrate: .*: no presses\.csv in it: .*\n", result.stderr)
+
+
+def test_the_shipped_calibration_is_what_the_command_makes(tmp_path):
+    out = tmp_path / "gelsight-mini.npz"
+    assert run(parse([f"PRESSES={real_folder()}", f"OUT={out}"])) == 0
+    with np.load(out) as made, np.load(FOLDER / "gelsight-mini.npz") as shipped:
+        assert sorted(made.files) == sorted(shipped.files)
+        np.testing.assert_array_equal(made["gradient"], shipped["gradient"])
+        assert made["largest_slope"] == shipped["largest_slope"]
+        # Sums may be rounded differently on another machine; measured: 3e-11.
+        np.testing.assert_allclose(made["coefficients"], shipped["coefficients"], atol=1e-9)

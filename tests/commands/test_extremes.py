@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every row of `make extremes`, short: RTL equals the model, saturations are told, no code wraps, errors are small."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from commands.study import extremes
+from commands.study.extremes import (
+    EXTREMES,
+    compliance,
+    drift,
+    faults,
+    largest,
+    measure,
+    model_drift,
+    smallest,
+    transforms,
+)
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import COLUMNS, Configuration
+
+SIZE = 16
+SOLVERS = tuple(COLUMNS)
+
+# RMS in codes of the worst frame where nothing saturates; measured at 16 on 24 bits: up to 59, at 12 bits 5.0, at 32
+# bits 36 (coefficients of 18 and 24 bits weigh more in wider words).
+QUIET_RMS_CODES = 75.0
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name.replace(" ", "-"))
+def test_row(extreme, solver):
+    row = measure(extreme, solver, SIZE, "icarus")
+    assert faults(extreme, row) == []
+    if not row.saturations:
+        assert row.rms_codes < QUIET_RMS_CODES
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_the_smallest_grid(solver):
+    extreme = smallest(solver)
+    row = measure(extreme, solver, SIZE, "icarus")
+    assert faults(extreme, row) == []
+    assert row.grid == {"spectral": "16x16", "tridiagonal": "8x16"}[solver]
+    assert row.rms_codes < QUIET_RMS_CODES
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_the_largest_grid(solver):
+    extreme = largest(solver)
+    row = measure(extreme, solver, SIZE, "verilator")
+    assert faults(extreme, row) == []
+    assert row.grid == {"spectral": "512x512", "tridiagonal": "1024x1024"}[solver]
+    assert row.rms_percent < 0.1
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_frames_back_to_back_do_not_drift(solver):
+    extreme = drift(32)
+    row = measure(extreme, solver, SIZE, "icarus")
+    assert faults(extreme, row) == []
+    assert row.frames == 32
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_frames_on_the_model_do_not_drift(solver):
+    row = model_drift(solver, SIZE, extremes.SHORT_MODEL)
+    assert row.bit_exact
+    assert not row.saturations
+    assert not row.wrapped
+
+
+@pytest.mark.parametrize("data_width", [24, 32])
+def test_transforms_comply(data_width):
+    """Bars near what is measured: small noise has the error of its roundings alone, whatever the width."""
+    rows = compliance(Configuration(columns=SIZE, data_width=data_width), 640)
+    assert {row.core for row in rows} == {"dst_forward", "dst_inverse", "2-D forward", "2-D inverse"}
+    for row in rows:
+        assert row.zero_in_zero_out
+        assert row.saturations == 0
+        assert row.mean_in_standard_errors < extremes.BIAS, row
+        if row.input == "noise + of 5 steps":
+            assert (
+                row.mean_square
+                < {"dst_forward": 0.13, "dst_inverse": 0.26, "2-D forward": 0.6, "2-D inverse": 9}[row.core]
+            )
+            assert row.peak <= {"dst_forward": 1, "dst_inverse": 2, "2-D forward": 4, "2-D inverse": 15}[row.core]
+
+
+def test_lone_modes_fill_the_range_that_noise_leaves_empty():
+    """A lone mode of the depth range reaches full scale; noise that fits beside it stays far below."""
+    config = Configuration(columns=SIZE)
+    core = transforms(config)["2-D inverse"][0]
+    largest_word = {}
+    for name, _, blocks in extremes._blocks("2-D inverse", SIZE, 2, config, 20):
+        monitor = Monitor()
+        largest_word[name] = max(largest_word.get(name, 0), int(np.abs(core(blocks, monitor)).max()))
+        assert not monitor.saturations
+    limit = 2 ** (config.data_width - 1) / extremes_headroom(config)
+    assert 0.9 * limit < largest_word["lone modes"] <= 1.01 * limit
+    assert largest_word["noise +"] < 0.5 * limit
+
+
+def extremes_headroom(config):
+    return config.depth_limit_px / config.depth_range_px
+
+
+def test_a_row_that_is_not_as_it_must_be_is_named():
+    extreme = EXTREMES[0]
+    row = measure(extreme, "tridiagonal", SIZE, "icarus")
+    broken = type(row)(**{**vars(row), "bit_exact": False, "told": True, "wrapped": 3, "registers_agree": False})
+    found = faults(extreme, broken)
+    assert len(found) == 4
+    assert all(line.startswith("all black, tridiagonal: ") for line in found)
+    assert "3 codes wrapped around" in found[-1]
+
+
+def test_the_files_it_leaves(tmp_path):
+    row = model_drift("spectral", SIZE, 16)
+    measured = compliance(Configuration(columns=SIZE), 32)
+    extremes.write(tmp_path, [row], measured)
+    document = json.loads((tmp_path / "extremes.json").read_text())
+    assert document["extremes"][0]["solver"] == "spectral"
+    with (tmp_path / "compliance.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == len(measured) == len(document["compliance"])
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [("N=100", "N=100"), ("SIM=other", "SIM=other"), ("SHORT=2", "SHORT=2"), ("FRAMES=a", "FRAMES=a")],
+)
+def test_bad_input(monkeypatch, capsys, tmp_path, given, named):
+    monkeypatch.setattr("sys.argv", ["extremes", given, f"OUT={tmp_path / 'out'}"])
+    with pytest.raises(SystemExit) as stop:
+        extremes.main()
+    assert stop.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert named in said[0]
+    assert not (tmp_path / "out").exists()

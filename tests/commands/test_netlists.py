@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make netlists` on two small cores: their netlists pass their own testbenches, and a wrong one does not."""
+
+import pytest
+
+from commands.verify import netlists
+
+
+@pytest.mark.parametrize(("core", "dsps"), [("burst_counter", 0), ("twiddle_multiply", 4)])
+def test_a_netlist_is_as_the_rtl(tmp_path, monkeypatch, core, dsps):
+    monkeypatch.setattr(netlists, "OUT", tmp_path)
+    (case,) = netlists.cases([core])
+    result = netlists.run(case, seed=1)
+    assert result.tests > 0
+    assert result.failed == 0
+    assert result.cells.get("DSP48E1", 0) == dsps
+
+
+def test_a_wrong_netlist_is_seen(tmp_path, monkeypatch):
+    monkeypatch.setattr(netlists, "OUT", tmp_path)
+    synthesis = netlists.netlist
+
+    def stuck(case, folder):
+        """Every constant one is a zero."""
+        cells = synthesis(case, folder)
+        file = folder / "netlist.v"
+        text = file.read_text()
+        assert "1'h1" in text
+        file.write_text(text.replace("1'h1", "1'h0"))
+        return cells
+
+    monkeypatch.setattr(netlists, "netlist", stuck)
+    (case,) = netlists.cases(["burst_counter"])
+    assert netlists.run(case, seed=1).failed > 0

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""make reflex: the command comes from the pin, its delays are drawn as stated, wrong pins and bad input are told."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from commands.run import bench, reflex, reflex_pictures
+from commands.study import report
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.latency import last_pixel_to_first_depth
+
+SMALL = ("N=16", "SIM=icarus", "CLOCK_MHZ=0.5", "TRIALS=2")
+TRIALS = 20_000
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("NN=3", "unknown variable"),
+        ("N", "unknown variable"),
+        ("N=100", "power of two"),
+        ("N=1024", "16 to 512"),
+        ("SPEED=fast", "a number from 5 to 200"),
+        ("SPEED=nan", "a number from 5 to 200"),
+        ("TRIALS=1", "a whole number from 2"),
+        ("HOST_TRIALS=2.5", "a whole number"),
+        ("SEED=-1", "a whole number"),
+        ("CLOCK_MHZ=1", "come faster: accepted is 6.554"),
+        ("VIDEO=trial.mp4", "ends in .gif"),
+        ("VIDEO=missing/trial.gif", "folder is missing"),
+    ],
+)
+def test_bad_input(given, says):
+    with pytest.raises(InputError, match=says):
+        reflex.parse([given])
+
+
+def test_an_unknown_simulator(tmp_path):
+    with pytest.raises(InputError, match="SIM=vcs is unknown"):
+        reflex.run(reflex.parse(["SIM=vcs", f"OUT={tmp_path}"]))
+
+
+def test_out_is_a_file(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="is a file: give a folder"):
+        reflex.run(reflex.parse([*SMALL, f"OUT={tmp_path / 'file'}"]))
+
+
+def setup(**changes):
+    return replace(reflex.Setup(speed=20, threshold=0.1, frame=2.5, exposure=0.5, read_out=0.9), **changes)
+
+
+def test_draws_are_those_of_the_seed():
+    first, again, other = (reflex.draw(5, seed, "near") for seed in (1, 1, 2))
+    for name in ("phase", "waiting", "servo", "noise"):
+        np.testing.assert_array_equal(getattr(first, name), getattr(again, name))
+        assert (getattr(first, name) != getattr(other, name)).any()
+    assert (first.phase != reflex.draw(5, 1, "host").phase).any()
+
+
+def test_delays_are_distributed_as_stated():
+    """Mean and standard deviation within five standard errors."""
+    draws = reflex.draw(TRIALS, 3, "host")
+    error = 5 / np.sqrt(TRIALS)
+    assert draws.phase.mean() == pytest.approx(0.5, abs=error / np.sqrt(12))
+    assert draws.phase.std() == pytest.approx(1 / np.sqrt(12), abs=error / np.sqrt(12))
+    shares = np.bincount(draws.waiting) / TRIALS
+    np.testing.assert_allclose(shares, np.full(reflex.DRIVER_BUFFERS, 1 / reflex.DRIVER_BUFFERS), atol=error, rtol=0)
+    found = reflex.times(setup(), draws, np.zeros(TRIALS, int), np.zeros(TRIALS), np.zeros(TRIALS))
+    servo = found.motion - found.command
+    assert servo.mean() == pytest.approx(reflex.SERVO_MS, abs=error * reflex.SERVO_SPREAD_MS)
+    assert servo.std() == pytest.approx(reflex.SERVO_SPREAD_MS, abs=error * reflex.SERVO_SPREAD_MS)
+
+
+def test_a_trial_by_hand():
+    draws = reflex.Draws(np.array([0.4]), np.array([2]), np.array([1.0]), np.array([0]))
+    one = setup(transfer=3)
+    assert one.exposed(0.4, 2) == pytest.approx(6.0)
+    assert one.depth(0.4, 2) == pytest.approx(20e-3 * (6.0 - 0.625))
+    assert one.depth(0.4, -1) == 0
+    assert one.depth(0.4, 1000) == reflex.STOP_MM
+    found = reflex.times(one, draws, np.array([2]), np.array([0.25]), np.array([0.5]))
+    assert found.command[0] == pytest.approx(6.0 + 0.9 * 2.5 + 3 + 2 * 2.5 + 0.25 + 0.5)
+    assert found.motion[0] == pytest.approx(found.command[0] + reflex.SERVO_MS + reflex.SERVO_SPREAD_MS)
+    assert sum(part[0] for part in found.parts.values()) == pytest.approx(found.motion[0])
+
+
+def test_rank_sum():
+    near, host = np.arange(50.0), 60 + np.arange(81.0)
+    assert reflex.rank_sum(near, host)["U"] == 0
+    assert reflex.rank_sum(near, host)["p"] < 1e-20
+    assert reflex.rank_sum(np.array([1.0, 4.0]), np.array([2.0, 3.0]))["U"] == 2  # 4 beats both
+
+
+def test_published_spread():
+    mean, spread = reflex.PUBLISHED["near"]["motion"]
+    assert reflex.within_published({"mean": mean - 0.99 * spread, "sd": spread})
+    assert not reflex.within_published({"mean": mean + 1.01 * spread, "sd": 1})
+    assert not reflex.within_published({"mean": mean, "sd": 1.01 * spread})
+
+
+@pytest.mark.parametrize(
+    ("events", "says"),
+    [
+        ("d 40 b 45 c 47", "2 clocks after the deciding depth"),
+        ("d 40 c 46", "without a depth above the threshold"),
+        ("d 40 b 45", "did not rise after one"),
+        ("d 40", "never rose"),
+        ("d 41 b 45 c 46", "first depth 31 clocks after the last pixel, not 30"),
+    ],
+)
+def test_pins_that_are_wrong(monkeypatch, events, says):
+    monkeypatch.setattr(reflex, "last_pixel_to_first_depth", lambda config: 30)
+    words = f"t 1 t 10 {events}".split()
+    played = bench.Played(
+        np.zeros(0), [(letter, (int(clock),)) for letter, clock in zip(words[::2], words[1::2], strict=True)], {}
+    )
+    sent = [reflex.Sent(0, 2, True)]
+    _, faults = reflex.decisions(played, sent, Configuration(columns=16))
+    assert any(says in fault for fault in faults), faults
+
+
+def test_pins_that_are_right(monkeypatch):
+    monkeypatch.setattr(reflex, "last_pixel_to_first_depth", lambda config: 30)
+    events = [("t", (1,)), ("t", (10,)), ("d", (40,)), ("b", (45,)), ("c", (46,))]
+    found, faults = reflex.decisions(
+        bench.Played(np.zeros(0), events, {}), [reflex.Sent(0, 2, True)], Configuration(columns=16)
+    )
+    assert faults == []
+    assert found == [reflex.Decision(2, 45, 36, 30, 5, 1)]
+
+
+def test_the_loop_on_the_rtl(tmp_path, monkeypatch):
+    """The whole command, small: the command time is the pin's clock, and the clocks do not know the camera's pace."""
+    monkeypatch.setattr(reflex_pictures, "STEP_MS", 1.0)
+    out, film = tmp_path / "out", tmp_path / "trial.gif"
+    reflex.run(reflex.parse([*SMALL, "HOST_TRIALS=3", f"OUT={out}", f"VIDEO={film}"]))
+    assert sorted(path.name for path in out.iterdir()) == ["reflex.json", "reflex.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "trial.gif"]
+    assert Image.open(film).n_frames > 10
+    document = json.loads((out / "reflex.json").read_text())
+
+    request = reflex.parse([*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])
+    draws = reflex.draw(request.trials, request.seed, "near")
+    assert reflex.spacing(request)[0] != reflex.spacing(reflex.parse(SMALL))[0]
+    once = replace(request, trials=1)  # of the same draws
+    faster = reflex.loop(once, setup(threshold=document["threshold_mm"]), draws)
+    for solver, one in zip(COLUMNS, faster, strict=True):
+        assert one.faults == []
+        assert len(one.decisions) == 1
+        first = last_pixel_to_first_depth(Configuration(columns=16, solver=solver))
+        for trial, decision, phase in zip(document["near"][solver]["trials"], one.decisions, draws.phase, strict=False):
+            assert trial["deciding_to_contact"] == reflex.DECIDING_CLOCKS
+            assert trial["last_pixel_to_contact"] == decision.last_pixel_to_contact == first + decision.place + 1
+            # 1 clock is 2 us there; a frame begins when its exposure ends.
+            begin = (phase + trial["frame"]) * 2.5
+            assert trial["command_ms"] == pytest.approx(begin + trial["first_pixel_to_contact"] / 500)
+    assert document["same_frame_by_double_precision"] == 2
+    assert len(document["host"]["trials"]) == 3
+
+    monkeypatch.setattr(reflex, "DEFAULT_OUT", out)  # make report takes what is there
+    section = report.reflex_figure(report.document_of(reflex, "reflex")).section()
+    assert "data:image/png" in section
+    assert "deciding depth to contact" in section

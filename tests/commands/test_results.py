@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results of `make sim`: verdict, warnings, files that replace earlier ones together, refusals of OUT."""
+
+import errno
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+from skimage import io
+
+from commands.common import results, variables
+from commands.run import bench, sim
+from commands.run.compare import compare, warnings
+from tactile_depth.configuration import Configuration
+
+SMALL = ["N=16", "SIM=icarus"]
+NAMES = ["depth.npy", "depth.png", "report.json"]
+
+
+def run(monkeypatch, capsys, *words):
+    """Run `make sim` as the command line does; returns its exit status, its output and the lines on stderr."""
+    monkeypatch.setattr("sys.argv", ["sim", *words])
+    with pytest.raises(SystemExit) as ended:
+        sim.main()
+    output = capsys.readouterr()
+    return ended.value.code, output.out, output.err.splitlines()
+
+
+def content(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def alter(monkeypatch, change):
+    """Have the simulation return codes that `change` has altered in place."""
+    play = bench.play
+
+    def altered(*arguments, **options):
+        played = play(*arguments, **options)
+        change(played.codes)
+        return played
+
+    monkeypatch.setattr(bench, "play", altered)
+
+
+# Codes that differ.
+
+
+@pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
+def test_differing_codes_are_counted_and_the_first_is_named(tmp_path, monkeypatch, capsys, solver):
+    left = {"spectral": 12, "tridiagonal": 15 - 12}[solver]  # the row as it leaves; the tridiagonal solver begins below
+
+    def change(codes):
+        frames = codes.reshape(6, 16, 16)  # two frames, three times
+        frames[3, left, 5] += 7
+        frames[4, :] -= 1
+
+    alter(monkeypatch, change)
+    np.save(tmp_path / "two.npy", np.random.default_rng(1).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8))
+    words = [
+        *SMALL,
+        f"SOLVER={solver}",
+        "REPEAT=3",
+        "CALIBRATION=synthetic",
+        f"FRAMES={tmp_path / 'two.npy'}",
+        f"OUT={tmp_path / 'out'}",
+    ]
+    status, output, lines = run(monkeypatch, capsys, *words)
+    code = np.load(tmp_path / "out" / "depth.npy")[3, 12, 5]
+    assert status == 1
+    assert lines == []
+    assert (
+        f"RTL differs from the model in 257 of 1,536 codes; first at frame 3, row 12, column 5: {code}, expected "
+        f"{code - 7}. Frames, rows and columns count from 0.\n"
+    ) in output
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert report["differing_codes"] == 257
+    assert not report["bit_exact"]
+
+
+def test_equal_codes_are_counted(tmp_path, monkeypatch, capsys):
+    status, output, _ = run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'out'}")
+    assert status == 0
+    assert "RTL equals the model on every code: 256 codes in 1 frames\n" in output
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert report["differing_codes"] == 0
+    assert report["warnings"] == []
+
+
+def test_the_first_differing_code_is_the_first_in_depth_npy():
+    expected = np.arange(24).reshape(2, 3, 4)
+    codes = np.stack([expected, expected])
+    codes[1, 0, 2, 1] = -1
+    codes[1, 1, 0, 0] = -2
+    assert compare(codes, expected).sentence() == (
+        "RTL differs from the model in 2 of 48 codes; first at frame 2, row 2, column 1: -1, expected 9. "
+        "Frames, rows and columns count from 0."
+    )
+
+
+def red(picture):
+    return np.count_nonzero((picture[..., 0] > 240) & (picture[..., 1:3] < 20).all(axis=-1))
+
+
+def test_the_picture_marks_differing_codes_in_any_frame(tmp_path, monkeypatch, capsys):
+    np.save(tmp_path / "grey.npy", np.full((8, 16, 16, 3), 128, np.uint8))
+    words = [*SMALL, f"FRAMES={tmp_path / 'grey.npy'}", "CALIBRATION=synthetic", f"OUT={tmp_path / 'out'}"]
+    run(monkeypatch, capsys, *words)
+    assert red(io.imread(tmp_path / "out" / "depth.png")) == 0
+
+    def change(codes):
+        codes.reshape(8, 16, 16)[7, 3, 3] += 1  # beyond the frames that are drawn otherwise
+
+    alter(monkeypatch, change)
+    run(monkeypatch, capsys, *words)
+    assert red(io.imread(tmp_path / "out" / "depth.png")) > 0
+
+
+# Warnings.
+
+
+def test_a_large_error_gives_a_warning(tmp_path, monkeypatch, capsys):
+    words = [*SMALL, "DATA_WIDTH=12", "FRAMES=contacts", "DEPTH_RANGE=100", f"OUT={tmp_path / 'out'}"]
+    status, _, lines = run(monkeypatch, capsys, *words)
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    mean = np.mean([error for error in report["rms_percent_of_peak"] if error is not None])
+    assert status == 0
+    assert lines == [f"make sim: warning: {line}" for line in report["warnings"]]
+    assert len(lines) == 1
+    assert f"mean RMS error is {mean:.2f} % of peak, above 1 %" in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("widths", "error", "clips", "line"),
+    [
+        ((12, 18), 7.84, {}, "words of 12 bits are too short for this grid; try DATA_WIDTH=16"),
+        ((12, 18), 7.84, {"node": 3}, "values saturate; give a larger DEPTH_RANGE"),
+        ((24, 18), 7.84, {}, "give a larger DATA_WIDTH or COEFF_WIDTH"),
+    ],
+)
+def test_a_warning_names_what_reduces_the_error(widths, error, clips, line):
+    config = Configuration(columns=16, data_width=widths[0], coefficient_width=widths[1])
+    assert warnings(config, [error, None], clips) == [f"the mean RMS error is {error:.2f} % of peak, above 1 %: {line}"]
+    assert warnings(config, [1.0, None], clips) == []
+    assert warnings(config, [None], clips) == []
+
+
+# OUT that cannot be used: exit status 2, one line, nothing written.
+
+
+def _link(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    return tmp_path / "link"
+
+
+def _file(tmp_path):
+    (tmp_path / "file").touch()
+    return tmp_path / "file"
+
+
+def _holding_a_folder(tmp_path):
+    (tmp_path / "out" / "depth.png").mkdir(parents=True)
+    return tmp_path / "out"
+
+
+BAD_OUT = {
+    "300 characters": (lambda t: t / ("x" * 300), "File name too long"),
+    "5,000 characters": (lambda t: t.joinpath(*["y" * 200] * 25), "File name too long"),
+    "a dangling link": (_link, "is a link to"),
+    "a file": (_file, "is a file: give a folder"),
+    "below a file": (lambda t: _file(t) / "out", "Not a directory"),
+    "depth.png is a folder": (_holding_a_folder, "depth.png in it is a folder"),
+    "in /proc": (lambda t: "/proc/out", "cannot be written"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_OUT)
+def test_an_out_that_cannot_be_used_is_refused(tmp_path, monkeypatch, capsys, case):
+    place, reason = BAD_OUT[case]
+    out = place(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    status, _, lines = run(monkeypatch, capsys, *SMALL, f"OUT={out}")
+    assert status == 2
+    assert len(lines) == 1, lines
+    assert lines[0].startswith("make sim: OUT=")
+    assert reason in lines[0]
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("text", ["a\0b", "\ud800"], ids=["NUL", "half a character"])
+@pytest.mark.parametrize("name", ["OUT", "FRAMES", "REFERENCE", "CALIBRATION", "FLOOR", "SOLVER", "AT"])
+def test_a_configuration_file_with_a_character_that_no_path_holds_is_refused(tmp_path, monkeypatch, capsys, name, text):
+    (tmp_path / "c.json").write_text(json.dumps({name: text}))
+    status, _, lines = run(monkeypatch, capsys, *SMALL, f"CONFIG={tmp_path / 'c.json'}")
+    assert status == 2
+    assert len(lines) == 1
+    assert f"{name} is {json.dumps(text)}: it holds a character that no path can hold" in lines[0]
+
+
+@pytest.mark.parametrize("word", ["AT=0,nan", "AT=nan,0", "AT=inf,0", "AT=0,-inf"])
+def test_a_position_is_finite(monkeypatch, capsys, word):
+    status, _, lines = run(monkeypatch, capsys, *SMALL, word)
+    assert status == 2
+    assert lines == [f"make sim: {word}: accepted is x,y in mm from the middle of the frame, as 2.5,-1"]
+
+
+NUMBERS = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "PRESS", "NOISE", "REPEAT", "SEED", "GAPS")
+
+
+@pytest.mark.parametrize("name", [*NUMBERS, "STALLS", "WAVES"])
+@pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e999"])
+def test_every_number_is_finite(monkeypatch, capsys, name, value):
+    status, _, lines = run(monkeypatch, capsys, *SMALL, f"{name}={value}")
+    assert status == 2
+    assert len(lines) == 1
+    assert lines[0].startswith(f"make sim: {name}={value}: accepted is a")
+
+
+# Results replace earlier ones together.
+
+
+@pytest.fixture
+def earlier(tmp_path, monkeypatch, capsys):
+    """A folder with results of a run, and a file of somebody else."""
+    out = tmp_path / "out"
+    assert run(monkeypatch, capsys, *SMALL, f"OUT={out}")[0] == 0
+    (out / "notes.txt").write_text("mine")
+    (out / "mine.vcd").write_text("mine")
+    return out
+
+
+NO_SPACE = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "depth.npy")
+
+
+@pytest.mark.parametrize("failing", range(6))  # three moves aside, three moves in
+def test_a_move_that_fails_brings_earlier_results_back(tmp_path, monkeypatch, capsys, earlier, failing):
+    before = content(earlier)
+    replace, moves = os.replace, []
+
+    def full(source, target):
+        moves.append(target)
+        if len(moves) == failing + 1:
+            raise NO_SPACE
+        replace(source, target)
+
+    monkeypatch.setattr(results.os, "replace", full)
+    status, _, lines = run(monkeypatch, capsys, *SMALL, "SOLVER=tridiagonal", f"OUT={earlier}")
+    assert status == 3
+    assert lines == ["make sim: depth.npy: No space left on device"]
+    assert content(earlier) == before
+
+
+@pytest.mark.parametrize("fresh", [True, False], ids=["no results before", "results before"])
+def test_a_write_that_fails_leaves_nothing_new(tmp_path, monkeypatch, capsys, earlier, fresh):
+    out = tmp_path / "missing" / "new" if fresh else earlier
+    before = sorted(tmp_path.rglob("*")), content(earlier)
+
+    def full(*_):
+        raise OSError("4096 requested and 0 written")  # numpy's words for a full disk
+
+    monkeypatch.setattr(sim.np, "save", full)
+    status, _, lines = run(monkeypatch, capsys, *SMALL, f"OUT={out}")
+    assert status == 3
+    assert lines == ["make sim: 4096 requested and 0 written"]
+    assert (sorted(tmp_path.rglob("*")), content(earlier)) == before
+
+
+def test_a_full_disk_ends_with_one_line(tmp_path, monkeypatch, capsys):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk]
+    if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("a file system of 64 KiB cannot be mounted here")
+    try:
+        status, _, lines = run(monkeypatch, capsys, *SMALL, "REPEAT=100", f"OUT={disk / 'out'}")
+        assert status == 3
+        assert len(lines) == 1, lines
+        assert list(disk.iterdir()) == []
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_results_can_be_the_root_of_a_file_system(tmp_path, monkeypatch, capsys):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "tmpfs", disk]
+    if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("a file system cannot be mounted here")
+    try:
+        assert run(monkeypatch, capsys, *SMALL, f"OUT={disk}")[0] == 0
+        assert sorted(content(disk)) == NAMES
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_a_link_to_a_folder_is_followed(tmp_path, monkeypatch, capsys):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    assert run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'link'}")[0] == 0
+    assert sorted(content(tmp_path / "real")) == NAMES
+
+
+def test_waveforms_of_an_earlier_run_go_and_other_files_stay(monkeypatch, capsys, earlier):
+    others = ["mine.vcd", "notes.txt"]
+    assert run(monkeypatch, capsys, *SMALL, "WAVES=1", f"OUT={earlier}")[0] == 0
+    assert sorted(content(earlier)) == sorted([*NAMES, *others, "frame_bench.fst"])
+    assert json.loads((earlier / "report.json").read_text())["waves"] == ["frame_bench.fst"]
+    assert run(monkeypatch, capsys, *SMALL, f"OUT={earlier}")[0] == 0
+    assert sorted(content(earlier)) == sorted([*NAMES, *others])
+
+
+@pytest.mark.parametrize(
+    "report", ['{"waves": ["../outside.vcd", "notes.txt", 3]}', "[]", "no JSON", '{"waves": "mine.vcd"}', "{}"]
+)
+def test_a_report_of_something_else_removes_nothing(tmp_path, monkeypatch, capsys, earlier, report):
+    (tmp_path / "outside.vcd").touch()
+    (earlier / "report.json").write_text(report)
+    assert run(monkeypatch, capsys, *SMALL, f"OUT={earlier}")[0] == 0
+    assert sorted(content(earlier)) == sorted([*NAMES, "mine.vcd", "notes.txt"])
+    assert (tmp_path / "outside.vcd").exists()
+
+
+def test_a_simulation_that_fails_has_status_3(tmp_path, monkeypatch, capsys):
+    def crash(*_, **__):
+        raise RuntimeError("the simulation failed: see simulation.log")
+
+    monkeypatch.setattr(bench, "play", crash)
+    status, _, lines = run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'out'}")
+    assert status == variables.FAILURE
+    assert lines == ["make sim: the simulation failed: see simulation.log"]
+    assert list(tmp_path.iterdir()) == []

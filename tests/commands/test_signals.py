@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""SIGINT, SIGTERM and SIGHUP end a command: one line, its child processes and its temporary folder gone."""
+
+import contextlib
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from commands.common import signals, variables
+from commands.common.repository import ROOT
+
+ENDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated by SIGTERM", signal.SIGHUP: "terminated by SIGHUP"}
+LONG = ["N=64", "SIM=icarus", "REPEAT=1000"]  # minutes
+WAIT_S = 60
+
+
+def started(command, folder):
+    """Start a command in a session of its own, with signals as a terminal leaves them."""
+
+    def defaults():
+        for number in ENDS:
+            signal.signal(number, signal.SIG_DFL)
+
+    models = str(ROOT / "models")
+    outside = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}  # a build sets some
+    return subprocess.Popen(
+        command,
+        cwd=folder,
+        env=outside | {"PYTHONPATH": os.pathsep.join([str(ROOT), models])},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=defaults,
+    )
+
+
+def members(session):
+    """Command lines of the living processes of a session."""
+    found = {}
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            if fields[0] != "Z" and int(fields[3]) == session:
+                found[int(entry.name)] = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+    return found
+
+
+def wait_for(condition, what):
+    deadline = time.monotonic() + WAIT_S
+    while not condition():
+        assert time.monotonic() < deadline, f"{what} did not come within {WAIT_S} s"
+        time.sleep(0.05)
+
+
+def wait_for_the_simulator(process):
+    """Wait until vvp runs; fail with what the command wrote if it ends before."""
+
+    def running():
+        assert process.poll() is None, process.stderr.read()
+        return any("vvp" in line for line in members(process.pid).values())
+
+    wait_for(running, "the simulator")
+
+
+@pytest.mark.parametrize("number", ENDS, ids=lambda number: number.name)
+def test_a_signal_ends_the_command(tmp_path, number):
+    process = started([sys.executable, "-m", "commands", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], ROOT)
+    wait_for_the_simulator(process)
+    os.kill(process.pid, number)
+    _, said = process.communicate(timeout=WAIT_S)
+    assert process.returncode == 128 + number
+    assert said == f"make sim: {ENDS[number]}\n"
+    assert members(process.pid) == {}
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def makefile(tmp_path):
+    """A folder with the Makefile, whose virtual environment is complete and runs the Python of this test."""
+    folder = tmp_path / "place"
+    python = folder / ".venv" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} "$@"\n')
+    python.chmod(0o755)
+    shutil.copy(ROOT / "Makefile", folder)
+    for requirements in ROOT.glob("requirements*.txt"):
+        (folder / requirements.name).touch()
+    (folder / ".venv" / "complete").touch()
+    return folder
+
+
+@pytest.mark.parametrize("number", ENDS, ids=lambda number: number.name)
+def test_a_signal_to_the_terminal_ends_make_and_its_command(tmp_path, makefile, number):
+    process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
+    wait_for_the_simulator(process)
+    os.killpg(process.pid, number)
+    _, said = process.communicate(timeout=WAIT_S)
+    assert process.returncode != 0
+    assert [line for line in said.splitlines() if not line.startswith("make: ***")] == [f"make sim: {ENDS[number]}"]
+    wait_for(lambda: members(process.pid) == {}, "the end of every process")
+    assert list(tmp_path.iterdir()) == [makefile]
+
+
+def test_a_signal_to_make_alone_ends_its_command(tmp_path, makefile):
+    process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
+    wait_for_the_simulator(process)
+    os.kill(process.pid, signal.SIGTERM)
+    _, said = process.communicate(timeout=WAIT_S)
+    assert process.returncode != 0
+    assert "make sim: terminated by SIGTERM\n" in said
+    wait_for(lambda: members(process.pid) == {}, "the end of every process")
+    assert list(tmp_path.iterdir()) == [makefile]
+
+
+def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path):
+    process = started([sys.executable, "-X", "importtime", "-m", "commands", "sim"], ROOT)
+    lines = []
+    while "numpy" not in (line := process.stderr.readline()):
+        lines.append(line)
+    os.kill(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=WAIT_S)
+    assert process.returncode == 130
+    assert [line for line in said.splitlines() if not line.startswith("import time:")] == ["make sim: interrupted"]
+
+
+def test_an_ignored_signal_stays_ignored():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with signals.stoppable():
+            os.kill(os.getpid(), signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_second_signal_does_not_cut_the_cleaning_up_short():
+    cleaned = []
+
+    def command():
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(WAIT_S)
+        finally:
+            os.kill(os.getpid(), signal.SIGTERM)
+            cleaned.append(True)
+
+    with pytest.raises(SystemExit) as ended, variables.reported("sim"):
+        command()
+    assert ended.value.code == 128 + signal.SIGTERM
+    assert cleaned == [True]
+
+
+def test_handlers_come_back():
+    before = [signal.getsignal(number) for number in ENDS]
+    with signals.stoppable():
+        assert [signal.getsignal(number) for number in ENDS] != before
+    assert [signal.getsignal(number) for number in ENDS] == before
+
+
+def test_grandchildren_end_and_those_that_ignore_sigterm_too():
+    inner = (
+        "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('up', flush=True); time.sleep(99)"
+    )
+    outer = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {inner!r}])"
+    with subprocess.Popen([sys.executable, "-c", outer], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "up\n"
+        assert len(signals.children()) == 2
+        signals.end_children()
+        assert signals.children() == []
+        assert process.wait(WAIT_S) == -signal.SIGTERM
+
+
+def test_calls_of_a_pool_that_have_not_begun_are_cancelled():
+    running, calls = threading.Event(), []
+
+    def call(number):
+        calls.append(number)
+        running.set()
+        subprocess.run(["sleep", str(WAIT_S)], check=False)
+
+    def command():
+        with signals.threads(1) as pool:
+            for number in range(3):
+                pool.submit(call, number)
+            running.wait()
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(WAIT_S)
+
+    begun = time.monotonic()
+    with pytest.raises(SystemExit), variables.reported("lint"):
+        command()
+    assert calls == [0]
+    assert signals.children() == []
+    assert time.monotonic() - begun < WAIT_S / 2

@@ -1,0 +1,418 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make sim` as a user runs it: results, bars, files it leaves, and what it says to bad input."""
+
+import json
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from skimage import io
+
+from commands.run import sim
+from commands.run.draw import painted
+from commands.run.flags import Flags
+from tactile_depth.calibration.auto_zero import auto_zero
+from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.samples import sample
+from tactile_depth.sensor import load
+from tb.stream import REGRESS
+
+PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
+
+
+def run(tmp_path, *arguments):
+    """Run `make sim` into tmp_path/out; returns the report. It must be bit-exact."""
+    out = tmp_path / "out"
+    assert sim.run(sim.parse([*arguments, f"OUT={out}"])) == 0
+    assert sorted(p.name for p in out.iterdir()) == ["depth.npy", "depth.png", "report.json"]
+    assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
+    return json.loads((out / "report.json").read_text())
+
+
+def only(values):
+    """The one value that a list repeats."""
+    assert len(set(values)) == 1, f"not constant: {sorted(set(values))}"
+    return values[0]
+
+
+@pytest.mark.parametrize("solver", COLUMNS)
+@pytest.mark.parametrize("size", [64, 128, 256])
+def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
+    if simulator == "icarus" and size > 64 and not REGRESS:
+        pytest.skip("REGRESS=1 is not set (make regress sets it): up to a minute; Verilator runs the same")
+    report = run(tmp_path, f"N={size}", f"SIM={simulator}", f"SOLVER={solver}")
+    assert report["bit_exact"]
+    assert report["registers_agree"]
+    latency = first_depth_latency(Configuration(columns=size, solver=solver))
+    assert only(report["first_depth_latency_cycles"]) == latency
+    bar = 2 * size**2 + 16 * size if solver == "spectral" else size**2 + 8 * size + 64
+    assert latency <= bar < PUBLISHED_FIRST_DEPTH[size]
+    if solver == "tridiagonal":
+        assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * size + 64
+
+
+@pytest.mark.parametrize("boundary", sim.BOUNDARIES)
+@pytest.mark.parametrize(("rows", "columns", "chosen"), [(8, 16, "icarus"), (240, 256, "verilator")])
+def test_rectangles(tmp_path, rows, columns, boundary, chosen):
+    if rows == 240 and not REGRESS:
+        pytest.skip("REGRESS=1 is not set (make regress sets it): a large build; the small one runs here")
+    given = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
+    report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
+    assert report["grid"] == [rows, columns]
+    assert only(report["frame_interval_cycles"][1:]) == rows * columns
+    assert np.load(tmp_path / "out" / "depth.npy").shape == (8, rows, columns)
+    assert max(error for error in report["rms_percent_of_peak"] if error is not None) <= 0.06
+
+
+def test_rows_are_in_the_order_of_the_input(tmp_path):
+    depth = {}
+    for solver in COLUMNS:
+        report = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
+        depth[solver] = np.load(tmp_path / "out" / "depth.npy") * report["depth_lsb_mm"]
+    np.testing.assert_allclose(depth["spectral"], depth["tridiagonal"], atol=1e-3 * depth["spectral"].max())
+
+
+@pytest.mark.skipif(not REGRESS, reason="REGRESS=1 is not set (make regress sets it): test_extremes.py runs it once")
+def test_the_largest_grid(tmp_path):
+    report = run(tmp_path, "N=1024", "SOLVER=tridiagonal")
+    assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * 1024 + 64
+
+
+# The bars in % of peak; Neumann twice that.
+@pytest.mark.parametrize(
+    ("solver", "boundary", "size", "data_width", "percent"),
+    [
+        ("spectral", "dirichlet", 64, 24, 0.005),
+        ("spectral", "dirichlet", 128, 24, 0.005),
+        ("spectral", "dirichlet", 256, 24, 0.02),
+        ("spectral", "neumann", 128, 24, 0.01),
+        ("tridiagonal", "dirichlet", 64, 24, 0.005),
+        ("tridiagonal", "dirichlet", 128, 24, 0.005),
+        ("tridiagonal", "dirichlet", 128, 27, 0.001),
+        ("tridiagonal", "neumann", 128, 24, 0.01),
+        ("tridiagonal", "neumann", 128, 27, 0.002),
+        ("tridiagonal", "dirichlet", 512, 27, 0.01),
+    ],
+)
+def test_accuracy_and_rate(tmp_path, solver, boundary, size, data_width, percent):
+    if size == 512 and not REGRESS:
+        pytest.skip("REGRESS=1 is not set (make regress sets it): a build and a model of 2 million pixels")
+    chosen = [f"SOLVER={solver}", f"BOUNDARY={boundary}", f"DATA_WIDTH={data_width}"]
+    report = run(tmp_path, f"N={size}", "FRAMES=contacts", *chosen)
+    latency = first_depth_latency(Configuration(columns=size, solver=solver))
+    assert len(report["rms_percent_of_peak"]) >= 6
+    assert np.mean(report["rms_percent_of_peak"]) <= percent
+    assert max(report["rms_percent_of_peak"]) <= 3 * percent
+    assert only(report["first_depth_latency_cycles"]) == latency
+    assert only(report["frame_interval_cycles"][1:]) == size**2
+    assert report["frame_interval_cycles"][0] is None
+    assert report["saturations"] == {}
+    assert all(contact > latency for contact in report["contact_latency_cycles"])
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    assert codes.dtype == np.int32
+    assert codes.shape == (8, size, size)
+
+
+@pytest.mark.parametrize("solver", COLUMNS)
+@pytest.mark.parametrize("disturbance", [["GAPS=0.3"], ["STALLS=0.3"], ["GAPS=0.3", "STALLS=0.3"]])
+def test_gaps_and_stalls(tmp_path, disturbance, solver):
+    quiet = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    report = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}", *disturbance)
+    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), codes)
+    if disturbance == ["GAPS=0.3"]:
+        expected = last_pixel_to_first_depth(Configuration(columns=64, solver=solver))
+        assert only(report["last_pixel_to_first_depth_cycles"]) == expected
+        assert only(quiet["last_pixel_to_first_depth_cycles"]) == expected
+
+
+def test_repeat_keeps_every_latency(tmp_path):
+    report = run(tmp_path, "N=64", "REPEAT=20", "FRAMES=seal")
+    assert report["frames"] == 20
+    for latency in ("first_depth", "last_depth", "last_pixel_to_first_depth", "contact"):
+        key = f"{latency}_cycles" if latency.startswith("last_pixel") else f"{latency}_latency_cycles"
+        only(report[key])
+    assert np.load(tmp_path / "out" / "depth.npy").shape == (20, 64, 64)
+
+
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path, solver):
+    assert run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}")["saturations"] == {}
+
+
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path, solver):
+    deepest = 16 * 15.232 / 64  # mm: the peak of `deep` at N = 64, a quarter of the grid
+    report = run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}", f"DEPTH_RANGE={deepest / 2.05}")
+    assert sum(report["saturations"].values()) > 0
+    assert report["registers_agree"]  # the hardware counted the same number
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    assert codes.max() == 2**23 - 1, "the peak must stay at full scale"
+    assert codes[0, 28:36, 28:36].min() > 2**22, "a wrapped code shows as a hole in the peak"
+
+
+def test_flat_gel_reads_nothing(tmp_path):
+    report = run(tmp_path, "N=16", "FRAMES=flat")
+    assert report["rms_percent_of_peak"] == [None]
+    assert report["contact_latency_cycles"] == [None]
+
+
+def test_waves(tmp_path, simulator):
+    if simulator == "verilator" and not REGRESS:
+        pytest.skip("REGRESS=1 is not set (make regress sets it): it compiles all of Verilator's runtime again")
+    out = tmp_path / "out"
+    assert sim.run(sim.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
+    assert [p for p in out.iterdir() if p.suffix in (".vcd", ".fst") and p.stat().st_size]
+
+
+def test_pictures_with_a_reference(tmp_path):
+    rng = np.random.default_rng(1)
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    background = rng.integers(90, 110, (48, 64, 3)).astype(np.uint8)
+    io.imsave(tmp_path / "background.png", background, check_contrast=False)
+    for name in ("2.png", "12.png"):
+        frame = background.copy()
+        frame[16:32, 24:40, 0] += 30
+        io.imsave(folder / name, frame, check_contrast=False)
+    report = run(
+        tmp_path,
+        "N=32",
+        f"FRAMES={folder}",
+        f"REFERENCE={tmp_path / 'background.png'}",
+        "CALIBRATION=gelsight-mini",
+    )
+    assert report["frames"] == 2
+    assert report["pixel_pitch_mm"] == pytest.approx(240 / 32 * load("gelsight-mini").pixel_pitch_mm)
+
+
+def _press(tmp_path, name="ball"):
+    """Variables that give a drawn press, its reference and its calibration."""
+    drawn = sample(name)
+    drawn.sensor.save(tmp_path / "sensor.npz")
+    for file, image in (("press.png", drawn.image), ("background.png", drawn.reference)):
+        io.imsave(tmp_path / file, image, check_contrast=False)
+    given = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
+    small = ["ROWS=24", "COLS=32", "SOLVER=tridiagonal", "BOUNDARY=neumann", "SIM=icarus"]
+    return [*small, *(f"{key}={tmp_path / file}" for key, file in given.items())]
+
+
+def test_the_rtl_computes_what_the_python_interface_returns(tmp_path):
+    """Depth in mm is codes times unit, and the codes are those of the RTL."""
+    report = run(tmp_path, *_press(tmp_path), f"FLOOR={tmp_path / 'background.png'}")
+    drawn = sample("ball")
+    result = Pipeline(drawn.sensor, drawn.reference, grid=(24, 32))(drawn.image)
+    codes = np.load(tmp_path / "out" / "depth.npy")[0]
+    np.testing.assert_array_equal(result.codes, codes)
+    np.testing.assert_array_equal(result.depth_mm, codes * report["depth_lsb_mm"])
+
+
+def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path):
+    given = _press(tmp_path)
+    report = run(tmp_path, *given)
+    codes = np.load(tmp_path / "out" / "depth.npy")
+    for name in ("press.png", "background.png"):
+        io.imsave(tmp_path / name, io.imread(tmp_path / name).repeat(2, 0).repeat(2, 1), check_contrast=False)
+    twice = run(tmp_path, *given)
+    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), codes)
+    assert twice["depth_lsb_mm"] == report["depth_lsb_mm"]
+
+
+def test_dark_pixels_are_reported_and_warned_of(tmp_path, capsys):
+    given = _press(tmp_path)
+    assert run(tmp_path, *given)["dark_pixels"] == [0]
+    background = io.imread(tmp_path / "background.png")
+    background[:80, :80] = 0
+    io.imsave(tmp_path / "background.png", background, check_contrast=False)
+    report = run(tmp_path, *given)
+    assert 64 <= report["dark_pixels"][0] <= 81  # the gains of neighbouring blocks are interpolated
+    assert any("pixels are dark in REFERENCE" in line for line in report["warnings"])
+    assert "pixels are dark in REFERENCE" in capsys.readouterr().err
+
+
+def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(tmp_path, capsys):
+    given = _press(tmp_path)
+    assert run(tmp_path, *given)["slopes_outside_calibration"] == [0]
+    replace(sample("ball").sensor, fitted_slope={"quadratic": 0.4}).save(tmp_path / "sensor.npz")
+    report = run(tmp_path, *given)
+    assert report["slopes_outside_calibration"][0] > 10
+    assert any("steeper than any in the fit" in line for line in report["warnings"])
+    assert "steeper than any in the fit" in capsys.readouterr().err
+
+
+def test_flagged_pixels_are_painted():
+    frame = np.full((2, 3, 3), 50, np.uint8)
+    dark, outside = np.zeros((1, 2, 3), bool), np.zeros((1, 2, 3), bool)
+    dark[0, 0, 0] = outside[0, 1, 2] = True
+    picture = painted(frame, Flags(dark, outside), 0)
+    assert picture[0, 0].tolist() == [255, 0, 255]
+    assert picture[1, 2].tolist() == [255, 165, 0]
+    assert (np.delete(picture.reshape(6, 3), (0, 5), axis=0) == 50).all()
+    assert (frame == 50).all()
+
+
+@pytest.mark.parametrize("solver", sim.SOLVERS)
+def test_a_floor_is_subtracted(tmp_path, solver):
+    """The mean depth of two frames without contact, in the RTL and in double precision."""
+    rest = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
+    every = _npy(tmp_path / "every.npy", np.concatenate((rest, rest[:1, ::-1])))
+    chosen = ["N=16", "BOUNDARY=neumann", f"SOLVER={solver}", f"FRAMES={every}", "SIM=icarus"]
+    chosen.append("CALIBRATION=synthetic")
+    report = run(tmp_path, *chosen, f"FLOOR={_npy(tmp_path / 'rest.npy', rest)}")
+    assert report["auto_zero"]
+    down = -1 if solver == "tridiagonal" else 1  # blocks are counted as depth leaves
+    zeroed = np.load(tmp_path / "out" / "depth.npy")[:, ::down]
+    run(tmp_path, *chosen)
+    solved = np.load(tmp_path / "out" / "depth.npy")[:, ::down].astype(np.int64)
+    config = Configuration(columns=16, solver=solver, neumann=True, auto_zero=True)
+    assert np.array_equal(zeroed, auto_zero(solved, captured_floor(solved[:2], config), config))
+
+
+def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path):
+    given = _config(
+        tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
+    )
+    request = sim.parse([given, "DATA_WIDTH=22", "SEED="])
+    assert (request.rows, request.columns, request.solver, request.data_width) == (24, 32, "tridiagonal", 22)
+    assert request.press.at_mm == (1, 0)
+    square = sim.parse([given, "N=64"])
+    assert (square.rows, square.columns, square.data_width) == (64, 64, 20)
+
+
+# Bad input: one line that names what was given, exit status 2, nothing left behind.
+
+
+def _npy(path, array):
+    np.save(path, array)
+    return path
+
+
+def _calibration(path, **change):
+    camera = {"format_version": 2, "camera_size": (48, 64), "pixel_format": "rgb888", "black_level": 0.0}
+    table = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.1, "exposure_us": np.nan, "flat_field": True}
+    np.savez(path, **{key: value for key, value in {**camera, **table, **change}.items() if value is not None})
+    return path
+
+
+def _picture(path, rows, columns, level=100):
+    io.imsave(path, np.full((rows, columns, 3), level, np.uint8), check_contrast=False)
+    return path
+
+
+def _config(path, text):
+    path.write_text(text)
+    return f"CONFIG={path}"
+
+
+def _cut(path):
+    path.write_bytes(path.read_bytes()[:300])
+    return path
+
+
+def _mixed(folder):
+    folder.mkdir()
+    for name, rows in (("1.png", 16), ("2.png", 20)):
+        io.imsave(folder / name, np.zeros((rows, 16, 3), np.uint8), check_contrast=False)
+    return folder
+
+
+BAD_INPUT = {
+    "shape": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16), np.uint8))} CALIBRATION=synthetic",
+    "type": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.float32))} CALIBRATION=synthetic",
+    "truncated frames": lambda t: (
+        f"FRAMES={_cut(_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.uint8)))} CALIBRATION=synthetic"
+    ),
+    "small frames": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 8, 16, 3), np.uint8))} CALIBRATION=synthetic",
+    "mixed frames": lambda t: f"FRAMES={_mixed(t / 'mixed')} CALIBRATION=synthetic",
+    "unknown scene": lambda t: "FRAMES=cube",
+    "a picture without a calibration": lambda t: f"FRAMES={_picture(t / 'a.png', 48, 64)}",
+    "a reference without a calibration": lambda t: f"REFERENCE={_picture(t / 'a.png', 48, 64)}",
+    "a floor without a calibration": lambda t: f"FLOOR={_picture(t / 'a.png', 48, 64)}",
+    "a real sensor without a reference": lambda t: f"CALIBRATION=gelsight-mini FRAMES={_picture(t / 'a.png', 48, 64)}",
+    "a real sensor and a scene": lambda t: "CALIBRATION=gelsight-mini REFERENCE=flat",
+    "a picture of another aspect ratio": lambda t: (
+        f"FRAMES={_picture(t / 'a.png', 48, 60)} CALIBRATION=gelsight-mini REFERENCE={t / 'a.png'}"
+    ),
+    "an old calibration without a camera size": lambda t: (
+        f"CALIBRATION={_calibration(t / 'c.npz', format_version=None)}"
+    ),
+    "a reference too dark to read": lambda t: (
+        f"REFERENCE={_picture(t / 'a.png', 48, 64, 4)} FRAMES={t / 'a.png'} CALIBRATION=gelsight-mini"
+    ),
+    "a camera size with other signs": lambda t: "CAMERA_SIZE=-320x240",
+    "a camera size out of range": lambda t: (
+        f"CAMERA_SIZE=4x4 CALIBRATION={_calibration(t / 'c.npz', format_version=None)}"
+    ),
+    "a camera size with the synthetic sensor": lambda t: "CAMERA_SIZE=320x240",
+    "a camera size that is none": lambda t: "CAMERA_SIZE=320",
+    "a camera size that contradicts the file": lambda t: "CALIBRATION=gelsight-mini CAMERA_SIZE=640x480",
+    "not a power of two": lambda t: "N=100",
+    "N too small": lambda t: "N=8",
+    "N too large": lambda t: "N=1024",
+    "a rectangle for the spectral solver": lambda t: "ROWS=24 COLS=32",
+    "too few rows": lambda t: "ROWS=4 COLS=16 SOLVER=tridiagonal",
+    "columns no power of two": lambda t: "COLS=24 ROWS=16 SOLVER=tridiagonal",
+    "boundary": lambda t: "BOUNDARY=periodic",
+    "N no number": lambda t: "N=big",
+    "solver": lambda t: "SOLVER=multigrid",
+    "simulator": lambda t: "SIM=other",
+    "calibration": lambda t: "CALIBRATION=other",
+    "truncated calibration": lambda t: f"CALIBRATION={_cut(_calibration(t / 'c.npz'))}",
+    "NaN": lambda t: f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), np.nan))}",
+    "unit of slopes": lambda t: f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), 1e6))}",
+    "data width": lambda t: "DATA_WIDTH=33",
+    "coefficient width": lambda t: "COEFF_WIDTH=9",
+    "width and format": lambda t: "DATA_WIDTH=12 N=512",
+    "depth range": lambda t: "DEPTH_RANGE=0",
+    "gaps": lambda t: "GAPS=1",
+    "stalls": lambda t: "STALLS=often",
+    "repeat": lambda t: "REPEAT=0",
+    "a position that is no number": lambda t: "AT=0,nan",
+    "a position without an end": lambda t: "AT=inf,0",
+    "unknown variable": lambda t: "SIZE=16",
+    "no configuration file": lambda t: f"CONFIG={t / 'c.json'}",
+    "configuration that is no JSON": lambda t: _config(t / "c.json", "SOLVER=spectral"),
+    "configuration nested deep": lambda t: _config(t / "c.json", "[" * 60_000),
+    "configuration of a megabyte": lambda t: _config(t / "c.json", "{" + " " * 1_000_000 + "}"),
+    "configuration that is a list": lambda t: _config(t / "c.json", "[24]"),
+    "unknown variable in a configuration": lambda t: _config(t / "c.json", '{"WIDTH": 24}'),
+    "configuration in a configuration": lambda t: _config(t / "c.json", '{"CONFIG": "c.json"}'),
+    "a list in a configuration": lambda t: _config(t / "c.json", '{"DATA_WIDTH": [24]}'),
+    "reference with a scene": lambda t: "REFERENCE=background.png CALIBRATION=synthetic",
+    "no floor": lambda t: f"FLOOR={t / 'rest.png'} CALIBRATION=synthetic",
+    "floor of another camera": lambda t: (
+        f"FLOOR={_npy(t / 'rest.npy', np.zeros((1, 32, 32, 3), np.uint8))} CALIBRATION=synthetic"
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD_INPUT)
+def test_bad_input(tmp_path, monkeypatch, capsys, case):
+    given = BAD_INPUT[case](tmp_path).split()
+    out = tmp_path / "results" / "out"
+    out.mkdir(parents=True)
+    arguments = [*([] if any(a.startswith("N=") for a in given) else ["N=16"]), *given, f"OUT={out}"]
+    monkeypatch.setattr("sys.argv", ["sim", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        sim.main()
+    assert stop.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1, said
+    value = given[0].partition("=")[2]
+    assert os.path.basename(value) in said[0], "the line must name what was given"
+    assert list(out.parent.rglob("*")) == [out], "something was left behind"
+
+
+def test_missing_simulator(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}"])
+    with pytest.raises(SystemExit) as stop:
+        sim.main()
+    assert stop.value.code == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "make sim: SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`"
+    ]

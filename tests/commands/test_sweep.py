@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make sweep`: what it covers, that no row is lost or measured twice, and what it says to bad input."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from commands.common import repository
+from commands.run import sim
+from commands.study import sweep
+from tactile_depth import accuracy
+from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.cost import cost
+from tactile_depth.latency import first_depth_latency
+
+SMALL = [{"columns": 16, "solver": solver, "data_width": width} for solver in COLUMNS for width in (12, 18, 24) * 1] + [
+    {"columns": 16, "neumann": True}
+]
+
+
+def table(folder):
+    with (folder / "sweep.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_plan_is_the_issue_s():
+    rows = [sweep.configuration_cells(choices) for choices in sweep.plan()]
+    assert len({tuple(row.values()) for row in rows}) == len(rows)
+    default = sweep.configuration_cells({})
+    for solver in COLUMNS:
+        mine = [row for row in rows if row["solver"] == solver]
+        plane = {
+            (int(row["data_width"]), int(row["coefficient_width"]))
+            for row in mine
+            if row["columns"] == "128" and row["boundary"] == "dirichlet" and row["depth_range"] == "default"
+        }
+        assert plane == {(d, c) for d in range(12, 33) for c in range(10, 25)}
+        safe = [row for row in mine if row["depth_range"] == "worst"]
+        assert {int(row["data_width"]) for row in safe} == set(range(12, 33))
+        assert Counter(row["boundary"] for row in safe) == {"dirichlet": 21, "neumann": 1}
+        within = [row for row in mine if row["depth_range"] == "default"]
+        others = [row for row in within if (row["columns"], row["boundary"]) != ("128", "dirichlet")]
+        for row in others:  # differ from the default in one thing
+            assert sum(row[name] != default[name] for name in ("columns", "boundary", "data_width")) == 1
+        assert {row["columns"] for row in others} == {"32", "64", "128", "256", "512"}
+        assert Counter(row["boundary"] for row in others)["neumann"] == 1
+
+
+def test_a_range_that_nothing_leaves():
+    row, default = (accuracy.measure({"columns": 32, "depth_range_px": limit}) for limit in (accuracy.WORST, None))
+    assert (row["depth_range"], default["depth_range"]) == ("worst", "default")
+    assert float(row["depth_range_mm"]) > float(default["depth_range_mm"])
+    assert row["saturations"] == "0"
+    assert float(row["rms_percent_mean"]) > float(default["rms_percent_mean"])
+
+
+def test_a_row_holds_what_was_measured():
+    row = accuracy.measure({"columns": 32, "solver": "tridiagonal", "data_width": 20})
+    config = Configuration(columns=32, solver="tridiagonal", data_width=20)
+    assert list(row) == list(sweep.HEADER)
+    assert row["problem"] == ""
+    assert int(row["frames"]) == 15
+    assert 0 < float(row["rms_percent_mean"]) < float(row["rms_percent_worst"]) < float(row["max_percent_worst"]) < 1
+    assert int(row["first_depth_cycles"]) == first_depth_latency(config)
+    assert int(row["multipliers"]) == cost(config).tiles
+    bits = [int(row[name]) for name in ("frame_store_bits", "delay_line_bits", "table_bits", "row_buffer_bits")]
+    assert sum(bits) == int(row["memory_bits"])
+
+
+def test_wider_words_err_less_and_the_sensor_s_share_stays():
+    narrow, wide = (accuracy.measure({"columns": 32, "data_width": width}) for width in (16, 24))
+    assert float(wide["rms_percent_mean"]) < float(narrow["rms_percent_mean"]) / 100
+    for row in (narrow, wide):  # 4 bits of each colour leave a hundredth of a millimetre
+        assert 0.001 < float(row["true_rms_mm_mean"]) < 0.02
+
+
+# The bars of the accuracy over the bench.
+@pytest.mark.parametrize("solver", COLUMNS)
+def test_bench_at_the_default_and_at_twenty_bits(solver):
+    row = accuracy.measure({"solver": solver})
+    assert float(row["rms_percent_mean"]) <= 0.005
+    assert float(row["rms_percent_worst"]) <= 0.015
+    narrow = accuracy.measure({"solver": solver, "data_width": 20})
+    assert float(narrow["rms_percent_mean"]) <= sweep.PUBLISHED_RMS_PERCENT
+
+
+@pytest.mark.parametrize(
+    ("solver", "data_width", "coefficient_width", "boundary"),
+    [("spectral", 14, 10, "neumann"), ("tridiagonal", 32, 24, "dirichlet")],
+)
+def test_a_row_is_what_the_rtl_does(tmp_path, solver, data_width, coefficient_width, boundary):
+    given = [f"SOLVER={solver}", f"DATA_WIDTH={data_width}", f"COEFF_WIDTH={coefficient_width}", f"BOUNDARY={boundary}"]
+    assert sim.run(sim.parse(["N=32", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *given])) == 0
+    seen = json.loads((tmp_path / "out" / "report.json").read_text())
+    choices = {"solver": solver, "data_width": data_width, "coefficient_width": coefficient_width}
+    row = accuracy.measure({"columns": 32, "neumann": boundary == "neumann", **choices})
+    for name in ("rms", "max"):
+        percent = seen[f"{name}_percent_of_peak"]
+        assert float(row[f"{name}_percent_mean"]) == pytest.approx(sum(percent) / len(percent), rel=1e-5)
+        assert float(row[f"{name}_percent_worst"]) == pytest.approx(max(percent), rel=1e-5)
+    assert {int(row["first_depth_cycles"])} == set(seen["first_depth_latency_cycles"])
+    assert {int(row["last_pixel_to_first_depth_cycles"])} == set(seen["last_pixel_to_first_depth_cycles"])
+    assert int(row["saturations"]) == sum(seen["saturations"].values())
+
+
+def test_a_configuration_that_cannot_be_built_is_a_row(tmp_path):
+    (row,) = sweep.sweep([{"columns": 512, "data_width": 12}], tmp_path)
+    assert "data_width=12 cannot hold the formats" in row["problem"]
+    assert row["rms_percent_mean"] == ""
+    assert table(tmp_path) == [row]
+
+
+def test_nothing_is_measured_twice(tmp_path, monkeypatch):
+    first = sweep.sweep(SMALL[:3], tmp_path)
+    before = (tmp_path / "sweep.csv").read_bytes()
+    measured = []
+    monkeypatch.setattr(
+        sweep, "on_all_cores", lambda rows: (measured.append(row) or accuracy.measure(row) for row in rows)
+    )
+    rows = sweep.sweep(SMALL, tmp_path)
+    assert measured == SMALL[3:]
+    assert rows[:3] == first
+    assert (tmp_path / "sweep.csv").read_bytes().startswith(before)
+    assert Counter(map(str, table(tmp_path))) == Counter(map(str, rows))
+
+
+@pytest.mark.parametrize("torn", [b"spectral,dirichlet,16,16,2", b'tridiagonal,dirichlet,16,16,24,18,default,"DATA'])
+def test_a_torn_last_line_is_mended(tmp_path, torn):
+    rows = sweep.sweep(SMALL[:2], tmp_path)
+    path = tmp_path / "sweep.csv"
+    whole = path.read_bytes()
+    path.write_bytes(whole + torn)
+    assert sweep.sweep(SMALL[:2], tmp_path) == rows
+    assert path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("length", [0, 10])
+def test_a_torn_header_is_mended(tmp_path, length):
+    path = tmp_path / "sweep.csv"
+    path.write_bytes(b"solver,boundary,rows,columns"[:length])
+    assert table(tmp_path) == [] and sweep.sweep(SMALL[:1], tmp_path) == table(tmp_path)  # noqa: PT018
+
+
+@pytest.mark.parametrize("moment", ["SIGKILL", "SIGINT"])
+def test_an_interrupted_sweep_goes_on(tmp_path, moment):
+    rows = [{"columns": 64, "data_width": width, "coefficient_width": c} for width in (20, 22) for c in range(10, 20)]
+    script = (
+        "import json, sys; from commands import sweep; "
+        "rows = json.loads(sys.argv.pop()); sweep.plan = lambda: rows; sweep.main()"
+    )
+    environment = {**os.environ, "LOKY_MAX_CPU_COUNT": "1"}
+    command = [sys.executable, "-c", script, f"OUT={tmp_path}", json.dumps(rows)]
+    running = subprocess.Popen(
+        command,
+        cwd=repository.ROOT,
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a suite in the background has it ignored
+    )
+    path = tmp_path / "sweep.csv"
+    deadline = time.monotonic() + 120
+    while not path.is_file() or path.read_bytes().count(b"\n") < 4:
+        assert time.monotonic() < deadline
+        assert running.poll() is None
+        time.sleep(0.01)
+    running.send_signal(getattr(signal, moment))
+    said = running.communicate()[1]
+    if moment == "SIGINT":
+        assert running.returncode == 130
+        assert "every row measured is kept" in said
+    before = path.read_bytes()
+    assert before.count(b"\n") < 1 + len(rows), "it was too quick to be interrupted"
+    subprocess.run(command, cwd=repository.ROOT, env=environment, check=True, capture_output=True)
+    assert path.read_bytes().startswith(before[: before.rfind(b"\n") + 1])
+    names = [tuple(row[name] for name in sweep.CONFIGURATION) for row in table(tmp_path)]
+    assert sorted(names) == sorted(sweep.key(choices) for choices in rows)
+
+
+@pytest.fixture
+def dask_scheduler(tmp_path):
+    """Address of a cluster whose one worker runs elsewhere and has not got the models."""
+    pytest.importorskip("distributed", reason="Dask is not installed: run `make setup`")
+    away = tmp_path / "away"
+    away.mkdir()
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    said = {"cwd": away, "env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    dask = [sys.executable, "-m", "dask"]
+    where = ["--scheduler-file", "scheduler.json"]
+    scheduler = [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", *where]
+    worker = [*dask, "worker", "--nthreads", "1", "--no-dashboard", "--no-nanny", *where]
+    started = [subprocess.Popen(scheduler, **said)]
+    try:
+        deadline = time.monotonic() + 60
+        while not (away / "scheduler.json").is_file():
+            assert time.monotonic() < deadline
+            time.sleep(0.1)
+        started.append(subprocess.Popen(worker, **said))
+        yield json.loads((away / "scheduler.json").read_text())["address"].removeprefix("tcp://")
+    finally:
+        for process in reversed(started):
+            process.terminate()
+            process.wait()
+
+
+def test_a_dask_cluster_measures_the_same(tmp_path, dask_scheduler):
+    here = sweep.sweep(SMALL, tmp_path / "here")
+    assert sweep.sweep(SMALL, tmp_path / "there", dask_scheduler) == here
+
+
+# Bad input: one line that names what was given, exit status 2, earlier results untouched.
+
+
+def _table(folder, change):
+    folder.mkdir()
+    row = accuracy.measure(SMALL[0])
+    (folder / "sweep.csv").write_bytes(change(sweep._line(sweep.HEADER) + sweep._line(tuple(row.values()))))
+    return f"OUT={folder}"
+
+
+BAD_INPUT = {
+    "unknown variable": lambda t: "GRID=64",
+    "no scheduler": lambda t: "DASK_SCHEDULER=127.0.0.1:1",
+    "no address": lambda t: "DASK_SCHEDULER=cluster",
+    "a file for a folder": lambda t: f"OUT={Path(__file__)}",
+    "unwritable": lambda t: "OUT=/proc/sweep",
+    "other models": lambda t: _table(t / "old", lambda b: b.replace(accuracy.VERSION.encode(), b"0" * 12)),
+    "other columns": lambda t: _table(t / "old", lambda b: b.replace(b"boundary", b"edge")),
+    "other models, torn": lambda t: _table(t / "old", lambda b: b.replace(accuracy.VERSION.encode(), b"0" * 12) + b"x"),
+    "a cell too few": lambda t: _table(t / "old", lambda b: b.replace(b",default,", b",")),
+    "no table": lambda t: _table(t / "old", lambda b: b"\x89PNG\r\n\x1a"),
+    "no line end": lambda t: _table(t / "old", lambda b: b"GIF89a"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_INPUT)
+def test_bad_input(tmp_path, monkeypatch, capsys, case):
+    given = BAD_INPUT[case](tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    arguments = [given] if given.startswith("OUT=") else [given, f"OUT={tmp_path / 'out'}"]
+    monkeypatch.setattr(sweep, "CONNECT_S", 1)
+    monkeypatch.setattr("sys.argv", ["sweep", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        sweep.main()
+    assert stop.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1, said
+    assert given.partition("=")[2] in said[0] or given in said[0], "the line must name what was given"
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make synth`: what it counts on a tiny grid, the plain rule of memories, and what it says to bad input."""
+
+import json
+import sys
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from commands.common import repository
+from commands.hardware import synth
+from tactile_depth.configuration import Configuration
+from tactile_depth.cost import cost
+from tactile_depth.sensor import synthetic
+
+TINY = Configuration(columns=16, rows=8, solver="tridiagonal", bits_per_channel=1)
+XCZU7EV = synth.TARGETS["xczu7ev"]
+
+
+def memory(depth, width, style="block"):
+    return synth.Memory("u_ram", depth, width, style, rom=False)
+
+
+def test_memories_and_cores_are_those_of_the_rtl(tmp_path):
+    _, modules = synth.elaborate(TINY, synthetic(TINY.bits_per_channel), tmp_path)
+    found = synth.memories(tmp_path / "design.json")
+    behind_wrapper = Counter((memory.width, memory.depth) for memory in found if memory.style)
+    assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(TINY).memories)
+    assert len({memory.path for memory in found}) == len(found)
+    cores = {synth.path_of(module) for module in synth.kept(modules)}
+    assert {"u_guard", "u_events", "u_registers", "u_solver.u_stack", "u_solver.u_row_forward"} <= cores
+    assert "u_solver" not in cores
+
+
+def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_path):
+    """The mapping to logic on dot_product alone: two DSPs, and nothing beside them."""
+    for source in repository.sources(["dot_product.sv", "multiply.sv"]):
+        (tmp_path / source.name).write_text(source.read_text().replace("module dot_product", f"module {synth.TOP}"))
+    lines = [
+        f"read_slang --threads 1 --top {synth.TOP} dot_product.sv multiply.sv",
+        f"hierarchy -top {synth.TOP}",
+        "proc",
+    ]
+    device, logic = synth.mapped(lines, [], [], tmp_path, "")
+    assert synth.device_counts(device[synth.TOP])["DSP48E2"] == 2
+    assert logic[synth.TOP]["DSP48E1"] == 2
+    counts = synth.logic_counts(logic[synth.TOP], [])
+    assert (counts["LUT"], counts["FF"]) == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("depth", "width", "ultras", "blocks"),
+    [
+        (16384, 24, 4, 12),
+        (4096, 72, 1, 8),
+        (4097, 73, 4, 15),
+        (512, 36, 1, 0.5),
+        (512, 37, 1, 1),
+        (1024, 18, 1, 0.5),
+        (1024, 19, 1, 1),
+        (65536, 24, 16, 48),
+    ],
+)
+def test_the_plain_rule(depth, width, ultras, blocks):
+    assert memory(depth, width).ultras == ultras
+    assert memory(depth, width).blocks == blocks
+
+
+def test_style_decides_what_a_memory_takes():
+    assert memory(4096, 72, "ultra").plain() == {"UltraRAM": 1, "BRAM36": 0}
+    assert memory(4096, 72, "block").plain() == {"UltraRAM": 0, "BRAM36": 8}
+    assert memory(16, 72, "distributed").plain() == {"UltraRAM": 0, "BRAM36": 0}
+
+
+def test_a_cell_that_nobody_counts_is_an_error():
+    with pytest.raises(RuntimeError, match="RAMS64E"):
+        synth.logic_counts(Counter({"LUT2": 1, "RAMS64E": 1}), [])
+
+
+def test_what_does_not_fit_is_named_with_how_much():
+    assert synth.misfit({"UltraRAM": 96, "BRAM36": 312.0}, XCZU7EV) == ""
+    assert synth.misfit({"UltraRAM": 128, "BRAM36": 312.5}, XCZU7EV) == (
+        "BRAM36 312.5 of 312, 0.5 too many; UltraRAM 128 of 96, 32 too many"
+    )
+
+
+def test_a_design_too_large_ends_with_a_line(tmp_path, monkeypatch, capsys):
+    small = replace(XCZU7EV, has={**XCZU7EV.has, "BRAM36": 10})
+    monkeypatch.setattr(synth, "TARGETS", {"xczu7ev": small})
+    assert synth.run(["N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}"]) == 1
+    error = capsys.readouterr().err.strip()
+    assert error == "make synth: it does not fit the XCZU7EV: BRAM36 12.5 of 10, 2.5 too many"
+    (design,) = json.loads((tmp_path / "resources.json").read_text())["designs"]
+    assert design["misfit"]
+    assert not list(tmp_path.glob(".work*"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["TARGET=xc7a35t"], "TARGET=xc7a35t is unknown: accepted is xczu7ev"),
+        (["FRAMES=ball"], "FRAMES=ball: unknown variable: accepted are TARGET"),
+        (["GRIDS=64;128"], "GRIDS=64;128: accepted are whole numbers"),
+        (["N=1024", "SOLVER=spectral"], "1024"),
+        (["OUT=README.md"], "OUT=README.md is a file"),
+    ],
+)
+def test_bad_input(arguments, said, capsys, monkeypatch):
+    monkeypatch.chdir(repository.ROOT)
+    monkeypatch.setattr(sys, "argv", ["synth", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        synth.main()
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_a_missing_tool(capsys, monkeypatch):
+    monkeypatch.setattr(synth.yosys, "YOSYS", "/nowhere/yosys")
+    monkeypatch.setattr(sys, "argv", ["synth"])
+    with pytest.raises(SystemExit) as ended:
+        synth.main()
+    assert ended.value.code == 2
+    assert "run `make setup`" in capsys.readouterr().err

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make tune`: that its search finds the cheapest, that its choice holds in RTL, and what it says otherwise."""
+
+import json
+import math
+from functools import cache
+from itertools import product
+
+import numpy as np
+import pytest
+
+from commands.run import sim
+from commands.study import tune
+from commands.study.tune import Limits, Search, Widths
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.cost import cost
+from tactile_depth.frames import load_frames
+
+NONE = math.inf
+
+
+@cache
+def built(at):
+    if at.solver == "spectral" and at.data < 14:  # as on large grids
+        return None
+    return Configuration(columns=16, solver=at.solver, data_width=at.data, coefficient_width=at.coefficient)
+
+
+@cache
+def cost_of(at):
+    return cost(built(at))
+
+
+def falling(solver_bits):
+    """An error that falls with both widths, of each solver by another law."""
+    by_configuration = {}
+    for at in all_points():
+        bits = solver_bits[at.solver]
+        by_configuration[built(at)] = 2.0 ** (bits - at.data) + 2.0 ** (bits - 7 - at.coefficient)
+    return by_configuration.__getitem__
+
+
+@cache
+def all_points():
+    widths = product(range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1), range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1))
+    return [at for d, c in widths for s in COLUMNS if built(at := Widths(s, d, c)) is not None]
+
+
+@pytest.mark.parametrize("tolerance", [3.0, 0.1, 1e-3, 1e-4])
+@pytest.mark.parametrize(
+    ("latency", "multipliers", "memory"), [(NONE, NONE, NONE), (NONE, NONE, 20), (NONE, 30, NONE), (2.2, 40, 26)]
+)
+@pytest.mark.parametrize("bits", [{"spectral": 17, "tridiagonal": 17}, {"spectral": 15, "tridiagonal": 21}])
+def test_the_search_finds_the_cheapest_of_all(tolerance, latency, multipliers, memory, bits):
+    limits = Limits(tolerance, latency, 166, multipliers, memory)
+    search = Search(built, falling(bits), limits, tolerance)
+    within = [at for at in all_points() if not limits.broken(cost_of(at))]
+    enough = [at for at in within if search.measure(built(at)) <= tolerance]
+    found = search.cheapest(list(COLUMNS))
+    if enough:
+        assert search.rank(found) == min(map(search.rank, enough))
+    else:
+        assert found is None
+        nearest = search.nearest(list(COLUMNS))
+        if within:
+            assert search.error(nearest) == min(search.measure(built(at)) for at in within)
+        else:
+            assert nearest is None
+    assert len(search.tried) <= len(all_points()) / 5
+
+
+def test_frames_are_tuned_on_or_proven_on_never_both():
+    frames = load_frames("bench", (16, 16))
+    peaks = np.ones(15)
+    peaks[3] = 0
+    tuning, proving, said = tune.split(frames, peaks, seed=1)
+    assert (len(tuning.pixels), len(proving.pixels)) == (9, 5)
+    assert {*tuning.labels, *proving.labels} == {*frames.labels} - {frames.labels[3]}
+    assert not {*tuning.labels} & {*proving.labels}
+    assert "9 frames" in said and "5 others" in said and "1 without contact" in said  # noqa: PT018
+    assert tune.split(frames, peaks, seed=2)[1].labels != proving.labels
+
+
+def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise():
+    frames = load_frames("ball", (32, 32))
+    tuning, proving, said = tune.split(frames, np.ones(1), seed=1)
+    assert (len(tuning.pixels), len(proving.pixels)) == (4, 2)
+    np.testing.assert_array_equal(tuning.pixels[0], frames.pixels[0])
+    pixels = [*tuning.pixels, *proving.pixels]
+    assert len({frame.tobytes() for frame in pixels}) == 6
+    assert "noise" in said
+
+
+def run(tmp_path, *given):
+    return tune.run(*tune.parse(["SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *given]))
+
+
+@pytest.mark.parametrize("given", [[], ["BOUNDARY=neumann", "SOLVER=spectral", "TOLERANCE=0.02"], ["FRAMES=ball"]])
+def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(tmp_path, capsys, given):
+    assert run(tmp_path, *given) == 0
+    said = capsys.readouterr().out
+    out = tmp_path / "out"
+    report = json.loads((out / "report.json").read_text())
+    proof = json.loads((out / "proof" / "report.json").read_text())
+    assert proof["bit_exact"]
+    assert max(proof["rms_percent_of_peak"]) == report["worst_proven_percent"] <= report["tolerance_percent"]
+    assert report["worst_tuned_percent"] <= report["tolerance_percent"] / tune.MARGIN
+    assert proof["frames"] == len(report["proven_on"])
+    assert report["chosen"]["multipliers"] <= report["default"]["multipliers"]
+    assert report["chosen"]["memory_bits"] < report["default"]["memory_bits"]
+    assert "make sim CONFIG=" in said
+    chosen = sim.parse([f"CONFIG={out / 'config.json'}", "SIM=icarus", f"OUT={tmp_path / 'sim'}", "FRAMES=ball"])
+    assert sim.run(chosen) == 0
+    again = json.loads((tmp_path / "sim" / "report.json").read_text())
+    for name in ("grid", "solver", "boundary", "data_width", "coeff_width", "depth_range_mm"):
+        assert again[name] == proof[name]
+    for option in given:
+        key, _, value = option.partition("=")
+        if key in ("SOLVER", "BOUNDARY"):
+            assert again[key.lower()] == value
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        (["TOLERANCE=1e-9"], "SOLVER=tridiagonal DATA_WIDTH=32 COEFF_WIDTH=24"),
+        (["TOLERANCE=0.001", "MAX_DSP=24"], "the nearest is SOLVER=tridiagonal DATA_WIDTH=24 COEFF_WIDTH="),
+        (["MAX_DSP=4"], "beyond MAX_DSP=4"),
+        (["MAX_LATENCY_US=1"], "beyond MAX_LATENCY_US=1"),
+        (["MAX_MEMORY_KBIT=1"], "beyond MAX_MEMORY_KBIT=1"),
+    ],
+)
+def test_no_configuration_meets_it(tmp_path, capsys, given, expected):
+    assert run(tmp_path, *given) == 1
+    assert expected in capsys.readouterr().out.splitlines()[-1]
+    assert [*tmp_path.rglob("*.json")] == []
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        *("TOLERANCE=0", "TOLERANCE=-1", "TOLERANCE=little", "MAX_DSP=0", "MAX_LATENCY_US=nan", "CLOCK_MHZ=0"),
+        *("DATA_WIDTH=20", "WIDTH=20", "FRAMES=flat", "FRAMES=cube", "N=100", "N=2048", "SOLVER=multigrid"),
+        "OUT=/proc/tune",
+    ],
+)
+def test_bad_input(tmp_path, monkeypatch, capsys, given):
+    earlier = tmp_path / "out" / "config.json"
+    earlier.parent.mkdir()
+    earlier.write_text("{}")
+    monkeypatch.setattr("sys.argv", ["tune", "SIM=icarus", "N=16", f"OUT={earlier.parent}", given])
+    with pytest.raises(SystemExit) as stop:
+        tune.main()
+    assert stop.value.code == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1, said
+    assert given.partition("=")[2] in said[0]
+    assert earlier.read_text() == "{}"
+    assert [*earlier.parent.iterdir()] == [earlier]

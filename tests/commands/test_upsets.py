@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A sample of the soft errors that `make upsets` counts: no hang, and the frames sent after one are right."""
+
+import pytest
+
+from commands.verify.upsets import CASES, run
+from tb.stream import REGRESS
+from tests.conftest import SEED
+
+
+@pytest.mark.parametrize("case", CASES if REGRESS else list(CASES)[-1:])
+def test_sample(case, tmp_path):
+    results = run(case, upsets=1, seed=SEED, folder=tmp_path)  # of each module
+    assert len(results) > 20
+    for result in results:
+        assert result["setting"] or result["outcome"] not in ("hang", "stays wrong"), result

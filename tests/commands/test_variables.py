@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Variables of a command, and the exit status and the one line that an exception gives."""
+
+import errno
+import math
+import warnings
+
+import pytest
+
+from commands.common import variables
+from tactile_depth.errors import InputError, InputWarning
+
+
+def test_given():
+    assert variables.given(["N=64", "OUT=", "AT=a=b"], ("N", "OUT", "AT")) == {"N": "64", "AT": "a=b"}
+    for word in ("M=64", "N"):
+        with pytest.raises(InputError, match=f"^{word}: unknown variable: accepted is N$"):
+            variables.given([word], ("N",))
+
+
+def test_number():
+    assert variables.number({}, "N", 7, 1, 9) == 7
+    assert variables.number({"N": "2.5"}, "N", 7, 1, 9, float) == 2.5
+    for word in ("2.5", "x", "0", "10"):
+        with pytest.raises(InputError, match=f"^N={word}: accepted is a whole number from 1 to 9$"):
+            variables.number({"N": word}, "N", 7, 1, 9)
+
+
+@pytest.mark.parametrize("word", ["nan", "inf", "-inf", "1e999"])
+def test_a_number_is_finite_even_where_the_range_is_not(word):
+    with pytest.raises(InputError, match=f"^N={word}: accepted is a number"):
+        variables.number({"N": word}, "N", 7, -math.inf, math.inf, float)
+
+
+def test_a_command_without_variables_refuses_all():
+    with pytest.raises(InputError, match=r"^CORE=ram: unknown variable: accepted is none$"):
+        variables.given(["CORE=ram"], ())
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (InputError("N=3: too small"), 2, "make sim: N=3: too small\n"),
+        (variables.Mismatch("row 3 differs"), 1, "make sim: row 3 differs\n"),
+        (RuntimeError("no simulator"), 3, "make sim: no simulator\n"),
+        (OSError(errno.ENOSPC, "No space left on device", "a.npy"), 3, "make sim: a.npy: No space left on device\n"),
+        (OSError("4096 requested and 0 written"), 3, "make sim: 4096 requested and 0 written\n"),
+        (MemoryError(), 3, "make sim: MemoryError\n"),
+        (KeyboardInterrupt(), 130, "make sim: interrupted; nothing was written\n"),
+    ],
+)
+def test_an_exception_gives_a_line_and_a_status(error, status, line, capsys):
+    with pytest.raises(SystemExit) as ended, variables.reported("sim", "nothing was written"):
+        raise error
+    assert ended.value.code == status
+    assert capsys.readouterr().err == line
+
+
+def test_errors_and_warnings_of_the_package_name_variables(capsys):
+    def command():
+        warnings.warn("columns=64: an old file", InputWarning, stacklevel=1)
+        raise InputError("columns=100 with data_width=24: give camera_size=(rows, columns), or another solver=x")
+
+    with pytest.raises(SystemExit), variables.reported("sim"):
+        command()
+    assert capsys.readouterr().err.splitlines() == [
+        "make sim: warning: N=64: an old file",
+        "make sim: N=100 with DATA_WIDTH=24: give CAMERA_SIZE=<columns>x<rows>, or another SOLVER=x",
+    ]
+
+
+def test_an_unexpected_exception_shows_its_traceback_and_is_no_mismatch(capsys):
+    with pytest.raises(SystemExit) as ended, variables.reported("sim"):
+        raise KeyError("fault")
+    assert ended.value.code == variables.FAILURE
+    assert "KeyError: 'fault'" in capsys.readouterr().err

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""gradient_lookup: RTL against the model, the model against the calibration it was made from."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tactile_depth import reference
+from tactile_depth.configuration import Configuration
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.rom_files import write_gradient
+from tactile_depth.sensor import Sensor, synthetic
+from tb.stream import REGRESS
+
+SOURCES = ["gradient_lookup.sv", "ram.sv"]
+
+
+@pytest.mark.structures("bits data_width", both=[(2, 24)], icarus=[(1, 32), (3, 12), *([(4, 24)] if REGRESS else [])])
+def test_rtl(run_tb, bits, data_width):
+    choices = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
+    config = Configuration(**choices)
+    width = config.gradient.width
+    run_tb(
+        "gradient_lookup",
+        SOURCES,
+        {"Width": width, "BitsPerChannel": bits},
+        roms=lambda folder: write_gradient(folder / "gradient.hex", gradient_codes(synthetic(bits), config), width),
+        environment={"CONFIGURATION": json.dumps(choices)},
+    )
+
+
+@pytest.mark.parametrize("bits", [1, 4, 6])
+def test_codes_are_the_slopes_within_half_a_step(bits):
+    """The bins of a random table differ everywhere, so a wrong order of colours or bits shows."""
+    gradient = np.random.default_rng(bits).uniform(-0.9, 0.9, (*[1 << bits] * 3, 2))
+    calibration = Sensor("random", gradient, 0.1)
+    config = Configuration(columns=16, bits_per_channel=bits)
+    frames = np.random.default_rng(1).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8)
+    codes = gradient_lookup(frames, gradient_codes(calibration, config), bits)
+    assert codes.dtype == np.int64
+    error = codes * config.gradient.lsb - reference.slopes(frames, calibration)
+    assert np.abs(error).max() <= config.gradient.lsb / 2
+
+
+@pytest.mark.parametrize("gradient_limit", [0.25, 1.0, 4.0])
+def test_codes_of_slopes_up_to_the_limit_fit_their_width(gradient_limit):
+    largest = gradient_limit / (1 + 2.0**-8)  # what Sensor.gradient_limit leaves room for
+    gradient = np.full((2, 2, 2, 2), largest)
+    gradient[0] *= -1
+    config = Configuration(columns=16, gradient_limit=gradient_limit, bits_per_channel=1)
+    codes = gradient_codes(Sensor("full", gradient, 0.1), config)
+    limit = 2 ** (config.gradient.width - 1)
+    assert limit / 2 < codes.max() < limit
+    assert codes.min() == -codes.max()
+
+
+def test_a_gel_at_rest_has_slope_zero():
+    config = Configuration(columns=16)
+    flat = np.full((16, 16, 3), 128, np.uint8)
+    assert not np.any(gradient_lookup(flat, gradient_codes(synthetic(), config), config.bits_per_channel))

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""back_substitution: RTL against the model; the model is tested with the whole solver."""
+
+import json
+
+import pytest
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.tridiagonal_solver import solver_parameters
+from tactile_depth.rom_files import write_thomas
+from tests.poisson.test_thomas_table import THOMAS_SOURCES
+
+SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "back_substitution.sv"]
+NAMES = ("Width", "CoeffWidth", "Rows", "Size", "TableWords", "SettledWidth", "LastShiftWidth")
+CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+
+
+@pytest.mark.structures(
+    "choices",
+    both=[(CHOICES,)],
+    icarus=[
+        (CHOICES | {"neumann": True},),
+        (CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24},),
+        (CHOICES | {"data_width": 12, "coefficient_width": 10},),  # few bits are dropped: ties are common
+    ],
+)
+def test_rtl(run_tb, choices):
+    config = Configuration(**choices)
+    parameters = solver_parameters(config)
+    run_tb(
+        "back_substitution",
+        SOURCES,
+        {name: parameters[name] for name in NAMES} | {"InWidth": config.data_width, "Lift": parameters["StoreDrop"]},
+        roms=lambda folder: write_thomas(folder, config),
+        environment={"CONFIGURATION": json.dumps(choices)},
+    )

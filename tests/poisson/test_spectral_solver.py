@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""spectral_solver: RTL against the model, the model against the double-precision reference."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tactile_depth import reference
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
+from tactile_depth.rom_files import write_solver
+from tactile_depth.scenes import dome, slopes_of
+from tests.transform.test_sdf_fft import FFT_SOURCES
+
+SOLVER_SOURCES = [
+    *FFT_SOURCES,
+    "dst_forward.sv",
+    "dst_inverse.sv",
+    "mode_pairs.sv",
+    "row_reorder.sv",
+    "spectral_divide.sv",
+    "spectral_solver.sv",
+    "transpose.sv",
+]
+
+
+@pytest.mark.structures(
+    "choices",
+    both=[({"columns": 16},)],
+    icarus=[
+        ({"columns": 32, "data_width": 12, "coefficient_width": 10},),
+        ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5},),
+        ({"columns": 16, "data_width": 20, "gradient_limit": 4.0},),
+    ],
+)
+def test_rtl(run_tb, choices):
+    config = Configuration(**choices)
+    run_tb(
+        "spectral_solver",
+        SOLVER_SOURCES,
+        solver_parameters(config),
+        roms=lambda folder: write_solver(folder, config),
+        environment={"CONFIGURATION": json.dumps(choices)},
+    )
+
+
+PEAKS = np.linspace(3, 18, 6) / 128  # of the domes, over N: those of the accuracy bar (3 to 18 pixels at 128)
+
+
+def error_percent(config):
+    """RMS error of each dome's depth in % of its peak; the reference is fed with the same slope codes."""
+    slopes = np.stack([slopes_of(dome(config.columns, share * config.columns)) for share in PEAKS])
+    f = divergence(np.rint(slopes / config.gradient.lsb).astype(np.int64))
+    monitor = Monitor()
+    depth = spectral_solver(f, config, monitor) * config.depth_lsb_px
+    assert not monitor.saturations
+    want = reference.solve(f * config.divergence.lsb)
+    return 100 * np.sqrt(((depth - want) ** 2).mean(axis=(1, 2))) / want.max(axis=(1, 2))
+
+
+# Measured, mean and largest in %: 0.00025, 0.0005; 0.0010, 0.0022; 0.0026, 0.0072; 0.0036, 0.0071;
+# 0.035, 0.085; 0.00036, 0.00076; 0.000010, 0.000021.
+@pytest.mark.parametrize(
+    ("size", "data_width", "coefficient_width", "mean", "largest"),
+    [
+        (16, 24, 18, 0.0003, 0.0006),
+        (64, 24, 18, 0.0012, 0.0026),
+        (128, 24, 18, 0.0031, 0.0087),
+        (256, 24, 18, 0.0043, 0.0085),
+        (128, 20, 18, 0.042, 0.1),
+        (128, 27, 18, 0.00045, 0.0009),
+        (128, 32, 24, 0.000012, 0.000025),
+    ],
+)
+def test_depth_is_near_the_reference(size, data_width, coefficient_width, mean, largest):
+    config = Configuration(columns=size, data_width=data_width, coefficient_width=coefficient_width)
+    error = error_percent(config)
+    assert error.mean() < mean
+    assert error.max() < largest
+
+
+CONFIG = Configuration(columns=16)
+NOISE = 6 * 5  # codes: six times the RMS error of a frame of 16 x 16, 5 codes
+
+
+def random_frame(seed):
+    """Divergence whose depth stays within half of the range."""
+    limit = 2.0 ** (CONFIG.divergence.width - 1) * 0.01
+    return np.rint(np.random.default_rng(seed).uniform(-limit, limit, (16, 16))).astype(np.int64)
+
+
+SEED = st.integers(0, 2**32 - 1)
+
+
+@settings(max_examples=30, deadline=None)
+@given(SEED)
+def test_negation_goes_through(seed):
+    f = random_frame(seed)
+    np.testing.assert_array_equal(spectral_solver(-f, CONFIG), -spectral_solver(f, CONFIG))
+
+
+@settings(max_examples=30, deadline=None)
+@given(SEED)
+def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed):
+    f = random_frame(seed)
+    z = spectral_solver(f, CONFIG)
+    assert np.abs(spectral_solver(f.T, CONFIG) - z.T).max() < NOISE
+    assert np.abs(spectral_solver(f[::-1, ::-1], CONFIG) - z[::-1, ::-1]).max() < NOISE
+
+
+@settings(max_examples=30, deadline=None)
+@given(SEED, SEED)
+def test_sums_go_through_within_rounding(seed, other):
+    f, g = random_frame(seed), random_frame(other)
+    error = spectral_solver(f + g, CONFIG) - spectral_solver(f, CONFIG) - spectral_solver(g, CONFIG)
+    assert np.abs(error).max() < 2 * NOISE
+
+
+def test_frames_do_not_mix():
+    f = np.stack([random_frame(seed) for seed in range(3)])
+    np.testing.assert_array_equal(spectral_solver(f, CONFIG), [spectral_solver(frame, CONFIG) for frame in f])
+
+
+def test_zero_gives_zero():
+    assert not np.any(spectral_solver(np.zeros((16, 16), np.int64), CONFIG))

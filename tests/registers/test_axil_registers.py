@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""hdl/registers/axil_registers.sv against models/tactile_depth/registers/axil_registers.py."""
+
+import pytest
+
+from tactile_depth.configuration import Configuration
+from tb.stream import REGRESS
+
+SOURCES = ["register_map_pkg.sv", "axil_registers.sv"]
+
+
+def built(configuration: Configuration) -> dict[str, int]:
+    return {
+        "Rows": configuration.rows,
+        "Columns": configuration.columns,
+        "DataWidth": configuration.data_width,
+        "GradientWidth": configuration.gradient.width,
+        "GradientFraction": configuration.gradient.fraction,
+        "BitsPerChannel": configuration.bits_per_channel,
+    }
+
+
+EXTREMES = {
+    "Rows": 65535,
+    "Columns": 1,
+    "DataWidth": 32,
+    "GradientWidth": 32,
+    "GradientFraction": 31,
+    "BitsPerChannel": 1,
+    "CoefficientWords": 36,
+    "ReferenceWords": 5000,
+    "FloorWords": 1250,
+}
+
+
+QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0, "FloorWords": 300}
+BUILDS = {"128": built(Configuration(columns=128)), "extremes": EXTREMES, "without-gradient-table": QUADRATIC}
+
+
+@pytest.mark.structures(
+    "build",
+    both=[("128",), *([("extremes",), ("without-gradient-table",)] if REGRESS else [])],
+    icarus=[] if REGRESS else [("extremes",), ("without-gradient-table",)],
+)
+def test_axil_registers(run_tb, build):
+    run_tb("axil_registers", SOURCES, parameters=BUILDS[build])

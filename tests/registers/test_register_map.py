@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""registers/tactile_depth.rdl: what is written from it is up to date, and C and Python reach the registers by it."""
+
+import shutil
+import subprocess
+
+import pytest
+
+from commands.common.repository import ROOT
+from commands.hardware import registers
+from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Live
+from tactile_depth.registers.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD_BITS
+
+BUILD = Build(16, 32, 24, 21, 20, 2)
+RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
+
+
+@pytest.fixture(scope="module")
+def root():
+    return registers.compiled()
+
+
+def test_written_files_are_up_to_date(root):
+    for path, text in registers.generated(root).items():
+        assert path.read_text() == text, f"{path.relative_to(ROOT)} is not what the map says: run make registers"
+
+
+def test_offsets_are_words_of_their_own():
+    offsets = [register.offset for register in MAP]
+    assert len(set(offsets)) == len(offsets) == len(REGISTERS)
+    assert all(offset % (WORD_BITS // 8) == 0 for offset in offsets)
+    assert all(0 <= offset < 1 << ADDRESS_WIDTH for offset in offsets)
+
+
+def test_accesses_are_known():
+    for register in MAP:
+        assert {field.access for field in register.fields} <= set(ACCESSES), register.name
+
+
+def test_an_access_that_no_register_has_is_refused(tmp_path):
+    source = tmp_path / "other.rdl"
+    source.write_text("addrmap a { reg { field { sw = rw; onread = rclr; } value[31:0] = 0; } R @ 0; };\n")
+    node = next(iter(registers.compiled(source).top.registers()))
+    with pytest.raises(ValueError, match=r"a\.R\.value: no register has sw, onwrite, onread"):
+        registers.register_of(node)
+
+
+def test_a_table_has_the_bit_of_its_number_in_the_commit_register():
+    """hdl/registers/axil_registers.sv takes the one for the other."""
+    assert {field.name: field.low for field in REGISTERS["TABLE_COMMIT"].fields} == dict(TABLES)
+    assert sorted(TABLES.values()) == list(range(len(TABLES)))
+
+
+@pytest.mark.parametrize("register", MAP, ids=lambda register: register.name)
+def test_pack_is_the_inverse_of_unpack(register):
+    fields = {field.name: (n + 1) % (1 << field.width) for n, field in enumerate(register.fields)}
+    assert register.unpack(register.pack(**fields)) == fields
+
+
+def test_a_value_too_large_for_its_field_is_refused():
+    with pytest.raises(ValueError, match=r"STATUS\.busy=2 does not fit: accepted are 0 to 1"):
+        REGISTERS["STATUS"].pack(busy=2)
+    with pytest.raises(KeyError, match="it has rows, columns"):
+        REGISTERS["GRID"].field("cols")
+
+
+def test_the_c_header(tmp_path):
+    """A program that includes it finds every register where the map has it, and every field's bits and reset value."""
+    compiler = shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("gcc is missing: it compiles the C header")
+    checks = [f"sizeof(tactile_depth_t) == {MAP[-1].offset + 4}"]
+    for register in MAP:
+        checks.append(f"offsetof(tactile_depth_t, {register.name}) == {register.offset}")
+        for field in register.fields:
+            prefix = f"TACTILE_DEPTH__{register.name}__{field.name}".upper()
+            checks += [f"{prefix}_bm == {field.mask}u", f"{prefix}_bp == {field.low}", f"{prefix}_bw == {field.width}"]
+            if field.reset is not None:
+                checks.append(f"{prefix}_reset == {field.reset}u")
+    program = tmp_path / "program.c"
+    program.write_text(
+        '#include <stddef.h>\n#include "tactile_depth.h"\n'
+        + "".join(f'static_assert({check}, "");\n' for check in checks)
+        + "int main(void) { return 0; }\n"
+    )
+    flags = ["-std=c11", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'registers'}"]
+    ran = subprocess.run([compiler, *flags, program, "-o", tmp_path / "program"], capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stderr
+    assert subprocess.run([tmp_path / "program"]).returncode == 0
+
+
+def test_the_python_layer(tmp_path, monkeypatch):
+    """It reads and writes fields by name; behind it the model of the registers in place of a device."""
+    registers.python_layer(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    from tactile_depth_registers.lib import NormalCallbackSet
+    from tactile_depth_registers.reg_model import RegModel
+
+    model = AxilRegisters(BUILD, entry=lambda table, index: (0x1000 + index, 0x2000 + index))
+
+    def read(addr, **_):
+        data, response = model.read(addr, Live(busy=True, in_use=model.bank, record=RECORD_WORDS))
+        assert response == 0
+        return data
+
+    def write(addr, data, **_):
+        assert model.write(addr, data, live=Live(in_use=model.bank)) == 0
+
+    device = RegModel(callbacks=NormalCallbackSet(read_callback=read, write_callback=write))
+    assert (device.GRID.rows.read(), device.GRID.columns.read()) == (16, 32)
+    assert device.STATUS.busy.read() == 1
+    device.CONTROL.hold_contact.write(1)
+    assert model.values["CONTROL"] == REGISTERS["CONTROL"].pack(hold_contact=1)
+    device.CAPTURE.log2_frames.write(6)
+    assert device.CAPTURE.read() == REGISTERS["CAPTURE"].pack(log2_frames=6)
+    assert device.RECORD_PEAK_PLACE.row.read() == 7
+    device.TABLE_INDEX.value.write(3)
+    device.TABLE_HIGH.write(5)
+    device.TABLE_LOW.write(6)
+    assert model.table_writes == [(TABLES["gradient"], 3, 5, 6)]
+    assert (device.TABLE_HIGH.read(), device.TABLE_LOW.read()) == (0x1004, 0x2004)
+    assert device.TABLE_INDEX.read() == 5
