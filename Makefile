@@ -26,7 +26,7 @@ override MAKEFLAGS :=
 endif
 override SHELL := /bin/sh
 
-override goals := $(filter test live-test setup clean,$(value MAKECMDGOALS))
+override goals := $(filter live-test setup clean help,$(value MAKECMDGOALS))
 ifneq ($(and $(goals),$(filter-out PYTHON,$(names))),)
 $(error make $(firstword $(goals)): $(filter-out PYTHON,$(names)): unknown variable: accepted is PYTHON)
 endif
@@ -39,116 +39,125 @@ override BASELINES := $(VENV)/baselines
 override HARDWARE := $(VENV)/hardware
 override LIVE := .venv-live
 
-.PHONY: sim test live-test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth netlists setup clean
+.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth netlists setup clean
 override .DEFAULT_GOAL := sim
 
-# Streams frames through the RTL, checks every code, prints a table, draws.
+# Print this list. docs/commands.md explains the variables.
+help:
+	@awk '/^# /{text = text substr($$0, 2); next} /^[a-z-]+:/{if (text) {sub(":.*", ""); printf "%-11s%s\n", $$0, text}} {text = ""}' Makefile
+
+# Stream frames through the RTL, check every code against the model, print a table, draw pictures.
 sim: $(STAMP)
 	@exec $(PY) -m commands sim $(given)
 
-# The whole suite: lint, models, every core on every simulator.
-test: $(HARDWARE) lint
-	@$(PY) -m pytest -n auto --dist worksteal
+# Run the whole suite on both simulators. CORE=a,b SIM=icarus: only lint and tests of these cores.
+test: $(HARDWARE)
+	@sh commands/common/icarus.sh
+	@exec $(PY) -m commands test $(given)
 
-# tactile-depth live with its viewer and OpenCV, in an environment of its own: 1.1 GB.
+# Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.
+quick: $(TOOLS)
+	@sh commands/common/icarus.sh
+	@exec $(PY) -m commands quick $(given)
+
+# Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
 live-test: $(LIVE)/complete
 	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py
 
-# What `make test` samples, in full, and a table of it: under an hour. PARTS=faults,codes,power_ups,seeds JOBS=2
+# Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
 regress: $(HARDWARE)
 	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands regress $(given)
 
-# Verilator, slang, Yosys, verible and Icarus on every core and on the whole, ruff, mypy.
+# Check cores with Verilator, slang, Yosys, verible and Icarus, and Python with ruff and mypy. CORE=a,b
 lint: $(TOOLS)
 	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands lint $(given)
 
-# Accuracy against latency, multipliers and memory, by the models, into a CSV; goes on where it was interrupted.
+# Measure accuracy against latency, multipliers and memory with the models, into a CSV file.
 sweep: $(if $(scheduler),$(TOOLS),$(STAMP))
 	@exec $(PY) -m commands sweep $(given)
 
-# The cheapest configuration that meets TOLERANCE (% of peak RMS) on FRAMES, proven in RTL; a file for make sim CONFIG=.
+# Find the cheapest configuration within TOLERANCE (% of the peak, RMS), and prove it in RTL.
 tune: $(STAMP)
 	@exec $(PY) -m commands tune $(given)
 
-# The suite on Verilator with every line, branch, term and toggle of hdl/ counted, and the fault list's bins.
+# Count lines, branches, terms and toggles of hdl/ that the suite reaches, and bins of the fault list.
 coverage: $(TOOLS)
 	@exec $(PY) -m commands coverage $(given)
 
-# Flips bits of registers and memories while frames stream through; UPSETS=60 a module, SEED.
+# Flip bits of registers and memories while frames stream through, and count the damage.
 upsets: $(STAMP)
 	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands upsets $(given)
 
-# The largest value that each node can be asked to hold, and the frames that ask for it, run in model and RTL; RTL=0: model.
+# Compute the largest value of each node, and run the frames that cause it. RTL=0: model only.
 certify: $(STAMP)
 	@exec $(PY) -m commands certify $(given)
 
-# What happens at the edges, one row each: error, saturations, whether the status bit told; SHORT=1 without the long runs.
+# Run scenes at the edges of the input range: error, saturations, status. SHORT=1: short runs.
 extremes: $(STAMP)
 	@exec $(PY) -m commands extremes $(given)
 
-# Two Verilog front ends read every core as the same circuit: a few minutes.
+# Prove that two Verilog front ends read every core as the same circuit. CORE=a,b
 frontends: $(TOOLS)
 	@exec $(PY) -m commands frontends $(given)
 
-# Everything that reads what a user gives, on input made to break it: MINUTES=10 SEED=1 READER REPLAY
+# Feed damaged input to everything that reads files of a user. MINUTES=10
 fuzz: $(TOOLS)
 	@exec $(PY) -m commands fuzz $(given)
 
-# Unbounded proofs of the cores, of one with CORE=..; commands/verify/formal.py says what is proven, at which sizes and why.
+# Prove properties of the cores without a bound on time. CORE=a,b
 formal: $(TOOLS)
 	@exec $(PY) -m commands formal $(given)
 
-# Mutants of every core through its own testbench; survivors settled by proof. CORE, MUTANTS, SEED, JOBS, SECONDS.
+# Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
 mutate: $(TOOLS)
 	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands mutate $(given)
 
-# Contact to command and to motion, with the RTL in the loop, against a host: N CLOCK_MHZ SPEED TRIALS HOST_TRIALS SEED SIM
-# OUT, and VIDEO=trial.gif.
+# Measure contact to command and to motion, with the RTL in the loop and through a host.
 reflex: $(STAMP)
 	@exec $(PY) -m commands reflex $(given)
 
-# The solve in software, one frame at a time, against the pipeline's clocks: GRIDS=64,128 RUNS CLOCK_MHZ OUT. Under 10 minutes.
+# Time the solve in software, frame by frame, against the clock cycles of the pipeline.
 baselines: $(BASELINES)
 	@exec $(PY) -m commands baselines $(given)
 
-# Time from a camera picture to depth in the models, against another commit: BEFORE=32a97ff ROUNDS OUT
+# Time a camera picture to depth in the models, against another commit. BEFORE=32a97ff
 benchmark: $(STAMP)
 	@exec $(PY) -m commands benchmark $(given)
 
-# One HTML page with figures: runs a thousand frames through the RTL, the sweep and the extremes; OUT.
-# What make reflex and make baselines left in build/ it takes; else it runs them, the latter with what is installed.
+# Write an HTML page with figures of latency, throughput, error, cost and extremes.
 report: $(STAMP)
 	@exec $(PY) -m commands report $(given)
 
-# From ball presses of known diameter to a calibration file, a picture, a table: PRESSES=folder GRADIENT=both PITCH BITS CIRCLES=found HELD_OUT=each EXPOSURE_US OUT
+# Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
 calibrate: $(STAMP)
 	@exec $(PY) -m commands calibrate $(given)
 
-# Area, slack and power in standard cells, from any Liberty file (LIB, NODE_NM): docs/hardware.md. CLOCK_MHZ, TIMED.
+# Measure area, slack and power in standard cells of any Liberty file. LIB=file NODE_NM=180
 asic: $(HARDWARE)
 	@exec $(PY) -m commands asic $(given)
 
-# On a board: synthesis, place, route, bitstream, the clock it reaches and what it takes. TARGET=ulx3s SEEDS=1,2,3 OUT
+# Place and route a board, write the bitstream, and report the clock it reaches. TARGET=ulx3s
 fpga: $(HARDWARE)
 	@exec $(PY) -m commands fpga $(given)
 
-# What a configuration takes of an FPGA, by Yosys: TARGET=xczu7ev, the variables of make sim, or GRIDS=64,128 for a table.
+# Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
 synth: $(TOOLS)
 	@exec $(PY) -m commands synth $(given)
 
-# Every core after synthesis through its own testbench, and the whole at 32 x 32: CORE=name,.. SEED=1
+# Run every core after synthesis through its testbench. CORE=a,b
 netlists: $(TOOLS)
 	@sh commands/common/icarus.sh
 	@exec $(PY) -m commands netlists $(given)
 
-# Everything that is written from registers/tactile_depth.rdl: page, C header, Python layer, package, JSON.
+# Write everything that follows from registers/tactile_depth.rdl.
 registers: $(TOOLS)
 	@exec $(PY) -m commands registers $(given)
 
+# Install the tools into .venv.
 setup: $(TOOLS) $(HARDWARE)
 
 # The virtual environment, made anew when a pinned version changes.
@@ -196,5 +205,6 @@ $(HARDWARE): $(TOOLS) requirements-hardware.txt
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements-hardware.txt
 	@touch $@
 
+# Remove build/.
 clean:
 	rm -rf build

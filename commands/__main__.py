@@ -16,7 +16,19 @@ from tactile_depth.errors import InputError
 ROOMS = {
     "run": ("calibrate", "reflex", "sim"),
     "study": ("baselines", "benchmark", "certify", "extremes", "report", "sweep", "tune"),
-    "verify": ("coverage", "formal", "frontends", "fuzz", "lint", "mutate", "netlists", "regress", "upsets"),
+    "verify": (
+        "coverage",
+        "formal",
+        "frontends",
+        "fuzz",
+        "lint",
+        "mutate",
+        "netlists",
+        "quick",
+        "regress",
+        "test",
+        "upsets",
+    ),
     "hardware": ("asic", "fpga", "registers", "synth"),
 }
 COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}

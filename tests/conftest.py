@@ -16,7 +16,7 @@ from hypothesis import settings
 
 from commands.common import repository
 from commands.common import simulator as simulation
-from tb.stream import CLOCK_NS
+from tb.stream import CLOCK_NS, REGRESS
 from tests.records import record
 
 SEED = int(os.environ.get("SEED", "1"))
@@ -32,40 +32,59 @@ settings.load_profile("no deadline")
 def pytest_configure(config):
     config.addinivalue_line(
         "markers",
-        "structures(names, both=[..], icarus=[..]): the parameter sets of a test of RTL, as in parametrize; "
-        "those under `icarus` are built there alone, in 0.1 s each, where Verilator takes 5 s; with HDL_COVERAGE=1, "
-        "which only Verilator counts, there in place.",
+        "structures(names, both=[..], icarus=[..], regress=[..]): parameter sets of an RTL test, as in parametrize. "
+        "Each of `both` runs on both simulators. Those of `icarus` run there alone: it builds in 0.1 s what takes "
+        "Verilator 5 s. Those of `regress` do so too, but in `make regress` only. With HDL_COVERAGE=1 all run on "
+        "Verilator, because only Verilator counts coverage.",
+    )
+    config.addinivalue_line(
+        "markers", "regress: runs in `make regress` only; `make test` runs a smaller case of the same"
     )
 
 
 def pytest_generate_tests(metafunc):
-    """Every test that takes a simulator runs on each, but for what its `structures` leave to Icarus."""
-    given = [mark.args[0] for mark in metafunc.definition.iter_markers("parametrize")]
-    if "simulator" not in metafunc.fixturenames or "simulator" in given:
+    """Run every test that takes a simulator on each simulator, except for the limits of its `structures` mark."""
+    parametrized = [mark.args[0] for mark in metafunc.definition.iter_markers("parametrize")]
+    if "simulator" not in metafunc.fixturenames or "simulator" in parametrized:
         return
     mark = metafunc.definition.get_closest_marker("structures")
     if mark is None:
         metafunc.parametrize("simulator", SIMULATORS, indirect=True)
         return
-    names, (both, icarus) = mark.args[0], (mark.kwargs["both"], mark.kwargs.get("icarus", []))
-    cases = [(name, *case) for name in SIMULATORS for case in both]
+    names, both = mark.args[0], mark.kwargs["both"]
     alone = "verilator" if simulation.COVERAGE else "icarus"
-    cases += [(alone, *case) for case in icarus if alone in SIMULATORS]
-    ids = ["-".join(_label(value) for value in case) for case in cases]
-    metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"], ids=ids)
+    cases = [pytest.param(name, *case, id=_id(name, *case)) for name in SIMULATORS for case in both]
+    if alone in SIMULATORS:
+        cases += [pytest.param(alone, *case, id=_id(alone, *case)) for case in mark.kwargs.get("icarus", [])]
+        marks = [] if simulation.COVERAGE else [pytest.mark.regress]
+        cases += [
+            pytest.param(alone, *case, id=_id(alone, *case), marks=marks) for case in mark.kwargs.get("regress", [])
+        ]
+    metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"])
 
 
 def begins_at_random(item):
-    """Whether a test goes on to run from several random power-up states; see `run_tb`."""
+    """Return whether a test also runs from several random power-up states; see `run_tb`."""
     callspec = getattr(item, "callspec", None)
     first = callspec is not None and all(index == 0 for index in callspec.indices.values())
     device = item.originalname != "test_a_second_client"  # of a device that has begun so already
     return first and device and "run_tb" in item.fixturenames and callspec.params["simulator"] == "verilator"
 
 
-def pytest_collection_modifyitems(items):
-    if os.environ.get("ONLY") == "power_ups":
-        items[:] = [item for item in items if begins_at_random(item)]
+def pytest_collection_modifyitems(config, items):
+    """Leave out what only `make regress` runs."""
+    only_power_ups = os.environ.get("ONLY") == "power_ups"
+    chosen, others = [], []
+    for item in items:
+        in_regress_only = item.get_closest_marker("regress") and not REGRESS
+        other_part = only_power_ups and not begins_at_random(item)
+        (others if in_regress_only or other_part else chosen).append(item)
+    config.hook.pytest_deselected(items=others)
+    items[:] = chosen
+
+
+def _id(*values):
+    return "-".join(_label(value) for value in values)
 
 
 def _label(value):

@@ -13,7 +13,7 @@ import pytest
 from commands.__main__ import COMMANDS
 from commands.common.repository import ROOT
 
-WITHOUT_COMMAND = ("test", "live-test", "setup", "clean")
+WITHOUT_COMMAND = ("help", "live-test", "setup", "clean")
 SPY = """#!/usr/bin/env python3
 import json, os, sys
 arguments = sys.argv[1:]

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make quick`: tests and lint of what differs from BASE, and one run of the whole, in under two minutes.
+
+BASE is a commit, by default the merge base with origin/main. Changes that are not committed and files that git does not
+know yet count. Shared files, on which too much depends for a quick test, are named: run `make test` for them.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from commands.common import repository, variables
+from commands.common.repository import ROOT
+from commands.verify.test import ONE_POWER_UP, all_succeed, lint, pytest, tests_of
+from tactile_depth.errors import InputError
+
+UPSTREAM = "origin/main"
+WHOLE = ("sim", "N=64", "SOLVER=tridiagonal")
+PAGES = "tests/test_docs.py"
+
+
+@dataclass(frozen=True)
+class Affected:
+    """Cores and test files that changed files belong to, and the changed files that belong to none."""
+
+    cores: list[str]
+    tests: list[str]
+    shared: list[str]
+
+
+def git(*words: str) -> str:
+    """Return the output of a git command in the root of the repository.
+
+    Raises
+    ------
+    InputError
+        The command failed.
+    """
+    ended = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
+    if ended.returncode:
+        raise InputError(f"git {' '.join(words)}: {ended.stderr.strip() or 'failed'}")
+    return ended.stdout
+
+
+def base_commit(base: str) -> str:
+    """Return the commit to compare with.
+
+    Raises
+    ------
+    InputError
+        There is no such commit, or no BASE and no origin/main.
+    """
+    if base:
+        if base.startswith("-"):
+            raise InputError(f"BASE={base}: accepted is a commit, a branch or a tag")
+        try:
+            return git("rev-parse", "--verify", "--quiet", f"{base}^{{commit}}").strip()
+        except InputError:
+            raise InputError(f"BASE={base}: no such commit: give a commit, a branch or a tag") from None
+    try:
+        return git("merge-base", UPSTREAM, "HEAD").strip()
+    except InputError:
+        raise InputError(f"there is no {UPSTREAM} to compare with: give BASE=<commit>") from None
+
+
+def changed_files(commit: str) -> list[str]:
+    """Return the files that differ from a commit, those that git does not know included."""
+    tracked = git("diff", "--name-only", "-z", commit)
+    untracked = git("ls-files", "--others", "--exclude-standard", "-z")
+    return sorted({name for name in (tracked + untracked).split("\0") if name})
+
+
+def affected(names: Iterable[str]) -> Affected:
+    """Find the cores and the test files of changed files."""
+    owner = {
+        str(file.relative_to(ROOT)): core.name
+        for core in repository.cores().values()
+        for file in (core.hdl, core.model, core.bench, core.test, core.proof)
+        if file
+    }
+    cores, tests, shared = set(), set(), []
+    for name in names:
+        path = Path(name)
+        if name in owner:
+            cores.add(owner[name])
+        elif test := test_of(path):
+            tests.add(test)
+        elif path.suffix in (".py", ".sv", ".vlt", ".toml", ".txt") or path.name == "Makefile":
+            shared.append(name)
+    return Affected(sorted(cores), sorted(tests - set(tests_of(sorted(cores)))), shared)
+
+
+def test_of(path: Path) -> str | None:
+    """Return the test file of a file that belongs to no core, if there is one."""
+    if path.parts[0] == "tests" and path.name.startswith("test_"):
+        candidate = path
+    elif path.parts[0] == "commands":
+        candidate = Path("tests", "commands", f"test_{path.stem}.py")
+    elif path.parts[:2] == ("models", "tactile_depth"):
+        candidate = Path("tests", f"test_{path.stem}.py")
+    elif path.suffix == ".md":
+        candidate = Path(PAGES)
+    else:
+        return None
+    return str(candidate) if (ROOT / candidate).is_file() else None
+
+
+def plan(changes: Affected) -> list[Sequence[str]]:
+    """Return the processes to run, those that fail soonest first."""
+    tests = [*tests_of(changes.cores), *changes.tests]
+    return [
+        *([pytest(tests)] if tests else []),
+        [sys.executable, "-m", "commands", *WHOLE],
+        *([lint(changes.cores)] if changes.cores else []),
+        [sys.executable, "-m", "ruff", "check", "--quiet", "."],
+    ]
+
+
+def main() -> None:
+    with variables.reported("quick"):
+        values = variables.given(sys.argv[1:], ("BASE",))
+        commit = base_commit(values.get("BASE", ""))
+        changes = affected(changed_files(commit))
+        print(f"against {commit[:9]}: cores {', '.join(changes.cores) or 'none'}", flush=True)
+        for test in changes.tests:
+            print(f"  {test}")
+        for name in changes.shared:
+            print(f"  {name} is shared: make test runs what depends on it")
+        sys.stdout.flush()
+        if not all_succeed(plan(changes), **ONE_POWER_UP):
+            raise variables.Mismatch("failed: see above")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make test`: lint and the whole suite. CORE=a,b: lint and tests of these cores alone, SIM=icarus: on one simulator.
+
+Exit status: docs/exit-status.md.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+
+from commands.common import repository, variables
+from commands.common.simulator import SIMULATORS
+from tactile_depth.errors import InputError
+
+ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from several random power-up states
+
+
+def lint(cores: Sequence[str] = ()) -> list[str]:
+    """Return the command that lints these cores, or everything."""
+    chosen = [f"CORE={','.join(cores)}"] if cores else []
+    return [sys.executable, "-m", "commands", "lint", *chosen]
+
+
+def pytest(tests: Sequence[str] = (), *, workers: str = "auto") -> list[str]:
+    """Return the command that runs these test files, or the whole suite."""
+    return [sys.executable, "-m", "pytest", "-n", workers, "--dist", "worksteal", *tests]
+
+
+def tests_of(cores: Sequence[str]) -> list[str]:
+    """Return the test files of cores, relative to the root of the repository."""
+    files = [repository.cores()[core].test for core in cores]
+    return [str(file.relative_to(repository.ROOT)) for file in files if file]
+
+
+def all_succeed(processes: Sequence[Sequence[str]], **environment: str) -> bool:
+    """Run processes one after the other up to the first failure, and return whether all of them succeeded."""
+    return all(
+        subprocess.run(process, cwd=repository.ROOT, env=os.environ | environment, check=False).returncode == 0
+        for process in processes
+    )
+
+
+def main() -> None:
+    with variables.reported("test"):
+        values = variables.given(sys.argv[1:], ("CORE", "SIM"))
+        environment = {}
+        if "SIM" in values:
+            if values["SIM"] not in SIMULATORS:
+                raise InputError(f"SIM={values['SIM']} is unknown: accepted are {' and '.join(SIMULATORS)}")
+            environment["SIM"] = values["SIM"]
+        if "CORE" in values:
+            cores = repository.chosen(values["CORE"])
+            processes = [pytest(tests_of(cores)), lint(cores)]  # a wrong result is of more interest than style
+            environment |= ONE_POWER_UP
+        else:
+            processes = [lint(), pytest()]
+        if not all_succeed(processes, **environment):
+            raise variables.Mismatch("failed: see above")
+
+
+if __name__ == "__main__":
+    main()
