@@ -19,7 +19,7 @@ READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "F
 @cocotb.test()
 async def play(dut):
     wanted = json.loads(os.environ["FRAME_BENCH"])
-    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     dut.rst.value, dut.go.value = 1, 0
     for name, value in wanted["inputs"].items():
         getattr(dut, name).value = value

@@ -101,7 +101,7 @@ class Pipeline:
         self.expect_reset_values()
 
     async def start(self):
-        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         cocotb.start_soon(self.watch_contact())
         cocotb.start_soon(self.watch_events())
         functional_coverage.start(self.dut, self.config, *self.profiles)

@@ -200,7 +200,7 @@ class Device:
 @cocotb.test()
 async def upsets(dut):
     rng = random.Random(cocotb.RANDOM_SEED)
-    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     device = Device(dut, rng)
     await device.reset()
     by_module: dict[str, list[Place]] = {}

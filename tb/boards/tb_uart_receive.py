@@ -35,7 +35,7 @@ async def play(dut, levels):
     edge, found = RisingEdge(dut.clk), []
     (divider,) = parameters(dut, "Divider")
     dut.rst.value, dut.line.value = 1, levels[0]
-    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     await ClockCycles(dut.clk, 8)
     dut.rst.value = 0
     for level in [*levels, *[levels[-1]] * 12 * divider]:

@@ -21,7 +21,7 @@ async def start(dut, offers):
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value = 1
     source = AxisSource(dut, "in", ("data",), offers=profile(offers))
-    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     await ClockCycles(dut.clk, 3)
     dut.rst.value = 0
     await RisingEdge(dut.clk)

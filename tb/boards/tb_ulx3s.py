@@ -52,7 +52,7 @@ class Board:
         dut.ftdi_txd.value, dut.btn.value = 1, 0
 
     async def start(self, button=True):
-        Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         if button:
             self.dut.btn.value = 1
             await ClockCycles(self.dut.clk_25mhz, RESET_CLOCKS)

@@ -8,6 +8,7 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.calibration.floor_capture import CLOCKS, captured_floor
+from tb.calibration.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, random_depths
 from tb.gains import Grid
 from tb.stream import REGRESS, Bench, parameters
@@ -98,12 +99,7 @@ class Capture:
         self.frame = random_depths(self.shape, self.width, self.chance) if depths is None else depths
         await self.driver.words(depth_words(self.frame)[:count])
 
-    async def request(self, log2=None):
-        if log2 is not None:
-            self.dut.log2_frames.value = log2
-        self.dut.request.value = 1
-        await RisingEdge(self.dut.clk)
-        self.dut.request.value = 0
+    request = request
 
     async def until_done(self, depths=None):
         """Frames go on until the capture is done, and end with a whole one; one that is not cut follows it."""
@@ -174,27 +170,7 @@ async def requests_at_any_time(dut, pause):
         waits = device.chance.sample(waits, 1)
     elif not REGRESS and pause:
         waits = device.chance.sample(waits, len(waits) // 3)
-    going_on = [True]
-
-    async def frames():
-        while going_on[0]:
-            await device.send()
-
-    sender = cocotb.start_soon(frames())
-    for wait in waits:
-        await device.request(0)
-        while device.busy and not device.inside:  # to a frame's first word, so that the waits mean what they say
-            await RisingEdge(dut.clk)
-        for _ in range(wait):
-            await RisingEdge(dut.clk)
-        await device.request(device.chance.randrange(2))
-        for _ in range(device.chance.randrange(2 * size)):
-            await RisingEdge(dut.clk)
-    while device.busy:
-        await RisingEdge(dut.clk)
-    going_on[0] = False
-    await sender
-    assert device.captures
+    await request_after(device, waits, size)
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")

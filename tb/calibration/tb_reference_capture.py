@@ -10,6 +10,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.calibration.reference_capture import reference_capture, reference_capture_clocks
 from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH
+from tb.calibration.capture_bench import request, request_after
 from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, send_apart
 
 PIXELS = 512  # that a test sends, about
@@ -155,12 +156,7 @@ class Capture:
         marks = [bad if place & 12 == 12 else self.chance.randrange(2) for place in self.places]
         await send_apart(self.bench, self.driver, list(zip(pixels, self.places, marks, strict=True)), self.gap)
 
-    async def request(self, log2=None):
-        if log2 is not None:
-            self.dut.log2_frames.value = log2
-        self.dut.request.value = 1
-        await RisingEdge(self.dut.clk)
-        self.dut.request.value = 0
+    request = request
 
     async def until_done(self, bad=0.0):
         """Frames go on until the capture is done, and end with a whole one."""
@@ -231,27 +227,7 @@ async def requests_at_any_time(dut, pause):
         waits = device.chance.sample(waits, 1)
     elif not REGRESS and pause:
         waits = device.chance.sample(waits, len(waits) // 3)
-    going_on = [True]
-
-    async def frames():
-        while going_on[0]:
-            await device.send()
-
-    sender = cocotb.start_soon(frames())
-    for wait in waits:
-        await device.request(0)
-        while device.busy and not device.inside:  # to a frame's first pixel, so that the waits mean what they say
-            await RisingEdge(dut.clk)
-        for _ in range(wait):
-            await RisingEdge(dut.clk)
-        await device.request(device.chance.randrange(2))
-        for _ in range(device.chance.randrange(2 * size)):
-            await RisingEdge(dut.clk)
-    while device.busy:
-        await RisingEdge(dut.clk)
-    going_on[0] = False
-    await sender
-    assert device.captures
+    await request_after(device, waits, size)
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")

@@ -46,7 +46,7 @@ async def start(dut, offers, accepts):
     source = AxisSource(dut, "s", FIELDS, offers=profile(offers, 1))
     AxisSink(dut, "m", accepts=profile(accepts, 2))
     taken, left = (AxisMonitor(dut, side, FIELDS) for side in "sm")
-    Clock(dut.clk, CLOCK_NS, unit="ns").start()
+    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     cocotb.start_soon(follow(dut))
     await reset(dut)
     return source, taken, left

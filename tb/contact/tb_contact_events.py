@@ -93,7 +93,7 @@ class Bench:
         self.touching_due, self.record_due, self.open = {}, {}, []
 
     async def start(self):
-        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.in_valid.value, self.dut.m_event_tready.value, self.dut.rst.value = 0, 0, 1
         await RisingEdge(self.dut.clk)
         await RisingEdge(self.dut.clk)

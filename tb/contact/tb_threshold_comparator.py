@@ -27,7 +27,7 @@ class Bench:
         self.threshold, self.hold = self.highest, False
 
     async def start(self):
-        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.rst.value = 1
         await self.edge(valid=False)
         self.dut.rst.value = 0

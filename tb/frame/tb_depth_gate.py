@@ -40,7 +40,7 @@ class Bench:
         self.monitor.forget()
 
     async def start(self):
-        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.in_valid.value, self.dut.m_ready.value, self.dut.drop_frames.value = 0, 0, 0
         self.dut.rst.value = 1
         for _ in range(2):

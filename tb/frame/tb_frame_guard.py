@@ -76,7 +76,7 @@ class Bench:
         self.enabled = profile(enabled, 2)
 
     async def start(self, timeout=0):
-        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         cocotb.start_soon(self.enable())
         await self.reset(3, timeout)
 

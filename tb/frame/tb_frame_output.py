@@ -75,7 +75,7 @@ class Bench:
 
 
 async def started(dut, **arguments):
-    ClockOf(dut.clk, CLOCK_NS, unit="ns").start()
+    ClockOf(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     bench = Bench(dut, **arguments)
     await bench.start()
     return bench

@@ -23,7 +23,7 @@ class Bench:
         self.model = FrameTags(latency)
 
     async def start(self):
-        Clock(self.dut.clk, CLOCK_NS, unit="ns").start()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.rst.value, self.dut.en.value, self.dut.push.value = 1, 1, 0
         await RisingEdge(self.dut.clk)
 

@@ -1,51 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""back_substitution against its model: codes, latency, saturations; gaps, pauses, reset."""
+"""back_substitution against its model: the tests that it shares with forward_elimination."""
 
-import cocotb
+from tb.poisson.elimination_bench import a_frame_begins_afresh, frames, many_frames, reset_in_mid_frame
 
-from tactile_depth.latency import BACK_SUBSTITUTION
-from tactile_depth.poisson.back_substitution import back_substitution
-from tb.stream import MANY, check_bursts, configuration, corners, uniform
-
-
-async def check(dut, amplitude, frames=3, **behaviour):
-    """Random words up to an amplitude; None: mostly the lowest and the highest."""
-    config = configuration()
-
-    def model(x, monitor):
-        return back_substitution(x.reshape(-1, config.rows, config.columns), config, monitor)
-
-    shape, width = (frames * config.rows, config.columns, 1), config.data_width
-    words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
-    behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.rows}
-    await check_bursts(dut, words, model, BACK_SUBSTITUTION, **behaviour)
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(gap=[0, 30], pause=[0.0, 0.3], amplitude=[0.05, 1.0])
-async def frames(dut, gap, pause, amplitude):
-    await check(dut, amplitude, gap=gap, pause=pause)
-
-
-@cocotb.test(timeout_time=50, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.003, 0.1, None])
-async def many_frames(dut, amplitude):
-    """Ties of every rounding, and clips of every one that can."""
-    await check(dut, amplitude, frames=MANY)
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(amplitude=[0.1, None])
-async def reset_in_mid_frame(dut, amplitude):
-    """As the first words enter and leave, and in the midst of the frame, with en and without; as values are clipped."""
-    config = configuration()
-    inner = config.columns * (config.rows // 2) + config.columns // 2
-    counts = [*range(1, BACK_SUBSTITUTION + 4), *range(inner, inner + 4)]
-    await check(dut, amplitude, interrupts=[count for count in counts for _ in "en"])
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut, strays):
-    """After part of a frame, and after more than one without a start in between."""
-    await check(dut, 0.1, frames=1, strays=strays)
+__all__ = ["a_frame_begins_afresh", "frames", "many_frames", "reset_in_mid_frame"]

@@ -1,30 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_stack against its model: places, latency, rows without a pause; gaps, pauses, reset."""
+"""frame_stack against its model: positions, latency, rows without a pause; gaps, pauses, reset."""
 
 import cocotb
-import numpy as np
 
 from tactile_depth.latency import FRAME_STACK
 from tactile_depth.poisson.frame_stack import frame_stack
-from tb.stream import check_bursts, parameters, places
+from tb.stream import check_frame_memory, parameters, places
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
 async def check(dut, frames=FRAMES, **behaviour):
     size, width, rows = parameters(dut, "Size", "Width", "Rows")
-
-    def model(x, monitor):
-        return frame_stack(x.reshape(-1, rows, size))
-
-    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a place stays
-    source, sink = await check_bursts(
-        dut, words.reshape(-1, size, 1), model, None, in_fields=["data"], out_fields=["data"], frame=rows, **behaviour
-    )
-    last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
-    assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [FRAME_STACK] * frames
-    apart = np.diff(np.array(sink.starts).reshape(frames, rows), axis=1)
-    assert np.all(apart == size), "the rows of a frame follow each other without a pause"
+    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a position stays
+    await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

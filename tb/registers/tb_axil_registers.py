@@ -228,7 +228,7 @@ async def checked(dut, lag: int = 0) -> AsyncIterator[Checker]:
     for name in INPUTS:
         getattr(dut, name).value = 0
     dut.rst.value = 1
-    Clock(dut.clk, 10, unit="ns").start()
+    Clock(dut.clk, 10, unit="ns", impl="gpi").start(start_high=False)
     await RisingEdge(dut.clk)
     checker = Checker(dut)
     follower = cocotb.start_soon(checker.run())

@@ -15,7 +15,7 @@ from tactile_depth.gradient.divergence import divergence
 from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
-from tests.transform.test_sdf_fft import FFT_SOURCES
+from tests.transform.transforms import FFT_SOURCES
 
 SOLVER_SOURCES = [
     *FFT_SOURCES,

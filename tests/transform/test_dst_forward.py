@@ -12,7 +12,7 @@ from tactile_depth.transform.dst_forward import dst_forward
 from tactile_depth.transform.orders import bit_reversed, makhoul
 from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
-from tests.transform.test_sdf_fft import FFT_SOURCES, coefficient_noise
+from tests.transform.transforms import FFT_SOURCES, coefficient_noise, transform_parameters
 
 SOURCES = [*FFT_SOURCES, "dst_forward.sv"]
 
@@ -30,16 +30,7 @@ SOURCES = [*FFT_SOURCES, "dst_forward.sv"]
     ],
 )
 def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width, alternate):
-    parameters = {
-        "Size": size,
-        "InWidth": in_width,
-        "InputDrop": input_drop,
-        "Width": width,
-        "CoeffWidth": coeff,
-        "OutputDrop": output_drop,
-        "OutWidth": out_width,
-        "Alternate": alternate,
-    }
+    parameters = transform_parameters(size, in_width, input_drop, width, coeff, output_drop, out_width, alternate)
     run_tb("dst_forward", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
 
 

@@ -10,19 +10,7 @@ from tactile_depth.rom_files import write_transform
 from tactile_depth.transform.orders import bit_reversed
 from tactile_depth.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
-
-FFT_SOURCES = [
-    "burst_counter.sv",
-    "delay_line.sv",
-    "dot_product.sv",
-    "multiply.sv",
-    "ram.sv",
-    "rom.sv",
-    "round_saturate.sv",
-    "sdf_butterfly.sv",
-    "sdf_fft.sv",
-    "twiddle_multiply.sv",
-]
+from tests.transform.transforms import FFT_SOURCES, coefficient_noise
 
 
 @pytest.mark.structures(
@@ -47,15 +35,6 @@ def test_rtl(run_tb, size, width, coeff, inverse):
         {"Size": size, "Width": width, "CoeffWidth": coeff, "Inverse": inverse},
         roms=lambda folder: write_transform(folder, size, coeff),
     )
-
-
-def coefficient_noise(stages, coeff):
-    """RMS error, relative to the RMS of the result, of a chain of multiplications by rounded factors.
-
-    Both parts of a factor err by up to half a step of 2**(1 - coeff), evenly: sqrt(2 / 12) of it together,
-    and stages add in squares. Measured: 0.3 to 0.8 of that, since some factors are exact.
-    """
-    return np.sqrt(stages / 6) * 2.0 ** (1 - coeff)
 
 
 def transform(z, inverse, coeff, width=40):
