@@ -110,6 +110,16 @@ def shortest(results, clocks):
     return f"({'|'.join(map(re.escape, chosen))})$"
 
 
+def first_failure(run_folder, failed, count, log):
+    """Return the message and the traceback of the first test that failed in a run, and where its log is."""
+    summary = f"{failed} of {count} tests failed: {log}"
+    for case in ElementTree.parse(run_folder / "results.xml").getroot().iter("testcase"):
+        failure = case.find("failure")
+        if failure is not None:
+            return f"{failure.get('message')}\n  in {case.get('name')}; {summary}\n{failure.text}"
+    return summary
+
+
 @pytest.fixture
 def run_tb(simulator, request):
     """Build `toplevel` from `sources` (names in hdl/) and run its testbench.
@@ -152,8 +162,7 @@ def run_tb(simulator, request):
                 **arguments,
             )
             if failed or not count:
-                lines = [line for line in log.read_text().splitlines() if not line.startswith("make")]
-                pytest.fail(f"{failed} of {count} tests failed in {log}\n" + "\n".join(lines[-40:]), pytrace=False)
+                pytest.fail(first_failure(run_folder=folder, failed=failed, count=count, log=log), pytrace=False)
 
         began = time.monotonic()
         play(folder / "run.log", environment)

@@ -15,6 +15,7 @@ from commands.common import repository, variables
 from commands.common.simulator import SIMULATORS
 from tactile_depth.errors import InputError
 
+WIDE = {"COLUMNS": "200"}  # so that the summary shows a whole message
 ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from several random power-up states
 
 
@@ -38,7 +39,7 @@ def tests_of(cores: Sequence[str]) -> list[str]:
 def all_succeed(processes: Sequence[Sequence[str]], **environment: str) -> bool:
     """Run processes one after the other up to the first failure, and return whether all of them succeeded."""
     return all(
-        subprocess.run(process, cwd=repository.ROOT, env=os.environ | environment, check=False).returncode == 0
+        subprocess.run(process, cwd=repository.ROOT, env=os.environ | WIDE | environment, check=False).returncode == 0
         for process in processes
     )
 
