@@ -32,10 +32,11 @@ settings.load_profile("no deadline")
 def pytest_configure(config):
     config.addinivalue_line(
         "markers",
-        "structures(names, both=[..], icarus=[..], regress=[..]): parameter sets of an RTL test, as in parametrize. "
-        "Each of `both` runs on both simulators. Those of `icarus` run there alone: it builds in 0.1 s what takes "
-        "Verilator 5 s. Those of `regress` do so too, but in `make regress` only. With HDL_COVERAGE=1 all run on "
-        "Verilator, because only Verilator counts coverage.",
+        "structures(names, both=[..], verilator=[..], icarus=[..], regress=[..], regress_verilator=[..]): parameter "
+        "sets of an RTL test, as in parametrize. Those of `both` run on both simulators, those of `verilator` and of "
+        "`icarus` on one. Icarus builds in 0.1 s what takes Verilator 5 s. Those of `regress` run on Icarus and those "
+        "of `regress_verilator` on Verilator, in `make regress` only. With HDL_COVERAGE=1 all run on Verilator, "
+        "because only Verilator counts coverage.",
     )
     config.addinivalue_line(
         "markers", "regress: runs in `make regress` only; `make test` runs a smaller case of the same"
@@ -51,16 +52,27 @@ def pytest_generate_tests(metafunc):
     if mark is None:
         metafunc.parametrize("simulator", SIMULATORS, indirect=True)
         return
-    names, both = mark.args[0], mark.kwargs["both"]
-    alone = "verilator" if simulation.COVERAGE else "icarus"
-    cases = [pytest.param(name, *case, id=_id(name, *case)) for name in SIMULATORS for case in both]
-    if alone in SIMULATORS:
-        cases += [pytest.param(alone, *case, id=_id(alone, *case)) for case in mark.kwargs.get("icarus", [])]
-        marks = [] if simulation.COVERAGE else [pytest.mark.regress]
-        cases += [
-            pytest.param(alone, *case, id=_id(alone, *case), marks=marks) for case in mark.kwargs.get("regress", [])
-        ]
-    metafunc.parametrize(("simulator", *names.split()), cases, indirect=["simulator"])
+    chosen = chosen_structures(mark.kwargs)
+    cases = [
+        pytest.param(simulator, *case, id="-".join(map(_label, (simulator, *case))), marks=marks)
+        for simulator in SIMULATORS
+        for case, marks in chosen[simulator]
+    ]
+    metafunc.parametrize(("simulator", *mark.args[0].split()), cases, indirect=["simulator"])
+
+
+def chosen_structures(groups):
+    """Return the structures of a mark by simulator, each with its marks."""
+    both, verilator, icarus = (groups.get(name, []) for name in ("both", "verilator", "icarus"))
+    regress, regress_verilator = (groups.get(name, []) for name in ("regress", "regress_verilator"))
+    if simulation.COVERAGE:
+        every = [*both, *verilator, *icarus, *regress]
+        return {"verilator": [(case, ()) for case in every], "icarus": []}
+    late = pytest.mark.regress
+    return {
+        "verilator": [(case, ()) for case in (*both, *verilator)] + [(case, late) for case in regress_verilator],
+        "icarus": [(case, ()) for case in (*both, *icarus)] + [(case, late) for case in regress],
+    }
 
 
 def begins_at_random(item):
@@ -73,6 +85,9 @@ def begins_at_random(item):
 
 def pytest_collection_modifyitems(config, items):
     """Leave out what only `make regress` runs."""
+    for item in items:
+        if "run_tb" in getattr(item, "fixturenames", ()) and item.callspec.params["simulator"] == "icarus":
+            item.add_marker("seeds")
     only_power_ups = os.environ.get("ONLY") == "power_ups"
     chosen, others = [], []
     for item in items:
@@ -81,10 +96,6 @@ def pytest_collection_modifyitems(config, items):
         (others if in_regress_only or other_part else chosen).append(item)
     config.hook.pytest_deselected(items=others)
     items[:] = chosen
-
-
-def _id(*values):
-    return "-".join(_label(value) for value in values)
 
 
 def _label(value):

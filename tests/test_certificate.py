@@ -246,15 +246,23 @@ def run(tmp_path, *arguments, rtl=True):
 
 
 @pytest.mark.parametrize(
-    "given",
+    ("given", "depth_range"),
     [
-        "N=16",
-        "N=16 BOUNDARY=neumann CALIBRATION=gelsight-mini",
-        "ROWS=9 COLS=16 SOLVER=tridiagonal",
-        "ROWS=12 COLS=32 SOLVER=tridiagonal BOUNDARY=neumann DATA_WIDTH=16 COEFF_WIDTH=12",
+        ("N=16", ""),
+        ("N=16", "worst"),
+        ("ROWS=12 COLS=32 SOLVER=tridiagonal BOUNDARY=neumann DATA_WIDTH=16 COEFF_WIDTH=12", ""),
+        *(
+            pytest.param(*case, marks=pytest.mark.regress)
+            for case in (
+                ("ROWS=12 COLS=32 SOLVER=tridiagonal BOUNDARY=neumann DATA_WIDTH=16 COEFF_WIDTH=12", "worst"),
+                ("N=16 BOUNDARY=neumann CALIBRATION=gelsight-mini", ""),
+                ("N=16 BOUNDARY=neumann CALIBRATION=gelsight-mini", "worst"),
+                ("ROWS=9 COLS=16 SOLVER=tridiagonal", ""),
+                ("ROWS=9 COLS=16 SOLVER=tridiagonal", "worst"),
+            )
+        ),
     ],
 )
-@pytest.mark.parametrize("depth_range", ["", "worst"])
 def test_rtl_and_model_saturate_where_the_certificate_says(tmp_path, capsys, given, depth_range):
     document = run(tmp_path, *given.split(), "SIM=icarus", f"DEPTH_RANGE={depth_range}")
     assert document["rtl"]

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The stream contract of tactile_depth under attack: every break at every position, resets in every phase.
 
-Icarus is a hundred times slower than Verilator, so on each grid:
+Icarus is a hundred times slower than Verilator, so `make test` takes a sample and `make regress` (REGRESS=1) the rest:
 
-                make test                              REGRESS=1
-    Verilator   every break at every position, one     the full product of breaks, positions and what follows,
-                of what can follow drawn for each      with and without stalls
-    Icarus      one in 8 of it on the smallest grid,   every break at every position of 16 x 16, one of what can
-                on the others one in 64                follow drawn for each; stalled half of them, and of a
+                make test                              make regress
+    Verilator   two grids: every break at every        five grids: the full product of breaks, positions and what
+                position, one of what can follow       follows, with and without stalls
+                drawn for each
+    Icarus      one in 8 of it on the smallest grid    every break at every position of 16 x 16, one of what can
+                                                       follow drawn for each; stalled half of them, and of a
                                                        solver's two boundaries one; the smallest grid as on the left
 """
 
@@ -17,7 +18,7 @@ from itertools import groupby
 
 import pytest
 
-from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.configuration import Configuration
 from tb.stream import REGRESS
 from tests.attack import PROFILES, Attack, Outcome, Reset, attack, cases, phases, resets
 from tests.conftest import SEED
@@ -32,7 +33,7 @@ GRIDS = {
     "tridiagonal-16-neumann": {"columns": 16, "solver": "tridiagonal", "neumann": True},
 }
 SMALLEST = "tridiagonal-8x16-neumann"
-BOTH = [(grid,) for grid in GRIDS][: None if REGRESS else 2]  # on both simulators
+EVERY = [(grid,) for grid in GRIDS]
 STRIDE = {"verilator": 1, "icarus": 32}
 SMALLEST_STRIDE = {"verilator": 1, "icarus": 8}
 PHASES = {"verilator": 3, "icarus": 128}  # one in so many; REGRESS: each, with each number of clocks; Icarus 1 in 16
@@ -69,7 +70,7 @@ def note(what, simulator, grid, out: Outcome, began):
     )
 
 
-@pytest.mark.structures("grid", both=BOTH, icarus=[(grid,) for grid in GRIDS][len(BOTH) :])
+@pytest.mark.structures("grid", both=EVERY[:1], verilator=EVERY[1:2], regress=EVERY[1:], regress_verilator=EVERY[2:])
 @pytest.mark.parametrize("silent", [False, True], ids=["register-off", "register-on"])
 @pytest.mark.parametrize("stalled", [False, True], ids=["flowing", "stalled"])
 def test_every_break_at_every_position(device, simulator, grid, stalled, silent):
@@ -78,7 +79,7 @@ def test_every_break_at_every_position(device, simulator, grid, stalled, silent)
     note(("stalled" if stalled else "flowing") + (", time-out on" if silent else ""), simulator, grid, out, began)
 
 
-@pytest.mark.structures("grid", both=BOTH)
+@pytest.mark.structures("grid", both=EVERY[:1], verilator=EVERY[1:2], regress=EVERY[1:], regress_verilator=EVERY[2:])
 def test_resets_in_every_phase(device, simulator, grid):
     config, began = Configuration(**GRIDS[grid]), time.monotonic()
     every = phases(config)
@@ -94,7 +95,7 @@ def test_resets_in_every_phase(device, simulator, grid):
 
 
 @pytest.mark.parametrize("simulator", ["verilator"], indirect=True)
-@pytest.mark.parametrize("solver", COLUMNS)
+@pytest.mark.parametrize("solver", ["tridiagonal", pytest.param("spectral", marks=pytest.mark.regress)])
 def test_a_sample_at_128(device, simulator, solver):
     """Whole frames of 16,384 pixels: each kind of break at a place drawn for it, and resets."""
     config, rng = Configuration(columns=128, solver=solver), random.Random(SEED)

@@ -34,7 +34,6 @@ from tactile_depth.reference import quadratic_slopes, quadratic_terms
 from tactile_depth.scenes import LIGHTS
 from tactile_depth.sensor import MODELS
 from tactile_depth.tactile_depth import slope_codes, solve
-from tb.stream import REGRESS
 from tests.ball_presses import (
     CAMERA,
     GRID,
@@ -307,7 +306,7 @@ def test_real_presses_held_out_keep_their_height_through_the_bit_accurate_models
     assert (stored.mean, stored.spread, stored.presses) == pytest.approx((error.mean, error.spread, error.presses))
 
 
-@pytest.mark.skipif(not REGRESS, reason="REGRESS=1 is not set (make regress sets it): 22 fits, most of a minute")
+@pytest.mark.regress  # 22 fits, most of a minute
 def test_every_whole_real_press_held_out_in_turn(real_presses):
     evaluation = fit_presses(real_presses, each_in_turn=True).evaluation
     errors = {model: evaluation.height_error(model) for model in MODELS}

@@ -2,15 +2,13 @@
 """tactile_depth: RTL against the models, at its pins."""
 
 import json
-import time
 from itertools import product
 
 import pytest
 
 from tactile_depth.configuration import COLUMNS, ULTRA, Configuration
-from tactile_depth.scenes import render
 from tactile_depth.sensor import synthetic
-from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
+from tactile_depth.tactile_depth import top_parameters, write_roms
 from tb.stream import REGRESS
 from tests.attack import PROFILES
 
@@ -42,7 +40,6 @@ SPECTRAL = f"^(?!.*({REPEATED}|{OF_ONE}))"
 DISTURBED = "gaps_and_stalls/offers=random/accepts=random"
 # Of the spectral solver on Icarus, which takes four times as long for it as for the other; of other formats there.
 FIRST_OF_THEM = ("every_fault", "every_fault_in_a_row/accepts=none")
-SLOW = f"{FORMATS}|one_frame|words_before|resets.*=2".replace(*FIRST_OF_THEM)
 PACKED = "back_to_back"
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=random"
 LARGER_SLOW = "configuration|back_to_back"
@@ -60,33 +57,40 @@ SECOND = (
 TRIDIAGONAL = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
-@pytest.mark.parametrize(
-    ("choices", "tests"),
-    [
-        ({"columns": 16, "bits_per_channel": 2}, ""),
-        ({"columns": 16, "data_width": 27, "neumann": True}, FORMATS),
-        ({"columns": 32, "data_width": 12, "bits_per_channel": 3}, LARGER),
-        (TRIDIAGONAL | {"bits_per_channel": 2}, ""),
-        (TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
-        (TRIDIAGONAL | {"flat_field": True, "gradient_model": "quadratic"}, FLAT),
-        ({"columns": 16, "flat_field": True, "neumann": True, "auto_zero": True}, FLAT),
-        (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "auto_zero": True}, FLAT),
+FLAT_QUADRATIC = {"flat_field": True, "gradient_model": "quadratic"}
+STRUCTURES = {  # choices of the configuration, and which tests run ("": every test)
+    "16-24": ({"columns": 16, "bits_per_channel": 2}, ""),
+    "16-27-neumann": ({"columns": 16, "data_width": 27, "neumann": True}, FORMATS),
+    "32-12": ({"columns": 32, "data_width": 12, "bits_per_channel": 3}, LARGER),
+    "tridiagonal-8x16": (TRIDIAGONAL | {"bits_per_channel": 2}, ""),
+    "tridiagonal-21x16-neumann": (TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
+    "tridiagonal-8x16-quadratic": (TRIDIAGONAL | FLAT_QUADRATIC, FLAT),
+    "16-flat-neumann": ({"columns": 16, "flat_field": True, "neumann": True, "auto_zero": True}, FLAT),
+    "tridiagonal-8x16-zero": (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "auto_zero": True}, FLAT),
+}
+
+
+@pytest.mark.seeds
+@pytest.mark.structures(
+    "name",
+    both=[("tridiagonal-8x16-quadratic",), ("tridiagonal-8x16-zero",)],
+    verilator=[("tridiagonal-8x16",), ("16-24",), ("16-flat-neumann",)],
+    icarus=[("32-12",)],
+    regress=[
+        ("tridiagonal-8x16",),
+        ("16-24",),
+        ("16-flat-neumann",),
+        ("16-27-neumann",),
+        ("tridiagonal-21x16-neumann",),
     ],
-    ids=[
-        *("16-24", "16-27-neumann", "32-12", "tridiagonal-8x16", "tridiagonal-21x16-neumann"),
-        *("tridiagonal-8x16-quadratic", "16-flat-neumann"),
-        "tridiagonal-8x16-zero",
-    ],
+    regress_verilator=[("16-27-neumann",), ("32-12",), ("tridiagonal-21x16-neumann",)],
 )
-def test_rtl(run_tb, simulator, choices, tests):
+def test_rtl(run_tb, simulator, name):
+    choices, tests = STRUCTURES[name]
     config = Configuration(**choices)
     spectral, slow = config.solver == "spectral", simulator == "icarus"
     if not REGRESS:
-        if slow and spectral and config.neumann:
-            pytest.skip("REGRESS=1 is not set (make regress sets it): half a minute; Verilator runs the same")
-        if not tests and slow:
-            tests = SLOW if spectral else f"{ONCE}|{DISTURBED}"
-        elif not tests:
+        if not tests:
             tests = f"{SPECTRAL if spectral else EVERY}|{PAIRS[config.solver]}"
         elif slow:
             tests = LARGER_SLOW if tests == LARGER else tests.replace(*FIRST_OF_THEM)
@@ -115,11 +119,11 @@ def test_words_side_by_side_in_the_frame_store(run_tb, simulator):
     )
 
 
-@pytest.mark.parametrize("choices", [TRIDIAGONAL | {"bits_per_channel": 2}], ids=["tridiagonal-8x16"])
-def test_a_second_client(run_tb, simulator, choices):
+@pytest.mark.seeds
+@pytest.mark.structures("name", verilator=[("tridiagonal-8x16",)], regress=[("tridiagonal-8x16",)])
+def test_a_second_client(run_tb, name):
     """The same tests through cocotbext-axi, but for those that break a stream off in mid row."""
-    if simulator == "icarus" and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): over a minute; Verilator runs the same")
+    choices, _ = STRUCTURES[name]
     config = Configuration(**choices)
     run_tb(
         "tactile_depth",
@@ -132,16 +136,3 @@ def test_a_second_client(run_tb, simulator, choices):
             "CLIENT": "second",
         },
     )
-
-
-@pytest.mark.parametrize("solver", COLUMNS)
-def test_the_model_makes_a_hundred_frames_a_second(solver):
-    """At 128, on one core; measured 200 (spectral) and 350. By the processor's time: other work does not count."""
-    frames, calibration, config = render("bench", 128).frames[:8], synthetic(), Configuration(solver=solver)
-    tactile_depth(frames[:1], calibration, config)  # its tables
-    took = []
-    for _ in range(5):
-        begun = time.process_time()
-        tactile_depth(frames, calibration, config)
-        took.append(time.process_time() - begun)
-    assert len(frames) / min(took) >= 100

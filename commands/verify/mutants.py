@@ -23,6 +23,7 @@ from commands.common import simulator as simulation
 SELECTOR = "mutsel"
 MANY = 60  # of what tests repeat to meet what comes seldom (tb/stream.py), where it is counted what they meet
 # A register becomes an input, its value, and an output, what it takes next.
+GROUPS = ("both", "verilator", "icarus", "regress")  # of the mark `structures` in tests/conftest.py
 OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
 dffunmap @register
 expose -evert-dff -sep __ w:{name} @register %u
@@ -75,7 +76,8 @@ def structure(core: str, index: int) -> Structure:
     names: list[str] = []
     for mark in getattr(test, "pytestmark", []):
         if mark.name == "structures":
-            names, cases = mark.args[0].split(), [*mark.kwargs["both"], *mark.kwargs.get("icarus", [])]
+            names = mark.args[0].split()
+            cases = [case for group in GROUPS for case in mark.kwargs.get(group, [])]
         elif mark.name == "parametrize":
             names = [mark.args[0]] if isinstance(mark.args[0], str) else list(mark.args[0])
             cases = [case if len(names) > 1 else (case,) for case in mark.args[1]]

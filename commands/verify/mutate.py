@@ -81,16 +81,16 @@ CORES = {
     "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
     "divergence": Core(protocols.divergence, (5,)),
     "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (5,)),
-    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (7,)),
-    "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (1,)),
-    "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
-    "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (3,)),
+    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (4,)),
+    "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (2,)),
+    "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
+    "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
     "mode_pairs": Core(lambda p: protocols.bursts(p["Size"], None), (4,)),
     "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
     "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (6,)),
     "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
-    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (6,), flat=False),
-    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (6,), flat=False),
+    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (5,), flat=False),
+    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (5,), flat=False),
     "frame_output": Core(protocols.frame_output, (1,)),
     "frame_tags": Core(protocols.frame_tags, (4,)),
     "axil_registers": Core(
@@ -101,14 +101,14 @@ CORES = {
         ),
     ),
     "spectral_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (1,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
+        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
     ),
     "tridiagonal_solver": Core(
         lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, bar=WHOLE, flat=False
     ),
     "tactile_depth": Core(
         protocols.tactile_depth,
-        (3,),
+        (2,),
         simulators=("verilator",),
         bar=WHOLE,
         flat=False,

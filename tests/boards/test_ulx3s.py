@@ -3,6 +3,8 @@
 
 import json
 
+import pytest
+
 from commands.hardware.fpga import SOURCES, threshold
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import synthetic
@@ -14,6 +16,7 @@ CLOCKS_A_BIT = 4
 QUICK = "^(?!.*broken)"  # `make regress` breaks transfers off as well
 
 
+@pytest.mark.seeds
 def test_rtl(run_tb, simulator):
     tests = "wakes|frames" if simulator == "icarus" else "" if REGRESS else QUICK  # 20 times slower there
     choices = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}

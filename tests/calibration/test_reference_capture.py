@@ -12,17 +12,16 @@ from tactile_depth.calibration.reference_capture import (
     reference_capture_parameters,
 )
 from tactile_depth.configuration import GAIN_WIDTH, Configuration
-from tb.stream import REGRESS
 
 
 @pytest.mark.structures(
     "columns rows largest",
-    both=[(16, 8, 8 if REGRESS else 5)],  # of frames, log2
-    icarus=[(16, 8, 2), *([(16, 16, 3), (32, 21, 3), (128, 8, 4)] if REGRESS else [])],
+    verilator=[(16, 8, 5)],  # columns, rows, log2 of the largest number of frames
+    icarus=[(16, 8, 2)],
+    regress=[(16, 16, 3), (32, 21, 3), (128, 8, 4), (16, 8, 8)],
+    regress_verilator=[(16, 8, 8)],
 )
-def test_rtl(run_tb, simulator, columns, rows, largest):
-    if simulator == "icarus" and largest > 2 and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): Verilator runs the same, Icarus up to 4 frames")
+def test_rtl(run_tb, columns, rows, largest):
     choices = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
     run_tb(
         "reference_capture",

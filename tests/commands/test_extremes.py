@@ -28,9 +28,11 @@ SOLVERS = tuple(COLUMNS)
 # RMS in codes of the worst frame where nothing saturates; measured at 16 on 24 bits: up to 59, at 12 bits 5.0, at 32
 # bits 36 (coefficients of 18 and 24 bits weigh more in wider words).
 QUIET_RMS_CODES = 75.0
+# The tridiagonal solver runs in `make test`, the slower one in `make regress`.
+SPECTRAL_IN_REGRESS = ["tridiagonal", pytest.param("spectral", marks=pytest.mark.regress)]
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name.replace(" ", "-"))
 def test_row(extreme, solver):
     row = measure(extreme, solver, SIZE, "icarus")
@@ -48,6 +50,7 @@ def test_the_smallest_grid(solver):
     assert row.rms_codes < QUIET_RMS_CODES
 
 
+@pytest.mark.regress
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_the_largest_grid(solver):
     extreme = largest(solver)
@@ -57,6 +60,7 @@ def test_the_largest_grid(solver):
     assert row.rms_percent < 0.1
 
 
+@pytest.mark.regress
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_frames_back_to_back_do_not_drift(solver):
     extreme = drift(32)

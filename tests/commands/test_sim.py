@@ -19,7 +19,6 @@ from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.pipeline import Pipeline
 from tactile_depth.samples import sample
 from tactile_depth.sensor import load
-from tb.stream import REGRESS
 
 PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
 
@@ -33,6 +32,10 @@ def run(tmp_path, *arguments):
     return json.loads((out / "report.json").read_text())
 
 
+# The tridiagonal solver runs in `make test`, the slower one in `make regress`.
+SPECTRAL_IN_REGRESS = ["tridiagonal", pytest.param("spectral", marks=pytest.mark.regress)]
+
+
 def only(values):
     """The one value that a list repeats."""
     assert len(set(values)) == 1, f"not constant: {sorted(set(values))}"
@@ -40,10 +43,8 @@ def only(values):
 
 
 @pytest.mark.parametrize("solver", COLUMNS)
-@pytest.mark.parametrize("size", [64, 128, 256])
+@pytest.mark.parametrize("size", [64, *(pytest.param(size, marks=pytest.mark.regress) for size in (128, 256))])
 def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
-    if simulator == "icarus" and size > 64 and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): up to a minute; Verilator runs the same")
     report = run(tmp_path, f"N={size}", f"SIM={simulator}", f"SOLVER={solver}")
     assert report["bit_exact"]
     assert report["registers_agree"]
@@ -56,10 +57,10 @@ def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
 
 
 @pytest.mark.parametrize("boundary", sim.BOUNDARIES)
-@pytest.mark.parametrize(("rows", "columns", "chosen"), [(8, 16, "icarus"), (240, 256, "verilator")])
+@pytest.mark.parametrize(
+    ("rows", "columns", "chosen"), [(8, 16, "icarus"), pytest.param(240, 256, "verilator", marks=pytest.mark.regress)]
+)
 def test_rectangles(tmp_path, rows, columns, boundary, chosen):
-    if rows == 240 and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): a large build; the small one runs here")
     given = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
     report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
     assert report["grid"] == [rows, columns]
@@ -76,7 +77,7 @@ def test_rows_are_in_the_order_of_the_input(tmp_path):
     np.testing.assert_allclose(depth["spectral"], depth["tridiagonal"], atol=1e-3 * depth["spectral"].max())
 
 
-@pytest.mark.skipif(not REGRESS, reason="REGRESS=1 is not set (make regress sets it): test_extremes.py runs it once")
+@pytest.mark.regress
 def test_the_largest_grid(tmp_path):
     report = run(tmp_path, "N=1024", "SOLVER=tridiagonal")
     assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * 1024 + 64
@@ -87,20 +88,23 @@ def test_the_largest_grid(tmp_path):
     ("solver", "boundary", "size", "data_width", "percent"),
     [
         ("spectral", "dirichlet", 64, 24, 0.005),
-        ("spectral", "dirichlet", 128, 24, 0.005),
-        ("spectral", "dirichlet", 256, 24, 0.02),
-        ("spectral", "neumann", 128, 24, 0.01),
-        ("tridiagonal", "dirichlet", 64, 24, 0.005),
-        ("tridiagonal", "dirichlet", 128, 24, 0.005),
-        ("tridiagonal", "dirichlet", 128, 27, 0.001),
-        ("tridiagonal", "neumann", 128, 24, 0.01),
-        ("tridiagonal", "neumann", 128, 27, 0.002),
-        ("tridiagonal", "dirichlet", 512, 27, 0.01),
+        ("tridiagonal", "neumann", 128, 24, 0.01),  # what a real sensor uses
+        *(
+            pytest.param(*case, marks=pytest.mark.regress)
+            for case in (
+                ("spectral", "dirichlet", 128, 24, 0.005),
+                ("spectral", "dirichlet", 256, 24, 0.02),
+                ("spectral", "neumann", 128, 24, 0.01),
+                ("tridiagonal", "dirichlet", 64, 24, 0.005),
+                ("tridiagonal", "dirichlet", 128, 24, 0.005),
+                ("tridiagonal", "dirichlet", 128, 27, 0.001),
+                ("tridiagonal", "neumann", 128, 27, 0.002),
+                ("tridiagonal", "dirichlet", 512, 27, 0.01),
+            )
+        ),
     ],
 )
 def test_accuracy_and_rate(tmp_path, solver, boundary, size, data_width, percent):
-    if size == 512 and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): a build and a model of 2 million pixels")
     chosen = [f"SOLVER={solver}", f"BOUNDARY={boundary}", f"DATA_WIDTH={data_width}"]
     report = run(tmp_path, f"N={size}", "FRAMES=contacts", *chosen)
     latency = first_depth_latency(Configuration(columns=size, solver=solver))
@@ -118,7 +122,13 @@ def test_accuracy_and_rate(tmp_path, solver, boundary, size, data_width, percent
 
 
 @pytest.mark.parametrize("solver", COLUMNS)
-@pytest.mark.parametrize("disturbance", [["GAPS=0.3"], ["STALLS=0.3"], ["GAPS=0.3", "STALLS=0.3"]])
+@pytest.mark.parametrize(
+    "disturbance",
+    [
+        ["GAPS=0.3", "STALLS=0.3"],
+        *(pytest.param([alone], marks=pytest.mark.regress) for alone in ("GAPS=0.3", "STALLS=0.3")),
+    ],
+)
 def test_gaps_and_stalls(tmp_path, disturbance, solver):
     quiet = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
     codes = np.load(tmp_path / "out" / "depth.npy")
@@ -144,7 +154,7 @@ def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path, solver):
     assert run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}")["saturations"] == {}
 
 
-@pytest.mark.parametrize("solver", COLUMNS)
+@pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path, solver):
     deepest = 16 * 15.232 / 64  # mm: the peak of `deep` at N = 64, a quarter of the grid
     report = run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}", f"DEPTH_RANGE={deepest / 2.05}")
@@ -161,9 +171,8 @@ def test_flat_gel_reads_nothing(tmp_path):
     assert report["contact_latency_cycles"] == [None]
 
 
+@pytest.mark.structures("", icarus=[()], regress_verilator=[()])  # Verilator compiles its whole runtime for it
 def test_waves(tmp_path, simulator):
-    if simulator == "verilator" and not REGRESS:
-        pytest.skip("REGRESS=1 is not set (make regress sets it): it compiles all of Verilator's runtime again")
     out = tmp_path / "out"
     assert sim.run(sim.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
     assert [p for p in out.iterdir() if p.suffix in (".vcd", ".fst") and p.stat().st_size]
@@ -255,7 +264,7 @@ def test_flagged_pixels_are_painted():
     assert (frame == 50).all()
 
 
-@pytest.mark.parametrize("solver", sim.SOLVERS)
+@pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 def test_a_floor_is_subtracted(tmp_path, solver):
     """The mean depth of two frames without contact, in the RTL and in double precision."""
     rest = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)

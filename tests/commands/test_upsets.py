@@ -8,6 +8,7 @@ from tb.stream import REGRESS
 from tests.conftest import SEED
 
 
+@pytest.mark.seeds
 @pytest.mark.parametrize("case", CASES if REGRESS else list(CASES)[-1:])
 def test_sample(case, tmp_path):
     results = run(case, upsets=1, seed=SEED, folder=tmp_path)  # of each module

@@ -5,7 +5,6 @@ import pytest
 
 from tactile_depth.frame.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
-from tb.stream import REGRESS
 
 TIMEOUT = 5
 ROWS, COLUMNS = 4, 8  # of the model's frames
@@ -13,8 +12,10 @@ ROWS, COLUMNS = 4, 8  # of the model's frames
 
 @pytest.mark.structures(
     "rows columns",
-    both=[(8, 2), *([(4, 8)] if REGRESS else [])],
+    verilator=[(8, 2)],
     icarus=[(3, 4)],
+    regress=[(8, 2), (4, 8)],
+    regress_verilator=[(4, 8)],
 )
 def test_rtl(run_tb, rows, columns):
     run_tb("frame_guard", ["frame_guard.sv"], {"Rows": rows, "Columns": columns})

@@ -11,12 +11,11 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.rom_files import write_gradient
 from tactile_depth.sensor import Sensor, synthetic
-from tb.stream import REGRESS
 
 SOURCES = ["gradient_lookup.sv", "ram.sv"]
 
 
-@pytest.mark.structures("bits data_width", both=[(2, 24)], icarus=[(1, 32), (3, 12), *([(4, 24)] if REGRESS else [])])
+@pytest.mark.structures("bits data_width", both=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24)])
 def test_rtl(run_tb, bits, data_width):
     choices = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
     config = Configuration(**choices)

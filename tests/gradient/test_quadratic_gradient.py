@@ -24,9 +24,11 @@ def any_words(width, seed=1):
     both=[tuple(gradient_parameters(Configuration(columns=16)).values()), (3, 3, 3, 5, 3)],
     icarus=[
         tuple(gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
+        (14, 4, 5, 9, 0),
+    ],
+    regress=[
         tuple(gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
         (6, 4, 4, 4, 1),
-        (14, 4, 5, 9, 0),
         (10, 4, 5, 9, -2),
         (12, 4, 5, 9, -2),
     ],

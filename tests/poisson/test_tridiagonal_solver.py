@@ -25,12 +25,15 @@ CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/configuration.py
 
 
+@pytest.mark.seeds
 @pytest.mark.structures(
     "choices store",
     both=[(CHOICES, {})],
     icarus=[
         (CHOICES | {"rows": 21, "neumann": True}, {}),
         (CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}),
+    ],
+    regress=[
         (CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
         (CHOICES | {"columns": 32, "rows": 11}, PACKED),
     ],

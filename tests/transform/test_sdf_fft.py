@@ -22,11 +22,8 @@ from tests.transform.transforms import FFT_SOURCES, coefficient_noise
         (8, 12, 10, 1),
         (16, 27, 18, 0),
         (16, 27, 18, 1),
-        (64, 15, 10, 0),
-        (64, 15, 10, 1),
-        (128, 35, 24, 0),
-        (128, 35, 24, 1),
     ],
+    regress=[(64, 15, 10, 0), (64, 15, 10, 1), (128, 35, 24, 0), (128, 35, 24, 1)],
 )
 def test_rtl(run_tb, size, width, coeff, inverse):
     run_tb(
