@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make lint`: every checker over every core and over the whole in its structures; any finding fails.
 
-Waivers, each with its reason, are in hdl/verilator.vlt, hdl/verible.rules and slang_lint.py; Yosys, Icarus and mypy
-have none, ruff's are in pyproject.toml.
+With CORE=a,b it checks these cores alone. Waivers, each with its reason, are in hdl/verilator.vlt, hdl/verible.rules
+and slang_lint.py; Yosys, Icarus and mypy have none, ruff's are in pyproject.toml.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -61,7 +62,7 @@ class Structure:
 
 @dataclass(frozen=True)
 class Check:
-    """One run of a tool; it gives what the tool says, nothing when all is well."""
+    """One run of a tool; `run` returns what the tool reports, nothing when all is well."""
 
     tool: str
     name: str
@@ -84,8 +85,8 @@ def structures() -> list[Structure]:
     ]
 
 
-def told(command: Sequence[str | Path]) -> str:
-    """Everything a command prints; a failure without a word is a finding too."""
+def output_of(command: Sequence[str | Path]) -> str:
+    """Return everything that a command prints, or its exit status if it fails without a word."""
     result = subprocess.run(
         [str(word) for word in command],
         cwd=repository.ROOT,
@@ -104,7 +105,7 @@ def told(command: Sequence[str | Path]) -> str:
 def verilator(structure: Structure, files: Sequence[Path]) -> str:
     parameters = [f"-G{name}={value}" for name, value in structure.parameters.items()]
     top = ["--top-module", structure.top]
-    return told(
+    return output_of(
         ["verilator", "--lint-only", "-Wall", "--quiet", *top, *parameters, repository.HDL / "verilator.vlt", *files]
     )
 
@@ -112,17 +113,28 @@ def verilator(structure: Structure, files: Sequence[Path]) -> str:
 def icarus(structure: Structure, files: Sequence[Path]) -> str:
     top = structure.top
     parameters = [f"-P{top}.{name}={value}" for name, value in structure.parameters.items()]
-    return told(["iverilog", "-g2012", "-Wall", "-t", "null", "-s", top, *parameters, *files])
+    return output_of(["iverilog", "-g2012", "-Wall", "-t", "null", "-s", top, *parameters, *files])
 
 
 def slang(tops: Sequence[str], parameters: dict[str, int], files: Sequence[Path]) -> str:
     given = [f"-G{name}={value}" for name, value in parameters.items()]
-    return told([sys.executable, "-m", "commands.verify.slang_lint", ",".join(tops), *given, *files])
+    return output_of([sys.executable, "-m", "commands.verify.slang_lint", ",".join(tops), *given, *files])
+
+
+def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
+    """Analyse cores; leave out findings in files of other cores, which these cores alone do not use."""
+    others = {
+        str(core.hdl.relative_to(repository.ROOT)) for core in repository.cores().values() if core.name not in cores
+    }
+    if len(cores) < len(repository.cores()):
+        others |= {str(file.relative_to(repository.ROOT)) for file in files if file.stem.endswith(repository.PACKAGE)}
+    reported = slang(cores, {}, files).splitlines()
+    return "\n".join(line for line in reported if line.partition(":")[0] not in others)
 
 
 def verible(files: Sequence[Path]) -> str:
     rules = ["--ruleset", "all", "--rules_config", repository.HDL / "verible.rules"]
-    return told([BIN / "verible-verilog-lint", *rules, *files])
+    return output_of([BIN / "verible-verilog-lint", *rules, *files])
 
 
 def yosys(structures: Sequence[Structure], files: Sequence[Path], folder: Path) -> str:
@@ -143,8 +155,8 @@ def yosys(structures: Sequence[Structure], files: Sequence[Path], folder: Path) 
     return yosys_runner.run(script, "-e", ".*", timeout_s=TIMEOUT_S)
 
 
-def yosys_cores(files: Sequence[Path]) -> str:
-    """Every core at its defaults, which are those of the default configurations."""
+def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
+    """Check cores at their default parameters, which are those of the default configurations."""
     folder = FOLDER / "yosys"
     folder.mkdir(parents=True, exist_ok=True)
     for solver in COLUMNS:
@@ -154,7 +166,7 @@ def yosys_cores(files: Sequence[Path]) -> str:
     write_gains(folder, unit_gains(Configuration()))
     write_floor(folder, no_floor(Configuration()), Configuration().depth.width)
     write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
-    return yosys([Structure(name) for name in modules(files)], files, folder)
+    return yosys([Structure(name) for name in cores], files, folder)
 
 
 def yosys_structure(structure: Structure, files: Sequence[Path]) -> str:
@@ -166,7 +178,7 @@ def yosys_structure(structure: Structure, files: Sequence[Path]) -> str:
 
 
 def columns(files: Iterable[Path], limit: int = 120) -> str:
-    """Lines that are too long: verible passes over comments."""
+    """Name lines that are too long, since verible passes over comments."""
     return "\n".join(
         f"{os.path.relpath(path)}:{number}: {len(line)} columns, at most {limit}"
         for path in files
@@ -175,50 +187,62 @@ def columns(files: Iterable[Path], limit: int = 120) -> str:
     )
 
 
+def core_checks(cores: Sequence[str]) -> list[Check]:
+    """Return the checks of cores at their default parameters."""
+    files, tops = repository.sources(), [Structure(name) for name in cores]
+    own = [repository.cores()[name].hdl for name in cores]
+    return [
+        *(Check("verilator", top.name, partial(verilator, top, files)) for top in tops),
+        *(Check("icarus", top.name, partial(icarus, top, files)) for top in tops),
+        Check("slang", "cores", partial(slang_cores, cores, files)),
+        Check("yosys", "cores", partial(yosys_cores, cores, files)),
+        Check("verible", "rules", partial(verible, own)),
+        Check("verible", "columns", partial(columns, own)),
+    ]
+
+
 def checks() -> list[Check]:
+    """Return the checks of every core, of the boards, of the whole in its structures, and of the Python files."""
     files = repository.sources()
     benches = sorted((repository.ROOT / "tb").glob("*.sv"))
     boards = [path for sources in fpga.SOURCES.values() for path in sources]
-    tops = [Structure(name) for name in modules(boards)]
-    cores, whole = [Structure(name) for name in modules(files)], structures()
-    found = [Check("verilator", s.name, lambda s=s: verilator(s, files)) for s in (*cores, *whole)]
-    found += [Check("icarus", s.name, lambda s=s: icarus(s, files)) for s in (*cores, *whole)]
-    found += [Check("verilator", s.name, lambda s=s: verilator(s, [*files, *boards])) for s in tops]
-    found += [Check("icarus", s.name, lambda s=s: icarus(s, [*files, *boards])) for s in tops]
-    found.append(Check("slang", "cores", lambda: slang(modules(files), {}, files)))
-    found.append(Check("slang", "boards", lambda: slang(modules(boards), {}, [*files, *boards])))
-    found += [Check("slang", s.name, lambda s=s: slang([s.top], s.parameters, files)) for s in whole]
-    found.append(Check("yosys", "cores", lambda: yosys_cores(files)))
-    found += [
-        Check("yosys", s.name, lambda s=s: yosys_structure(s, files))
-        for s in whole
-        if s.config is not None and s.config.columns == GRIDS[0]
-    ]
-    found.append(Check("verible", "rules", lambda: verible([*files, *boards, *benches, *fpga.TECHNOLOGY])))
-    found.append(Check("verible", "columns", lambda: columns([*files, *boards, *benches, *fpga.TECHNOLOGY])))
+    with_boards = [*files, *boards]
+    others = [*boards, *benches, *fpga.TECHNOLOGY]
+    tops, whole = [Structure(name) for name in modules(boards)], structures()
+    small = [structure for structure in whole if structure.config and structure.config.columns == GRIDS[0]]
     python = [sys.executable, "-m"]
-    found.append(Check("ruff", "check", lambda: told([*python, "ruff", "check", "--quiet", "."])))
-    found.append(Check("ruff", "format", lambda: told([*python, "ruff", "format", "--quiet", "--diff", "."])))
-    found.append(Check("mypy", "models", lambda: told([*python, "mypy", "--no-error-summary", "models"])))
-    return found
+    return [
+        *core_checks(list(repository.cores())),
+        *(Check("verilator", top.name, partial(verilator, top, files)) for top in whole),
+        *(Check("verilator", top.name, partial(verilator, top, with_boards)) for top in tops),
+        *(Check("icarus", top.name, partial(icarus, top, files)) for top in whole),
+        *(Check("icarus", top.name, partial(icarus, top, with_boards)) for top in tops),
+        *(Check("slang", top.name, partial(slang, [top.top], top.parameters, files)) for top in whole),
+        Check("slang", "boards", partial(slang, modules(boards), {}, with_boards)),
+        *(Check("yosys", top.name, partial(yosys_structure, top, files)) for top in small),
+        Check("verible", "rules", partial(verible, others)),
+        Check("verible", "columns", partial(columns, others)),
+        Check("ruff", "check", partial(output_of, [*python, "ruff", "check", "--quiet", "."])),
+        Check("ruff", "format", partial(output_of, [*python, "ruff", "format", "--quiet", "--diff", "."])),
+        Check("mypy", "models", partial(output_of, [*python, "mypy", "--no-error-summary"])),
+    ]
 
 
 def main() -> None:
     with variables.reported("lint"):
-        variables.given(sys.argv[1:], ())
+        values = variables.given(sys.argv[1:], ("CORE",))
         for simulator in simulation.SIMULATORS:
             simulation.check(simulator)
-        sys.exit(run())
+        sys.exit(run(core_checks(repository.chosen(values["CORE"])) if "CORE" in values else checks()))
 
 
-def run() -> int:
-    """Run every check and print what it finds; returns the exit status."""
+def run(all_checks: Sequence[Check]) -> int:
+    """Run checks, print what each tool reports, and return the exit status."""
     begin = time.monotonic()
-    found = checks()
     failed: list[str] = []
     with threads(2) as pool:
-        pending = [(check, pool.submit(check.run)) for check in found]
-        for tool in dict.fromkeys(check.tool for check in found):
+        pending = [(check, pool.submit(check.run)) for check in all_checks]
+        for tool in dict.fromkeys(check.tool for check in all_checks):
             results = [(check, future.result()) for check, future in pending if check.tool == tool]
             bad = [(check, text) for check, text in results if text]
             for check, text in bad:
@@ -227,7 +251,7 @@ def run() -> int:
             verdict = f"{len(bad)} NOT clean" if bad else "clean"
             print(f"{tool:10} {len(results):3} checks  {verdict}", flush=True)
     print(
-        f"lint: {len(found) - len(failed)} checks clean, {time.monotonic() - begin:.0f} s"
+        f"lint: {len(all_checks) - len(failed)} checks clean, {time.monotonic() - begin:.0f} s"
         + (f", {len(failed)} not: {', '.join(failed)}" if failed else "")
     )
     return variables.MISMATCH if failed else variables.EQUAL

@@ -141,7 +141,12 @@ def test_no_waiver_of_slang_is_idle():
 def test_a_failing_check_fails_the_gate(monkeypatch, capsys):
     found = [lint.Check("tool", "good", lambda: ""), lint.Check("tool", "bad", lambda: "a finding")]
     monkeypatch.setattr(lint, "checks", lambda: found)
+    monkeypatch.setattr("sys.argv", ["lint"])
     with pytest.raises(SystemExit) as caught:
         lint.main()
     assert caught.value.code == 1
     assert "a finding" in capsys.readouterr().out
+
+
+def test_a_core_is_checked_alone():
+    assert {check.name for check in lint.core_checks(["transpose"])} == {"transpose", "cores", "rules", "columns"}
