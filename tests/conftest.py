@@ -38,8 +38,9 @@ def pytest_configure(config):
         "of `regress_verilator` on Verilator, in `make regress` only. With HDL_COVERAGE=1 all run on Verilator, "
         "because only Verilator counts coverage.",
     )
+    config.addinivalue_line("markers", "regress: runs in `make regress` only")
     config.addinivalue_line(
-        "markers", "regress: runs in `make regress` only; `make test` runs a smaller case of the same"
+        "markers", "seeds: `make regress` runs it with another seed too, like every RTL test on Icarus"
     )
 
 
