@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// multiply, in place of hdl/common/multiply.sv on an ECP5, whose multipliers are 18 x 18: two of them take the upper and the
+// multiply, in place of the core multiply on an ECP5, whose multipliers are 18 x 18: two of them take the upper and the
 // lower part of a long operand, each with a register of its own; their sum follows the registers.
 
 module multiply #(
