@@ -15,7 +15,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-SIGNALS = {
+SIGNALS: dict[int, str] = {
     signal.SIGINT: "interrupted",
     signal.SIGTERM: "terminated by SIGTERM",
     signal.SIGHUP: "terminated by SIGHUP",
@@ -61,8 +61,8 @@ def stoppable() -> Iterator[None]:
     try:
         yield
     finally:
-        for number, handler in _handled.items():
-            signal.signal(number, handler)
+        for handled, handler in _handled.items():
+            signal.signal(handled, handler)
         _handled.clear()
         _stopping.clear()
 

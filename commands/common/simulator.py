@@ -18,7 +18,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
-from cocotb_tools.runner import Runner, Verilator, get_results, get_runner
+from cocotb_tools.check_results import get_results
+from cocotb_tools.runner import Runner, Verilator, get_runner
 
 from commands.common.repository import HDL, ROOT
 from tactile_depth.errors import InputError
@@ -162,7 +163,7 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
             shutil.copy(compiled, kept)
         (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
         precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's, with the flags of the model
-        make = ["make", "-s", "-C", folder, "-f", "Vtop.mk", precompiled]
+        make = ["make", "-s", "-C", str(folder), "-f", "Vtop.mk", precompiled]
         subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
         shutil.copy(folder / RUNTIME, kept)
         (folder / precompiled).rename(kept / f"{RUNTIME}.gch")

@@ -732,7 +732,7 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
         printed("host, published", published["host"], "-"),
     ]
     first = next(iter(near))
-    parts = [
+    parts: list[tuple[str, ...]] = [
         *(
             (f"near, {first}", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
             for name, part in near[first]["parts"].items()
@@ -741,7 +741,7 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
     ]
     clock = document["clock_mhz"]
     pixels = math.prod(document["grid"])
-    places = []
+    places: list[tuple[str, ...]] = []
     for solver, found in document["sub_frame"]["solvers"].items():
         place, contact = found["place"], found["last_pixel_to_contact"]
         places.append(
@@ -755,7 +755,7 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
                 ", ".join(map(str, found["deciding_to_contact"])),
             )
         )
-    sensitive = []
+    sensitive: list[tuple[str, ...]] = []
     for path, base in (("near", near[first]), ("host", host)):
         for line in document["sensitivity"][path]:
             scaled = [line[f"x{scale:g}"] for scale in SCALES]

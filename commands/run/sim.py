@@ -232,6 +232,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
     """The pipeline for a request and a calibration on its grid; the depth range becomes grid pixels."""
     neumann = request.boundary == "neumann"
     depth_range = request.depth_range_mm
+    depth_range_px: float | None
     if depth_range == math.inf:
         Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
         depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
@@ -386,7 +387,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
             pitch,
             f"{request.solver}, {request.boundary}, {config.rows}x{config.columns}, {config.data_width}-bit words, "
             f"{calibration.name}",
-            difference.differing.reshape(seen.shape).any(axis=0),
+            np.asarray(difference.differing.reshape(seen.shape).any(axis=0)),
             flagged,
         )
         results.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))

@@ -50,6 +50,7 @@ from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
+from matplotlib.lines import Line2D
 
 RESULTS = ("baselines.json", "baselines.png")
 DEFAULT_OUT = repository.ROOT / "build" / "baselines"
@@ -162,7 +163,7 @@ def with_tridiagonal(size: int, threads: int) -> Prepared:
     share = -(-size // threads)
     scale = np.float32(0.5 / size)  # what the two transforms along the rows leave
 
-    @numba.njit(fastmath=True, parallel=threads > 1)
+    @numba.njit(fastmath=True, parallel=threads > 1)  # type: ignore[untyped-decorator]
     def columns(modes: np.ndarray, c: np.ndarray, scale: float) -> None:
         rows = len(modes)
         for part in numba.prange(threads):
@@ -622,7 +623,7 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
         axis.set_yticks(range(len(names)), [f"{name}, {threads}" for name, threads in names], fontsize=8)
     axes[0, 0].invert_yaxis()
     marks = [
-        plt.Line2D([], [], color="black", linestyle="none", marker=marker, label=label, markersize=size)
+        Line2D([], [], color="black", linestyle="none", marker=marker, label=label, markersize=size)
         for marker, label, size in (("|", "p50", 9), ("d", "p99", 4), (">", "maximum", 4))
     ]
     handles, _ = axes[0, 0].get_legend_handles_labels()

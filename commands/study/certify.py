@@ -125,7 +125,7 @@ def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], 
         if not attempt.expected - rounding <= peak <= bound + rounding:
             faults.append(f"{name} reached {peak:,}, the certificate says {attempt.expected:,.1f} of {bound:,.1f}")
     for node in nodes:
-        for frame in np.flatnonzero(peaks.clips[node.name]):
+        for frame in np.flatnonzero(peaks.clips[node.name]).tolist():
             upstream = any(peaks.clips[name][frame] for name in order[: order.index(node.name)])
             if node.slopes_headroom_bits >= 0 and not upstream:
                 faults.append(f"{node.name} saturated, and the certificate says that it cannot")

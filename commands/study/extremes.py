@@ -26,6 +26,7 @@ from commands.common import simulator as simulation
 from commands.run import sim
 from commands.study import certify as certificate
 from tactile_depth import reference
+from tactile_depth.accuracy import errors
 from tactile_depth.certificate import certify
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, ROWS, Configuration
@@ -202,7 +203,7 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     exact = reference.depth(frames, calibration, config.neumann)
     want = exact / config.depth_lsb_px
     error = codes[0] - want
-    percent = sim.errors(codes[0] * config.depth_lsb_px, exact)
+    percent = errors(codes[0] * config.depth_lsb_px, exact)
     bit = next(field for field in REGISTERS["STATUS"].fields if field.name == "saturation")
     full_scale = 2.0 ** (config.data_width - 1)
     return Row(
@@ -268,7 +269,7 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
         error = codes - exact / config.depth_lsb_px
         squares.append(np.sqrt((error**2).mean(axis=(1, 2))))
         largest_error = max(largest_error, float(np.abs(error).max()))
-        percent.append(sim.errors(codes * config.depth_lsb_px, exact))
+        percent.append(errors(codes * config.depth_lsb_px, exact))
         wrapped += int(np.count_nonzero((np.abs(exact) > config.depth_limit_px / 2) & (codes * exact < 0)))
         advance(len(frames))
     rms = np.concatenate(squares)
@@ -392,7 +393,7 @@ def _blocks(
         full = int(depth / per_mode)
         lone = np.zeros((len(chosen), *shape))
         for index, mode in enumerate(chosen):
-            lone[(index, *(mode,) * dimensions)] = full
+            lone[(index,) + (mode,) * dimensions] = full
     else:
         full = int(2 * config.gradient_limit / config.gradient_lsb)  # of the divergence of lone slopes
         waves = sines[chosen]

@@ -215,7 +215,7 @@ def grid_figure(folder: Path) -> Figure:
     axis.plot(list(PUBLISHED_LATENCY), list(PUBLISHED_LATENCY.values()), **PUBLISHED)
     axis.set_xscale("log", base=2)
     axis.set_yscale("log")
-    shown = sorted({grid for line in axis.get_lines() for grid in line.get_xdata()})
+    shown = sorted({int(grid) for line in axis.get_lines() for grid in np.asarray(line.get_xdata())})
     axis.set_xticks(shown, [str(grid) for grid in shown])
     axis.set(xlabel="grid (N x N)", ylabel="cycles to the first depth")
     axis.grid(alpha=0.3)
@@ -401,13 +401,19 @@ def extremes_figures(folder: Path) -> list[Figure]:
         )
         for row in document["compliance"]
     ]
-    head = ("transform", "size", "input", "blocks", "peak error, codes", "mean square error", "mean error")
+    columns = ("transform", "size", "input", "blocks", "peak error, codes", "mean square error", "mean error")
     text = (
         "Peak, mean square and mean error of the transform cores over blocks of random words, in codes of their output."
     )
     return [
         edges,
-        Figure("transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, table(head, blocks)),
+        Figure(
+            "transforms",
+            "The transforms, in the manner of IEEE 1180",
+            text,
+            EXTREMES_COMMAND,
+            table(columns, blocks),
+        ),
     ]
 
 

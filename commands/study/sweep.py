@@ -173,7 +173,7 @@ def cluster(address: str) -> Iterator[Any]:
         raise InputError(f"DASK_SCHEDULER={address}: Dask is not installed: run `make setup`") from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it tells at length what is told below
     try:
-        client = dask.Client(address, timeout=CONNECT_S)
+        client = dask.Client(address, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise InputError(f"DASK_SCHEDULER={address}: no scheduler answers there: start one, or leave it out") from error
     with client:
@@ -200,7 +200,7 @@ def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
         with tempfile.TemporaryDirectory() as folder:
             client.upload_file(str(_packed(Path(folder))))
         futures = client.map(measure, rows, pure=False)
-        for _, row in as_completed(futures, with_results=True):
+        for _, row in as_completed(futures, with_results=True):  # type: ignore[no-untyped-call]
             if row["models"] != VERSION:
                 raise InputError("DASK_SCHEDULER: a worker keeps another version of the models: restart the workers")
             yield row

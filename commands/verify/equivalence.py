@@ -165,7 +165,7 @@ def graph(core: str, folder: Path, protocol: Protocol) -> Graph:
         inputs_by_name,
         [(row[0], row[1], row[2] if len(row) > 2 else 0) for row in rows],
         {names["o", n]: literal for n, literal in enumerate(out_literals)},
-        sorted((g for g in gates), key=lambda g: g[0]),
+        sorted((gate[0], gate[1], gate[2]) for gate in gates),
         frozenset(literal for name, literal in inputs_by_name.items() if decides(name)),
     )
 
@@ -211,7 +211,7 @@ class Miter(Gates):
     def __init__(self, source: Graph, number: int, allowed: Collection[int] | None = None):
         self.source, self.number, self.allowed = source, number, allowed
         self.selector = {
-            literal: int(re.search(r"\[(\d+)\]$", name)[1])
+            literal: int(name.rpartition("[")[2].removesuffix("]"))
             for name, literal in source.inputs.items()
             if name.split("[")[0] == SELECTOR
         }
@@ -219,7 +219,10 @@ class Miter(Gates):
         free = [literal for literal, _, start in source.latches if start == literal]
         # Nodes: inputs, power-up values, `started`, latches of the first copy, as many for the second, gates.
         count = 1
-        self.input_of, self.power_up, self.latch, self.twin = {}, {}, {}, {}
+        self.input_of: dict[int, int] = {}
+        self.power_up: dict[int, int] = {}
+        self.latch: dict[int, int] = {}
+        self.twin: dict[int, int] = {}
         for table, literals in ((self.input_of, self.inputs), (self.power_up, free)):
             for literal in literals:
                 table[literal] = 2 * count
@@ -662,7 +665,7 @@ class Shadow(Gates):
                 broken = 1 - (holds & 1)  # what of a kind says that it does not hold
                 for kind in kinds:
                     kind[broken] = self.both(kind[broken], self.both(kind[1 - broken], apart ^ 1) ^ 1)
-            give(out, tuple(kinds[0]), tuple(kinds[1]), apart)
+            give(out, (kinds[0][0], kinds[0][1]), (kinds[1][0], kinds[1][1]), apart)
         self.latches = [1]  # of `started`, then of what a latch can be in both copies, and whether it differs
         for (_, to, _), at in zip(source.latches, inverted, strict=True):
             self.latches += [
@@ -758,8 +761,8 @@ def unreachable(path: Path, seconds: int) -> bool:
                     found.append(word)
         if len(visited) > MOST_STATES:
             return False
-        words = np.frombuffer(b"".join(found), np.uint8).reshape(len(found), -(-latches // 8))
-        frontier = np.unpackbits(words, axis=1, count=latches)
+        states = np.frombuffer(b"".join(found), np.uint8).reshape(len(found), -(-latches // 8))
+        frontier = np.unpackbits(states, axis=1, count=latches)
     return True
 
 

@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -91,7 +92,7 @@ class Structure:
 
     claim: str
     sufficient: str
-    choices: Mapping[str, int | str]
+    choices: Mapping[str, Any]
     core: str = "tactile_depth"
     engine: str = "yosys select"
     depth: int = 0
@@ -710,7 +711,7 @@ def combined(outcomes: Mapping[str, Outcome]) -> str:
 
 def selected(core: str | None) -> list[Proof | Structure]:
     """Those of one core, or all."""
-    every = (*STRUCTURES, *PROOFS)
+    every: tuple[Proof | Structure, ...] = (*STRUCTURES, *PROOFS)
     known = sorted({proof.core for proof in every})
     if core and core not in known:
         reason = f": {WITHOUT_CONTROL[core]}" if core in WITHOUT_CONTROL else f": there are {', '.join(known)}"
@@ -782,11 +783,12 @@ def document() -> str:
     """docs/formal.md: what is proven, at which sizes, why they suffice."""
     lines = [PREFACE, "| core | proven | sizes | why they suffice |", "|---|---|---|---|"]
     entries: dict[tuple[str, str, str], list[str]] = {}
-    for proof in sorted((*PROOFS, *STRUCTURES), key=lambda proof: proof.core):
+    every: list[Proof | Structure] = [*PROOFS, *STRUCTURES]
+    for proof in sorted(every, key=lambda proof: proof.core):
         sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
         entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
-    for (core, claim, sufficient), sizes in entries.items():
-        lines.append(f"| {core} | {claim} | {'; '.join(sizes) or 'the defaults'} | {sufficient} |")
+    for (core, claim, sufficient), all_sizes in entries.items():
+        lines.append(f"| {core} | {claim} | {'; '.join(all_sizes) or 'the defaults'} | {sufficient} |")
     lines += ["", "Without a proof of their own:", "", "| core | why |", "|---|---|"]
     lines += [f"| {core} | {reason} |" for core, reason in WITHOUT_CONTROL.items()]
     return "\n".join(lines) + "\n"

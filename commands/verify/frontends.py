@@ -15,6 +15,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +35,7 @@ FOLDER = repository.ROOT / "build" / "frontends"
 TIMEOUT_S = 900
 
 # The smallest grids: sizes decide how many registers there are to match, widths how long each takes.
-CHOICES = {"columns": 16, "data_width": 12, "coefficient_width": 10, "bits_per_channel": 1}
+CHOICES: dict[str, Any] = {"columns": 16, "data_width": 12, "coefficient_width": 10, "bits_per_channel": 1}
 SPECTRAL = Configuration(**CHOICES)
 SPECTRAL_NEUMANN = Configuration(**CHOICES, neumann=True)
 TRIDIAGONAL = Configuration(**CHOICES, rows=8, solver="tridiagonal")
@@ -154,7 +155,7 @@ def for_read_verilog(text: str) -> str:
 
 def prepare(core: str, sources: Sequence[Path], parameters: dict[str, int], folder: Path) -> Path:
     """Write sources and script into `folder`; the proof fails unless every pair of matched signals is equal."""
-    names = {"own": [], "slang": []}
+    names: dict[str, list[str]] = {"own": [], "slang": []}
     for source in sources:
         text = source.read_text()
         if source.stem == core:

@@ -133,7 +133,7 @@ def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
 
 
 def verible(files: Sequence[Path]) -> str:
-    rules = ["--ruleset", "all", "--rules_config", repository.HDL / "verible.rules"]
+    rules = ["--ruleset", "all", "--rules_config", str(repository.HDL / "verible.rules")]
     return output_of([BIN / "verible-verilog-lint", *rules, *files])
 
 

@@ -16,6 +16,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from commands.common import repository
 from commands.common import simulator as simulation
@@ -65,14 +66,22 @@ def structure(core: str, index: int) -> Structure:
     ]
     test = tests[0]  # the core's own; others run it in another way
     chosen = {"simulator": "verilator"} if "simulator" in inspect.signature(test).parameters else {}
-    kept = []
+    kept: list[Structure] = []
 
-    def keep(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
+    def keep(
+        toplevel: str,
+        sources: Sequence[str] | None,
+        parameters: Mapping[str, int | str] | None = None,
+        test_module: str | None = None,
+        roms: Callable[[Path], None] | None = None,
+        environment: Mapping[str, str] | None = None,
+        files: Sequence[Path] = (),
+    ) -> None:
         assert not files, f"{core}: a bench of SystemVerilog"
         bench = test_module or repository.testbench(toplevel)
         kept.append(Structure(toplevel, sources, parameters or {}, bench, roms, environment or {}))
 
-    cases = [()]
+    cases: list[tuple[Any, ...]] = [()]
     names: list[str] = []
     for mark in getattr(test, "pytestmark", []):
         if mark.name == "structures":

@@ -20,8 +20,10 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from multiprocessing.pool import ThreadPool
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -43,7 +45,7 @@ class Core:
     every generate branch that matters. `protocol` makes one of a structure's parameters.
     """
 
-    protocol: Callable[[Mapping[str, int]], Protocol]
+    protocol: Callable[[Mapping[str, Any]], Protocol]
     structures: tuple[int, ...] = (0,)
     # One after the other gets what the one before let live. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
@@ -204,7 +206,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:
             verdicts = pool.imap(
-                lambda number, graph=graph, spans=spans, folder=folder: settle(graph, spans, number, folder, seconds),
+                partial(settle, graph, spans, folder=folder, seconds=seconds),
                 numbers,
             )
             shown = tqdm(verdicts, f"{name}, survivors", len(numbers), leave=False, disable=None)

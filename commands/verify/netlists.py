@@ -17,6 +17,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -77,7 +78,7 @@ def cases(names: Sequence[str]) -> list[Case]:
 
 
 def whole(solver: str) -> Case:
-    choices = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
+    choices: dict[str, Any] = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
     config = Configuration(**choices)
     structure = mutants.Structure(
         WHOLE,

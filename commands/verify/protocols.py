@@ -488,9 +488,11 @@ def axil_client() -> tuple[str, tuple[str, ...], dict[str, str]]:
 
 def axil_registers(_: Mapping[str, int]) -> Protocol:
     registers, assume, compare = axil_client()
-    held = ("threshold", "timeout", "hold_contact", "table_select", "table_index", "table_high", "table_bank")
-    held += ("off_threshold", "minimum_area", "debounce", "drop_frames", "dark_level", "capture_log2_frames")
-    held += ("floor_log2_frames",)
+    held = (
+        *("threshold", "timeout", "hold_contact", "table_select", "table_index", "table_high", "table_bank"),
+        *("off_threshold", "minimum_area", "debounce", "drop_frames", "dark_level", "capture_log2_frames"),
+        "floor_log2_frames",
+    )
     compare |= dict.fromkeys((*held, "table_write", "table_read", "capture_request", "floor_request"), "live")
     return Protocol(LIVE + registers, assume, compare | {"table_low": "live & table_write"})
 

@@ -136,7 +136,7 @@ def waiver(finding: Finding) -> Waiver | None:
 
 def main() -> None:
     tops, *rest = sys.argv[1:]
-    parameters = dict(word[2:].split("=") for word in rest if word.startswith("-G"))
+    parameters = {name: int(value) for name, value in (word[2:].split("=") for word in rest if word.startswith("-G"))}
     files = [Path(word) for word in rest if not word.startswith("-G")]
     left = Counter(str(f) for f in findings(tops.split(","), files, parameters) if waiver(f) is None)
     for line, count in left.items():
