@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames through a mapped netlist of tactile_depth, gate by gate without delays, and how often each net toggles.
+// Simulates a mapped netlist of tactile_depth on frames, without delays, and in a window of clocks with delays too.
 //
-// Verilator compiles a netlist of this size for longer than this runs it. One pass over the gates in order settles a clock.
-// commands/hardware/gate_sim.py writes what this reads, from standard input, 32-bit words, and reads what this writes.
+// Counts the transitions of each net. Verilator compiles a netlist of this size for longer than this program runs: one
+// pass over the gates in order settles a clock. gate_sim.py writes standard input (32-bit words) and reads the output.
 
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <queue>
+#include <utility>
 #include <vector>
 
 namespace {
 
-struct Gate {  // out = bit of `table` that the inputs choose
+struct Gate {  // out = bit of `table` that the inputs select; delays of a rise and a fall of out in ps
   uint64_t table;
-  int32_t out, count, in[6];
+  int32_t out, count, in[6], rise[6], fall[6];
 };
 
 struct Memory {
   int32_t width;
   std::vector<int32_t> write_en, write_address, write_data, read_en, read_address, read_data;
   std::vector<uint8_t> words;
-  uint32_t reads, writes;
-  std::vector<uint8_t> taken;  // what it shows after the edge
-  bool reading;
+  int64_t reads = 0, writes = 0;
 };
 
 int32_t word() {
@@ -44,10 +44,81 @@ std::vector<Gate> gates() {
     gate.table = low | static_cast<uint64_t>(static_cast<uint32_t>(word())) << 32;
     gate.out = word();
     gate.count = word();
-    for (auto& net : gate.in) net = word();
+    for (auto* row : {gate.in, gate.rise, gate.fall})
+      for (int i = 0; i < 6; i++) row[i] = word();
   }
   return all;
 }
+
+uint8_t evaluate(const Gate& gate, const std::vector<uint8_t>& value) {
+  unsigned index = 0;
+  for (int i = 0; i < gate.count; i++) index |= static_cast<unsigned>(value[gate.in[i]]) << i;
+  return static_cast<uint8_t>(gate.table >> index & 1);
+}
+
+// Event-driven simulation of single clocks with inertial delays: a pulse shorter than the delay of a gate is lost.
+class Window {
+ public:
+  std::vector<uint32_t> without, with;  // transitions of each net without and with delays
+  int64_t wrong = 0;                    // clocks that settled otherwise than without delays
+
+  Window(int32_t nets, const std::vector<Gate>& logic, const std::vector<Gate>& registers, int32_t other_ps)
+      : without(nets), with(nets), logic_(logic), readers_(nets), source_(nets, true), rise_(nets, other_ps),
+        fall_(nets, other_ps), serial_(nets) {
+    for (size_t g = 0; g < logic.size(); g++) {
+      source_[logic[g].out] = false;
+      for (int i = 0; i < logic[g].count; i++) readers_[logic[g].in[i]].emplace_back(g, i);
+    }
+    for (const auto& gate : registers) {  // the delay from the clock
+      rise_[gate.out] = gate.rise[0];
+      fall_[gate.out] = gate.fall[0];
+    }
+  }
+
+  // From the settled state `before` a clock edge to the settled state `after`.
+  void clock(const std::vector<uint8_t>& before, const std::vector<uint8_t>& after) {
+    value_ = target_ = before;
+    for (size_t net = 0; net < before.size(); net++) {
+      without[net] += before[net] != after[net];
+      if (source_[net]) schedule(0, static_cast<int32_t>(net), after[net], rise_[net], fall_[net]);
+    }
+    while (!queue_.empty()) {
+      const Event event = queue_.top();
+      queue_.pop();
+      if (event.serial != serial_[event.net]) continue;  // another event has replaced it
+      value_[event.net] = target_[event.net];
+      with[event.net]++;
+      for (const auto& [g, i] : readers_[event.net]) {
+        const Gate& gate = logic_[g];
+        schedule(event.time, gate.out, evaluate(gate, value_), gate.rise[i], gate.fall[i]);
+      }
+    }
+    wrong += value_ != after;
+  }
+
+ private:
+  struct Event {
+    int64_t time;
+    int32_t net;
+    uint32_t serial;
+    bool operator<(const Event& other) const { return time > other.time; }  // the earliest is on top
+  };
+
+  void schedule(int64_t now, int32_t net, uint8_t bit, int32_t rise, int32_t fall) {
+    if (bit == target_[net]) return;
+    target_[net] = bit;
+    serial_[net]++;
+    if (bit != value_[net]) queue_.push({now + (bit ? rise : fall), net, serial_[net]});
+  }
+
+  const std::vector<Gate>& logic_;
+  std::vector<std::vector<std::pair<int32_t, int>>> readers_;  // gate and input
+  std::vector<bool> source_;  // not driven by logic
+  std::vector<int32_t> rise_, fall_;
+  std::vector<uint8_t> value_, target_;  // target: the value after the pending event
+  std::vector<uint32_t> serial_;
+  std::priority_queue<Event> queue_;
+};
 
 }  // namespace
 
@@ -58,17 +129,12 @@ int main() {
   std::vector<Memory> memories(word());
   for (auto& memory : memories) {
     memory.width = word();
-    memory.write_en = list();
-    memory.write_address = list();
-    memory.write_data = list();
-    memory.read_en = list();
-    memory.read_address = list();
-    memory.read_data = list();
+    for (auto* pins : {&memory.write_en, &memory.write_address, &memory.write_data, &memory.read_en,
+                       &memory.read_address, &memory.read_data})
+      *pins = list();
     const auto bits = list();
     memory.words.assign(bits.begin(), bits.end());
-    memory.taken.resize(memory.width);
   }
-  const auto ones = list();  // inputs that stay at one
   const int32_t rst = word(), tvalid = word(), tlast = word(), tuser = word();
   const auto tdata = list();
   const int32_t tready = word(), depth_valid = word();
@@ -76,19 +142,15 @@ int main() {
   const int32_t columns = word(), frames = word();
   const auto pixels = list();
   const auto codes = list();
-  const int32_t sample = word(), samples = word();
-  const auto watched = list();
+  const int32_t window_start = word(), window_size = word(), other_ps = word();
+  Window window(nets, logic, registers, other_ps);
 
-  std::vector<uint8_t> value(nets, 0), following(registers.size());
+  std::vector<uint8_t> value(nets, 0), before;
+  std::vector<std::pair<int32_t, uint8_t>> following;  // nets that the edge changes, and their values after it
   std::vector<uint32_t> toggles(nets, 0);
   const auto set = [&](int32_t net, uint8_t bit) {
     toggles[net] += value[net] ^ bit;
     value[net] = bit;
-  };
-  const auto evaluate = [&](const Gate& gate) {
-    unsigned index = 0;
-    for (int i = 0; i < gate.count; i++) index |= static_cast<unsigned>(value[gate.in[i]]) << i;
-    return static_cast<uint8_t>(gate.table >> index & 1);
   };
   const auto number = [&](const std::vector<int32_t>& bus) {
     uint64_t sum = 0;
@@ -97,12 +159,8 @@ int main() {
   };
 
   value[1] = 1;
-  for (const auto net : ones) value[net] = 1;
   const int64_t size = static_cast<int64_t>(pixels.size());
-  int64_t sent = 0, seen = 0, wrong = 0, last_at = -1;
-  std::vector<char> line(watched.size() + 1, '\n');
-  FILE* lines = std::fopen("watched.txt", "wb");
-  if (!lines) return 3;
+  int64_t sent = 0, received = 0, wrong = 0, clock_of_last = -1;
   for (int64_t clock = 0;; clock++) {
     if (clock > (frames + 2) * size + 100000) return 4;  // it takes no pixels
     const bool reset = clock < 8;
@@ -111,34 +169,33 @@ int main() {
     set(tlast, sent % columns == columns - 1);
     set(tuser, sent % size == 0);
     for (size_t i = 0; i < tdata.size(); i++) set(tdata[i], pixels[sent % size] >> i & 1);
-    for (const auto& gate : logic) set(gate.out, evaluate(gate));
+    for (const auto& gate : logic) set(gate.out, evaluate(gate, value));
 
     if (!reset) {
       if (value[depth_valid]) {
-        wrong += number(depth) != static_cast<uint32_t>(codes[seen % size]);
-        seen++;
+        wrong += number(depth) != static_cast<uint32_t>(codes[received % size]);
+        received++;
       }
-      if (last_at < 0 && sent >= (frames - 1) * size) {  // the last frame begins: count from here
-        last_at = 0;
+      if (clock_of_last < 0 && sent >= (frames - 1) * size) {  // the last frame begins: count from here
+        clock_of_last = 0;
         toggles.assign(nets, 0);
         for (auto& memory : memories) memory.reads = memory.writes = 0;
-      } else if (last_at >= 0) {
-        last_at++;
+      } else if (clock_of_last >= 0) {
+        clock_of_last++;
       }
-      if (last_at == size) break;
-      if (last_at >= sample && last_at < sample + samples) {
-        for (size_t i = 0; i < watched.size(); i++) line[i] = static_cast<char>('0' + value[watched[i]]);
-        std::fwrite(line.data(), 1, line.size(), lines);
-      }
+      if (clock_of_last >= window_start && clock_of_last < window_start + window_size) window.clock(before, value);
+      if (clock_of_last >= 0) before = value;
+      if (clock_of_last == size) break;
       if (value[tvalid] && value[tready]) sent++;
     }
 
-    for (size_t i = 0; i < registers.size(); i++) following[i] = evaluate(registers[i]);
+    following.clear();
+    for (const auto& gate : registers) following.emplace_back(gate.out, evaluate(gate, value));
     for (auto& memory : memories) {
-      memory.reading = value[memory.read_en[0]];
-      if (memory.reading) {
+      if (value[memory.read_en[0]]) {
         const uint64_t from = number(memory.read_address) * memory.width;
-        for (int32_t i = 0; i < memory.width; i++) memory.taken[i] = from + i < memory.words.size() ? memory.words[from + i] : 0;
+        for (int32_t i = 0; i < memory.width; i++)
+          following.emplace_back(memory.read_data[i], from + i < memory.words.size() ? memory.words[from + i] : 0);
         memory.reads++;
       }
       if (!memory.write_en.empty() && value[memory.write_en[0]]) {
@@ -148,21 +205,13 @@ int main() {
         memory.writes++;
       }
     }
-    for (size_t i = 0; i < registers.size(); i++) set(registers[i].out, following[i]);
-    for (auto& memory : memories)
-      if (memory.reading)
-        for (int32_t i = 0; i < memory.width; i++) set(memory.read_data[i], memory.taken[i]);
+    for (const auto& [net, bit] : following) set(net, bit);
   }
-  std::fclose(lines);
 
-  FILE* counted = std::fopen("toggles.bin", "wb");
-  if (!counted) return 3;
-  for (auto& memory : memories) {
-    std::fwrite(&memory.reads, sizeof memory.reads, 1, counted);
-    std::fwrite(&memory.writes, sizeof memory.writes, 1, counted);
-  }
-  std::fwrite(toggles.data(), sizeof toggles[0], toggles.size(), counted);
-  std::fclose(counted);
-  std::printf("%lld %lld %lld\n", static_cast<long long>(seen), static_cast<long long>(wrong), static_cast<long long>(last_at));
+  std::vector<int64_t> output{received, wrong, clock_of_last, window.wrong};
+  for (const auto& memory : memories) output.insert(output.end(), {memory.reads, memory.writes});
+  for (const auto* counts : {&toggles, &window.without, &window.with})
+    output.insert(output.end(), counts->begin(), counts->end());
+  std::fwrite(output.data(), sizeof output[0], output.size(), stdout);
   return 0;
 }

@@ -1,35 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Simulation of the gates of the whole design without delays (gate_sim.cpp): codes, toggles, accesses."""
+"""Simulation of a mapped netlist of the design (gate_sim.cpp): codes, accesses, toggles without and with delays."""
 
 from __future__ import annotations
 
-import re
-import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import numpy as np
 
-from commands.hardware.gates import Bit, Instance, Netlist, state
-from commands.hardware.liberty import Cell, boolean
-from tactile_depth.errors import InputError
+from commands.hardware.gates import Bit, Instance, Netlist, clock_pin
+from commands.hardware.liberty import LARGEST_GATE, Cell, functions
 
 SOURCE = Path(__file__).with_name("gate_sim.cpp")
-LARGEST_GATE = 6  # inputs
 ALWAYS_READY = ("m_axis_tready", "m_event_tready", "s_axil_bready", "s_axil_rready")
+MEMORY_PINS = ("write_en", "write_address", "write_data", "read_en", "read_address", "read_data")
+ROM_PINS = {"read_en": "en", "read_address": "address", "read_data": "data"}
+Gate = tuple[int, Instance, Cell]
+# Of each instance: rise and fall in ns from an input pin to an output pin.
+Delays = Mapping[int, Mapping[tuple[str, str], tuple[float, float]]]
 
 
 @dataclass(frozen=True)
 class Macro:
-    """A memory that is a macro: a RAM, or a ROM whose `words` never change.
+    """A memory macro: a RAM, or a ROM whose words never change.
 
-    Attributes
-    ----------
-    width, depth : int
-    words : str
-        Bits at power-up as Yosys has them, the highest of the last word first; x is taken for 0.
+    `words` are the bits at power-up as Yosys has them, the highest of the last word first; x counts as 0.
     """
 
     width: int
@@ -38,194 +36,128 @@ class Macro:
 
 
 @dataclass(frozen=True)
+class Stimulus:
+    """A frame that enters `frames` times without a pause.
+
+    `pixels` are words of s_axis_tdata, `codes` the depth codes in the order in which they leave, and `window` the
+    clocks of the last frame, from 1, that are simulated with delays too.
+    """
+
+    pixels: np.ndarray
+    codes: np.ndarray
+    columns: int
+    frames: int
+    window: range
+
+
+@dataclass(frozen=True)
 class Activity:
-    """Of the clocks of one frame.
+    """Activity in the clocks of the last frame; accesses and toggles are per clock."""
 
-    Attributes
-    ----------
-    clocks : int
-    codes, wrong : int
-        Depth codes seen since reset, and those that differ from the model.
-    toggles : dict of Bit to float
-        Of each net, per clock.
-    accesses : list of (float, float)
-        Reads and writes of each macro, per clock.
-    watched : list of str
-        Values of the nets watched, a character each, one string a clock.
-    """
-
-    clocks: int
-    codes: int
-    wrong: int
+    codes: int  # since reset
+    wrong: int  # codes that differ from the model
+    wrong_with_delays: int  # clocks of the window that settled otherwise with delays
+    accesses: list[tuple[float, float]]  # reads and writes of each macro
     toggles: dict[Bit, float]
-    accesses: list[tuple[float, float]]
-    watched: list[str]
+    window: dict[Bit, float]
+    window_with_delays: dict[Bit, float]
 
 
-def truth(function: str, inputs: Sequence[str]) -> int:
-    """Bit i: value of a Verilog expression when the inputs, first lowest, spell i."""
-    code = compile(function.replace("1'b", ""), "function", "eval")
-    table = 0
-    for i in range(1 << len(inputs)):
-        table |= (eval(code, {}, {name: i >> k & 1 for k, name in enumerate(inputs)}) & 1) << i
-    return table
-
-
-class Tables:
-    """Truth tables of a cell's outputs, worked out once."""
-
-    def __init__(self) -> None:
-        self.known: dict[str, list[tuple[str, list[str], int]]] = {}
-
-    def of(self, cell: Cell) -> list[tuple[str, list[str], int]]:
-        if cell.name not in self.known:
-            if cell.flip_flop:
-                edge, _, following, inverse = state(cell, {name: name for name in cell.inputs})
-                if edge != "posedge":
-                    raise InputError(f"LIB: the cell {cell.name} was used, a flip-flop for falling edges")
-                functions = {pin: f"~({following})" if inverted else following for pin, inverted in inverse.items()}
-            else:
-                functions = {pin: boolean(cell.pins[pin].function) for pin in cell.outputs}
-            self.known[cell.name] = []
-            for pin, function in functions.items():
-                inputs = sorted(set(re.findall(r"(?<![\w'])[A-Za-z_]\w*", function)))
-                if len(inputs) > LARGEST_GATE:
-                    raise InputError(f"LIB: the cell {cell.name} was used, with more than {LARGEST_GATE} inputs")
-                self.known[cell.name].append((pin, inputs, truth(function, inputs)))
-        return self.known[cell.name]
-
-
-def in_order(netlist: Netlist) -> list[tuple[Instance, Cell]]:
-    """Gates without state, each after those that drive it.
-
-    Raises
-    ------
-    RuntimeError
-        They form a loop.
-    """
-    logic = [(instance, cell) for _, instance, cell in netlist.gates if not cell.flip_flop]
-    place = {
-        instance.pins[pin][0]: k
-        for k, (instance, cell) in enumerate(logic)
-        for pin in cell.outputs
-        if pin in instance.pins
+def in_order(netlist: Netlist) -> list[Gate]:
+    """Return the gates without state, each after those that drive it."""
+    gates = {gate[0]: gate for gate in netlist.gates if not gate[2].flip_flop}
+    driver = {gate.pins[pin][0]: i for i, gate, cell in gates.values() for pin in cell.outputs if pin in gate.pins}
+    before = {
+        i: [driver[gate.pins[pin][0]] for pin in cell.inputs if gate.pins[pin][0] in driver]
+        for i, gate, cell in gates.values()
     }
-    waits = [0] * len(logic)
-    readers: list[list[int]] = [[] for _ in logic]
-    for k, (instance, cell) in enumerate(logic):
-        for pin in cell.inputs:
-            before = place.get(instance.pins[pin][0])
-            if before is not None:
-                waits[k] += 1
-                readers[before].append(k)
-    ready = [k for k, count in enumerate(waits) if not count]
-    for k in ready:  # grows on the way
-        for reader in readers[k]:
-            waits[reader] -= 1
-            if not waits[reader]:
-                ready.append(reader)
-    if len(ready) < len(logic):
-        raise RuntimeError(f"{len(logic) - len(ready)} gates form a loop")
-    return [logic[k] for k in ready]
+    try:
+        return [gates[i] for i in TopologicalSorter(before).static_order()]
+    except CycleError as error:
+        raise RuntimeError(f"gates form a loop of {len(error.args[1]) - 1}") from error
 
 
-def program(folder: Path) -> Path:
-    """The simulator, compiled.
+class Encoder:
+    """Words for gate_sim.cpp: lists begin with their length; net 0 is zero, net 1 is one."""
 
-    Raises
-    ------
-    InputError
-    """
-    compiler = shutil.which("c++")
-    if compiler is None:
-        raise InputError("no C++ compiler is installed: run `apt-get install g++`")
-    binary = folder / "gate_sim"
-    result = subprocess.run([compiler, "-O2", "-o", binary, SOURCE], capture_output=True, text=True, check=False)
-    if result.returncode:
-        raise RuntimeError(f"{SOURCE.name} does not compile: {result.stderr.splitlines()[0]}")
-    return binary
+    def __init__(self, delays: Delays, ones: Iterable[Bit]) -> None:
+        self.delays = delays
+        self.number: dict[Bit, int] = {"0": 0, "x": 0, "1": 1, **dict.fromkeys(ones, 1)}
+        self.count = 2
+        self.known: dict[str, dict[str, tuple[list[str], int]]] = {}
+
+    def net(self, bit: Bit) -> int:
+        """Return the number of a net."""
+        if bit not in self.number:
+            self.number[bit] = self.count
+            self.count += 1
+        return self.number[bit]
+
+    def bits(self, values: Sequence[Bit]) -> list[int]:
+        """Return a list of nets."""
+        return [len(values), *map(self.net, values)]
+
+    def gates(self, gates: Iterable[Gate]) -> list[int]:
+        """Return gates, one for each output."""
+        count, words = 0, []
+        for index, gate, cell in gates:
+            if cell.name not in self.known:
+                self.known[cell.name] = functions(cell)
+            delays = self.delays.get(index, {})
+            for pin, (inputs, table) in self.known[cell.name].items():
+                if pin not in gate.pins:
+                    continue
+                nets = [self.net(gate.pins[name][0]) for name in inputs]
+                causes = [clock_pin(cell)] if cell.flip_flop else inputs
+                pairs = [delays.get((name, pin), (0.0, 0.0)) for name in causes]
+                words += [table & 0xFFFFFFFF, table >> 32, self.net(gate.pins[pin][0]), len(nets)]
+                for row in (nets, *([round(1000 * pair[edge]) for pair in pairs] for edge in (0, 1))):
+                    words += row + [0] * (LARGEST_GATE - len(row))
+                count += 1
+        return [count, *words]
+
+    def macro(self, instance: Instance, macro: Macro) -> list[int]:
+        """Return a memory; a ROM has no write port."""
+        words = [macro.width]
+        for name in MEMORY_PINS:
+            words += self.bits(instance.pins.get(name) or instance.pins.get(ROM_PINS.get(name, ""), []))
+        size = macro.width * macro.depth
+        return [*words, size, *(int(bit == "1") for bit in macro.words[::-1][:size].ljust(size, "x"))]
 
 
 def simulate(
-    netlist: Netlist,
-    macros: Sequence[Macro],
-    pixels: np.ndarray,
-    codes: np.ndarray,
-    columns: int,
-    frames: int,
-    watched: Sequence[Bit],
-    sample: range,
-    folder: Path,
+    netlist: Netlist, macros: Sequence[Macro], stimulus: Stimulus, delays: Delays, other_ns: float, folder: Path
 ) -> Activity:
-    """Send a frame several times without a pause; toggles are those of the clocks in which the last one enters.
-
-    Parameters
-    ----------
-    macros : of the netlist's macros, in their order
-    pixels : int array, words of s_axis_tdata of one frame
-    codes : int array, depth codes of it in the order in which they leave
-    watched : nets to be seen in the clocks `sample` of the last frame
-    """
-    number: dict[Bit, int] = {"0": 0, "x": 0, "1": 1}
-
-    def net(bit: Bit) -> int:
-        return number.setdefault(bit, len(number) - 1)  # "x" shares 0
-
-    tables = Tables()
-    words: list[int] = []
-
-    def gates(all_gates: Sequence[tuple[Instance, Cell]]) -> list[int]:
-        count, encoded = 0, []
-        for instance, cell in all_gates:
-            for pin, inputs, table in tables.of(cell):
-                if pin in instance.pins:
-                    ins = [net(instance.pins[name][0]) for name in inputs]
-                    encoded += [table & 0xFFFFFFFF, table >> 32, net(instance.pins[pin][0]), len(ins)]
-                    encoded += ins + [0] * (LARGEST_GATE - len(ins))
-                    count += 1
-        return [count, *encoded]
-
-    def bits(values: Sequence[Bit]) -> list[int]:
-        return [len(values), *map(net, values)]
-
-    words += gates(in_order(netlist))
-    words += gates([(instance, cell) for _, instance, cell in netlist.flip_flops()])
-    words.append(len(macros))
-    for (_, instance), macro in zip(netlist.macros, macros, strict=True):
-        pins = instance.pins
-        words.append(macro.width)
-        for writes, reads in (("write_en", ""), ("write_address", ""), ("write_data", ""), ("read_en", "en")):
-            words += bits(pins.get(writes) or pins.get(reads) or [])
-        words += bits(pins.get("read_address") or pins["address"]) + bits(pins.get("read_data") or pins["data"])
-        size = macro.width * macro.depth
-        initial = macro.words[::-1][:size].ljust(size, "x")
-        words += [size, *(int(bit == "1") for bit in initial)]
+    """Simulate a netlist with its macros; memories and inputs follow the edge by `other_ns`."""
     ports = {name: port[1] for name, port in netlist.ports.items()}
-    words += bits([bit for name in ALWAYS_READY for bit in ports[name]])
-    words += [net(ports[name][0]) for name in ("rst", "s_axis_tvalid", "s_axis_tlast", "s_axis_tuser")]
-    words += bits(ports["s_axis_tdata"])
-    words += [net(ports["s_axis_tready"][0]), net(ports["m_axis_tvalid"][0])]
-    words += bits(ports["m_axis_tdata"])
+    encoder = Encoder(delays, [ports[name][0] for name in ALWAYS_READY])
+    pixels, codes = stimulus.pixels.ravel(), stimulus.codes.ravel()
     mask = (1 << len(ports["m_axis_tdata"])) - 1
-    words += [columns, frames]
-    words += [pixels.size, *map(int, pixels.ravel())]
-    words += [codes.size, *(int(code) & mask for code in codes.ravel())]
-    words += [sample.start, len(sample)]
-    words += bits(watched)
-    given = np.array([max(number.values()) + 1, *words], dtype=np.int64).astype(np.uint32).tobytes()
-
-    result = subprocess.run([program(folder)], input=given, cwd=folder, capture_output=True, check=False)
+    words = encoder.gates(in_order(netlist))
+    words += encoder.gates(gate for gate in netlist.gates if gate[2].flip_flop)
+    words.append(len(macros))
+    for instance, macro in zip(netlist.macros, macros, strict=True):
+        words += encoder.macro(instance, macro)
+    words += [encoder.net(ports[name][0]) for name in ("rst", "s_axis_tvalid", "s_axis_tlast", "s_axis_tuser")]
+    words += encoder.bits(ports["s_axis_tdata"])
+    words += [encoder.net(ports[name][0]) for name in ("s_axis_tready", "m_axis_tvalid")]
+    words += encoder.bits(ports["m_axis_tdata"])
+    words += [stimulus.columns, stimulus.frames, pixels.size, *map(int, pixels)]
+    words += [codes.size, *(int(code) & mask for code in codes)]
+    words += [stimulus.window.start, len(stimulus.window), round(1000 * other_ns)]
+    content = np.array([encoder.count, *words], dtype=np.int64).astype(np.uint32).tobytes()
+    program = folder / "gate_sim"
+    subprocess.run(["c++", "-O2", "-o", program, SOURCE], capture_output=True, check=True)
+    result = subprocess.run([program], input=content, cwd=folder, capture_output=True, check=False)
     if result.returncode:
         raise RuntimeError(f"the gates take no pixels (status {result.returncode}): see {folder}")
-    seen, wrong, clocks = map(int, result.stdout.split())
-    counted = np.fromfile(folder / "toggles.bin", dtype="<u4")
-    accesses = counted[: 2 * len(macros)].reshape(-1, 2) / clocks
-    toggles = counted[2 * len(macros) :] / clocks
-    return Activity(
-        clocks,
-        seen,
-        wrong,
-        {bit: float(toggles[place]) for bit, place in number.items() if isinstance(bit, int)},
-        [(float(reads), float(writes)) for reads, writes in accesses],
-        (folder / "watched.txt").read_text().split(),
+
+    received, wrong, clocks, unsettled, *counts = np.frombuffer(result.stdout, dtype="<i8").tolist()
+    accesses = [(reads / clocks, writes / clocks) for reads, writes in zip(counts[::2], counts[1::2], strict=False)]
+    nets = encoder.count
+    spans = ((-3 * nets, clocks), (-2 * nets, len(stimulus.window)), (-nets, len(stimulus.window)))
+    frame, window, window_with_delays = (
+        {bit: counts[start + place] / max(number, 1) for bit, place in encoder.number.items()}
+        for start, number in spans
     )
+    return Activity(received, wrong, unsettled, accesses[: len(macros)], frame, window, window_with_delays)

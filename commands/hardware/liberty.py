@@ -1,25 +1,90 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what the ASIC flow needs of a Liberty file: cells, functions, areas, capacitances, tables of energy and slew.
+"""Reads from a Liberty file: cells with their functions, areas, capacitances, energies and slews.
 
-Syntax: Liberty User Guide (Synopsys, open source since 2000). Of what it allows, this takes table look-up models:
-scalars, tables over one axis and two. Delays are OpenSTA's business and are not read.
+Syntax: Liberty User Guide (Synopsys, open source since 2000), with table look-up models: scalars and tables over one or
+two axes. OpenSTA reads the delays. A parser evaluates Boolean functions (`truth`); no text of the file is executed.
 """
 
 from __future__ import annotations
 
+import operator
 import re
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from math import prod
 from pathlib import Path
 
 from tactile_depth.errors import InputError
 
-LARGEST = 400_000_000  # characters
-TOKEN = re.compile(r'"[^"]*"|[{}();:,]|[^\s{}();:,"]+')
+LARGEST_GATE = 6  # inputs
 NOISE = re.compile(r"/\*.*?\*/|//[^\n]*|\\\s*\n", re.DOTALL)
+LIST_ITEM = re.compile(r'"[^"]*"|[^\s,"]+')
+STATEMENT = re.compile(
+    r"""(?:(?P<name>[^\s{}();:,"]+)\s*(?:\((?P<list>(?:"[^"]*"|[^)"])*)\)\s*(?P<brace>\{)?|:\s*(?P<value>"[^"]*"|[^;}]*))"""
+    r"|\})[\s;]*"
+)
 UNIT = re.compile(r"([\d.eE+-]*?)\s*([munpfk]?)([A-Za-z]+)$")
 PREFIX = {"": 1.0, "k": 1e3, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15}
+PIN = r"[A-Za-z_][\w\[\]]*"
+AND = 1
+OPERATORS = (("+|", operator.or_), ("&*", operator.and_), ("^", operator.xor))  # the last binds tightest
+
+
+def pins_of(function: str) -> list[str]:
+    """Return the names in a Boolean function, sorted."""
+    return sorted(set(re.findall(PIN, function)))
+
+
+def truth(function: str, inputs: Sequence[str]) -> int:
+    """Return the truth table of a Liberty function: bit i is its value when the inputs, first lowest, spell i.
+
+    ! before an operand or ' after it is not; a space is and.
+
+    Raises
+    ------
+    InputError
+        The text is no Boolean function of `inputs`, or they are too many.
+    """
+    wrong = InputError(f"LIB: {function} is no Boolean function of up to {LARGEST_GATE} pins: {', '.join(inputs)}")
+    if len(inputs) > LARGEST_GATE:
+        raise wrong
+    rows = 1 << len(inputs)
+    ones = (1 << rows) - 1
+    values = {"0": 0, "1": ones}
+    values |= {name: sum(1 << i for i in range(rows) if i >> k & 1) for k, name in enumerate(inputs)}
+    tokens = ["", *re.findall(rf"{PIN}|\S", function)[::-1]]  # the next token is the last
+
+    def operand() -> int:
+        token = tokens.pop()
+        if token == "!":
+            return operand() ^ ones
+        value = operation(0) if token == "(" else values.get(token)
+        if value is None or (token == "(" and tokens.pop() != ")"):
+            raise wrong
+        while tokens[-1] == "'":
+            tokens.pop()
+            value ^= ones
+        return value
+
+    def operation(level: int) -> int:
+        if level == len(OPERATORS):
+            return operand()
+        signs, combine = OPERATORS[level]
+        value = operation(level + 1)
+        while tokens[-1] and (tokens[-1] in signs or (level == AND and tokens[-1] not in "+|)")):
+            if tokens[-1] in signs:
+                tokens.pop()
+            value = combine(value, operation(level + 1))
+        return value
+
+    try:
+        result = operation(0)
+    except IndexError:
+        raise wrong from None
+    if tokens != [""]:
+        raise wrong
+    return result
 
 
 @dataclass
@@ -29,79 +94,67 @@ class Group:
     kind: str
     names: list[str]
     attributes: dict[str, str] = field(default_factory=dict)
-    lists: dict[str, list[str]] = field(default_factory=dict)  # attributes in brackets
+    lists: dict[str, list[str]] = field(default_factory=dict)  # attributes with brackets
     groups: list[Group] = field(default_factory=list)
 
     def all(self, kind: str) -> Iterator[Group]:
+        """Return the groups of a kind directly inside this one."""
         return (group for group in self.groups if group.kind == kind)
 
-    def number(self, name: str, default: float = 0.0) -> float:
-        return float(self.attributes.get(name, default))
+    def number(self, name: str) -> float:
+        """Return an attribute as a number; 0 where it is missing."""
+        return float(self.attributes.get(name, 0.0))
 
 
 def groups_of(text: str) -> Group:
-    """The library group of a Liberty text.
+    """Return the library group of a Liberty text.
 
     Raises
     ------
     ValueError
     """
-    tokens = TOKEN.findall(NOISE.sub(" ", text))
-    root = Group("", [])
-    open_groups = [root]
-    at, end = 0, len(tokens)
-    while at < end:
-        word = tokens[at]
-        following = tokens[at + 1] if at + 1 < end else ""
-        if word == "}":
-            if len(open_groups) == 1:
-                raise ValueError("a } too many")
+    text = NOISE.sub(" ", text).strip()
+    open_groups = [Group("", [])]
+    at = 0
+    while at < len(text):
+        match = STATEMENT.match(text, at)
+        if match is None:
+            raise ValueError(f"{text[at : at + 40].split()[0]} stands where an attribute or a group must")
+        at = match.end()
+        name, listed, brace, value = match.group("name", "list", "brace", "value")
+        if name is None:
             open_groups.pop()
-            at += 1
-        elif following == ":":
-            stop = at + 2
-            while stop < end and tokens[stop] not in (";", "}"):
-                stop += 1
-            open_groups[-1].attributes[word] = " ".join(token.strip('"') for token in tokens[at + 2 : stop])
-            at = stop
-        elif following == "(":
-            stop = tokens.index(")", at)
-            values = [token.strip('"') for token in tokens[at + 2 : stop] if token != ","]
-            at = stop + 1
-            if at < end and tokens[at] == "{":
-                group = Group(word, values)
+            if not open_groups:
+                raise ValueError("a } too many")
+        elif value is not None:
+            open_groups[-1].attributes[name] = value.strip().strip('"')
+        else:
+            values = [item.strip('"') for item in LIST_ITEM.findall(listed)]
+            if brace:
+                group = Group(name, values)
                 open_groups[-1].groups.append(group)
                 open_groups.append(group)
-                at += 1
             else:
-                open_groups[-1].lists[word] = values
-        elif word == ";":
-            at += 1
-        else:
-            raise ValueError(f"{word[:40]} stands where an attribute or a group must")
+                open_groups[-1].lists[name] = values
     if len(open_groups) > 1:
         raise ValueError(f"the group {open_groups[-1].kind} is not closed")
-    libraries = list(root.all("library"))
+    libraries = list(open_groups[0].all("library"))
     if len(libraries) != 1:
         raise ValueError("it holds no library group")
     return libraries[0]
 
 
-def numbers(values: list[str]) -> list[float]:
-    return [float(number) for number in " ".join(values).replace(",", " ").split()]
-
-
 @dataclass(frozen=True)
 class Table:
-    """Values over none, one or two axes; between them it is linear, beyond them it goes on so."""
+    """Values over none, one or two axes: linear between the points, extrapolated beyond them."""
 
-    axes: tuple[str, ...]  # "load" or "slew", first the axis of rows
-    points: tuple[tuple[float, ...], ...]
+    axes: tuple[tuple[str, tuple[float, ...]], ...]  # "load" or "slew" and its points, first the axis of rows
     values: tuple[float, ...]
 
     def at(self, *, load: float, slew: float) -> float:
+        """Return the value at a load and a slew, in units of the library."""
         values = list(self.values)
-        for axis, points in reversed(list(zip(self.axes, self.points, strict=True))):  # the last axis runs fastest
+        for axis, points in reversed(self.axes):  # the last axis runs fastest
             value = load if axis == "load" else slew
             count = len(points)
             if count == 1:
@@ -112,153 +165,119 @@ class Table:
         return values[0]
 
 
-def table_of(group: Group, templates: dict[str, Group]) -> Table:
-    template = templates.get(group.names[0]) if group.names else None
-    axes, points = [], []
-    for index in ("1", "2", "3"):
-        variable = template.attributes.get(f"variable_{index}") if template else None
-        given = group.lists.get(f"index_{index}") or (template.lists.get(f"index_{index}") if template else None)
-        if variable and given:
-            axes.append("slew" if "transition" in variable else "load")
-            points.append(tuple(numbers(given)))
-    values = tuple(numbers(group.lists["values"]))
-    size = 1
-    for axis in points:
-        size *= len(axis)
-    if size != len(values) or len(axes) > 2:
-        raise ValueError(f"a table {group.kind} holds {len(values)} values for {size} points")
-    return Table(tuple(axes), tuple(points), values)
-
-
-@dataclass(frozen=True)
-class Arc:
-    """Energy of a transition, by cause.
-
-    Attributes
-    ----------
-    related : str
-        The pin that causes it; "" for what an input pin itself takes.
-    when : str
-        Condition, a Boolean expression of pins; "" for always.
-    rise, fall : Table or None
-    """
-
-    related: str
-    when: str
-    rise: Table | None
-    fall: Table | None
-
-    def energy(self, *, load: float, slew: float) -> float:
-        """Mean of a rise and a fall, in units of the library."""
-        tables = [table for table in (self.rise, self.fall) if table]
-        return sum(table.at(load=load, slew=slew) for table in tables) / len(tables)
+def mean(tables: Sequence[Table], *, load: float, slew: float) -> float:
+    """Return the mean of tables at a load and a slew; 0 without tables."""
+    return sum(table.at(load=load, slew=slew) for table in tables) / len(tables) if tables else 0.0
 
 
 @dataclass
 class Pin:
+    """A pin of a cell; `slews` are those of its transitions.
+
+    `energy` holds the tables of a rise and of a fall under every condition, by the pin that causes it; "" for the pin
+    itself.
+    """
+
     direction: str
     capacitance: float
     function: str
-    clock: bool
-    energy: list[Arc]
-    slews: list[Table]  # of its transitions
-    related: list[str]  # pins from which a delay leads to it
+    energy: dict[str, list[Table]] = field(default_factory=dict)
+    slews: list[Table] = field(default_factory=list)
 
 
 @dataclass
 class Cell:
+    """A cell; `leakage` is in units of the library, `flip_flop` the group `ff` of a flip-flop."""
+
     name: str
     area: float
-    leakage: float  # in units of the library
+    leakage: float
     pins: dict[str, Pin]
     flip_flop: Group | None
-    taken: bool  # whether a netlist of this flow may use it
 
-    @property
-    def inputs(self) -> list[str]:
-        return [name for name, pin in self.pins.items() if pin.direction == "input"]
+    def __post_init__(self) -> None:
+        self.inputs = [name for name, pin in self.pins.items() if pin.direction == "input"]
+        self.outputs = [name for name, pin in self.pins.items() if pin.direction == "output"]
 
-    @property
-    def outputs(self) -> list[str]:
-        return [name for name, pin in self.pins.items() if pin.direction == "output"]
+
+def functions(cell: Cell) -> dict[str, tuple[list[str], int]]:
+    """Return the inputs and the truth table of each output; of a flip-flop those of its value after the edge."""
+    texts = {name: cell.pins[name].function for name in cell.outputs}
+    if cell.flip_flop is None:
+        return {name: (pins_of(text), truth(text, pins_of(text))) for name, text in texts.items()}
+    following = cell.flip_flop.attributes["next_state"]
+    inputs = pins_of(following)
+    tables = [truth(following, inputs), truth(f"!({following})", inputs)]
+    held = cell.flip_flop.names  # the state and its inverse
+    inverted = {name: not truth(text, held) >> 0b01 & 1 for name, text in texts.items()}
+    return {name: (inputs, tables[inverted[name]]) for name in cell.outputs}
 
 
 @dataclass
 class Library:
-    """Cells with units: capacitances in `farad`, energies in `joule`, leakage in `watt`, slews in `second`.
-
-    An energy in Liberty has the unit of the load capacitance times V squared.
-    """
+    """Cells with units: capacitances in `farad`, energies in `farad` times V squared, leakage in `watt`."""
 
     name: str
     voltage: float
-    temperature: float
     cells: dict[str, Cell]
     farad: float
-    joule: float
     watt: float
-    second: float
 
     def inverter(self) -> Cell:
-        """The smallest inverter: the gate that load and slew are measured by.
-
-        Raises
-        ------
-        InputError
-        """
-        found = [
+        """Return the smallest inverter: typical load and slew are measured with it."""
+        inverters = [
             cell
             for cell in self.cells.values()
             if len(cell.inputs) == len(cell.outputs) == 1
-            and re.sub(r"[\s()]", "", cell.pins[cell.outputs[0]].function)
-            in (f"!{cell.inputs[0]}", f"{cell.inputs[0]}'")
+            and cell.pins[cell.outputs[0]].function
+            and functions(cell) == {cell.outputs[0]: (cell.inputs, 0b01)}
         ]
-        if not found:
+        if not inverters:
             raise InputError(f"LIB: the library {self.name} holds no inverter")
-        return min(found, key=lambda cell: (cell.area, cell.name))
+        return min(inverters, key=lambda cell: (cell.area, cell.name))
+
+
+def _table(group: Group, templates: dict[str, Group]) -> Table:
+    """Return the table of a group, which may take its axes from a template."""
+    template = templates.get(group.names[0] if group.names else "", Group("", []))
+    axes = []
+    for index in "123":
+        variable = template.attributes.get(f"variable_{index}")
+        points = group.lists.get(f"index_{index}") or template.lists.get(f"index_{index}")
+        if variable and points:
+            axes.append(("slew" if "transition" in variable else "load", _numbers(points)))
+    values = _numbers(group.lists["values"])
+    size = prod(len(points) for _, points in axes)
+    if size != len(values) or len(axes) > 2:
+        raise ValueError(f"a table {group.kind} holds {len(values)} values for {size} points")
+    return Table(tuple(axes), values)
+
+
+def _numbers(values: list[str]) -> tuple[float, ...]:
+    return tuple(float(number) for number in " ".join(values).replace(",", " ").split())
+
+
+def _pin(group: Group, templates: dict[str, Group]) -> Pin:
+    attributes = group.attributes
+    pin = Pin(attributes.get("direction", ""), group.number("capacitance"), attributes.get("function", ""))
+    for power in group.all("internal_power"):
+        tables = [_table(table, templates) for table in power.groups if table.kind.endswith("power")]
+        if tables:
+            pin.energy.setdefault(power.attributes.get("related_pin", ""), []).extend(tables)
+    for timing in group.all("timing"):
+        pin.slews += [_table(table, templates) for table in timing.groups if table.kind.endswith("_transition")]
+    return pin
 
 
 def _cell(group: Group, templates: dict[str, Group]) -> Cell:
-    pins = {}
+    pins: dict[str, Pin] = {}
     for pin in group.all("pin"):
-        energy, slews, related = [], [], []
-        for power in pin.all("internal_power"):
-            tables = {table.kind: table_of(table, templates) for table in power.groups}
-            both = tables.get("power")
-            arc = Arc(
-                power.attributes.get("related_pin", ""),
-                power.attributes.get("when", ""),
-                tables.get("rise_power", both),
-                tables.get("fall_power", both),
-            )
-            if arc.rise or arc.fall:
-                energy.append(arc)
-        for timing in pin.all("timing"):
-            found = [table for table in timing.groups if table.kind in ("rise_transition", "fall_transition")]
-            if found:
-                slews += [table_of(table, templates) for table in found]
-                related += timing.attributes.get("related_pin", "").split()
-        for name in pin.names:
-            pins[name] = Pin(
-                pin.attributes.get("direction", ""),
-                pin.number("capacitance"),
-                pin.attributes.get("function", ""),
-                pin.attributes.get("clock", "") == "true",
-                energy,
-                slews,
-                sorted(set(related)),
-            )
-    taken = group.attributes.get("dont_use", "").lower() != "true" and not any(
-        pin.attributes.get("three_state") for pin in group.all("pin")
-    )
+        pins |= dict.fromkeys(pin.names, _pin(pin, templates))
     flip_flop = next(group.all("ff"), None)
-    return Cell(
-        group.names[0], group.number("area"), group.number("cell_leakage_power"), pins, flip_flop, taken
-    )  # fmt: skip
+    return Cell(group.names[0], group.number("area"), group.number("cell_leakage_power"), pins, flip_flop)
 
 
-def unit_of(text: str) -> float:
-    """1pF to 1e-12."""
+def _unit(text: str) -> float:
     match = UNIT.match(text.strip())
     if match is None:
         raise ValueError(f"{text} is no unit")
@@ -266,113 +285,33 @@ def unit_of(text: str) -> float:
 
 
 def read(path: Path) -> Library:
-    """A library from its file.
+    """Return the library of a file.
 
     Raises
     ------
     InputError
-        It cannot be read, is no Liberty, or holds no flip-flop with one clock.
+        The file cannot be read, is no Liberty file, or lacks a voltage, a flip-flop or an inverter.
     """
     try:
-        if path.stat().st_size > LARGEST:
-            raise ValueError("it is too large")
         library = groups_of(path.read_text(encoding="latin-1"))
-        templates = {
-            group.names[0]: group
-            for group in library.groups
-            if group.kind in ("lu_table_template", "power_lut_template")
-        }
+        templates = {group.names[0]: group for group in library.groups if group.kind.endswith("_template")}
         amount, unit = library.lists.get("capacitive_load_unit", ["1", "pf"])
-        farad = float(amount) * PREFIX[unit.lower()[0]]
-        voltage = library.number("nom_voltage")
-        read_cells = {group.names[0]: _cell(group, templates) for group in library.all("cell")}
+        if library.attributes.get("voltage_unit", "1V") != "1V":
+            raise ValueError("its unit of voltage is not 1V")
         result = Library(
             library.names[0],
-            voltage,
-            library.number("nom_temperature"),
-            read_cells,
-            farad,
-            farad * unit_of(library.attributes.get("voltage_unit", "1V")) ** 2,
-            unit_of(library.attributes.get("leakage_power_unit", "1nW")),
-            unit_of(library.attributes.get("time_unit", "1ns")),
+            library.number("nom_voltage"),
+            {group.names[0]: _cell(group, templates) for group in library.all("cell")},
+            float(amount) * PREFIX[unit.lower()[0]],
+            _unit(library.attributes.get("leakage_power_unit", "1nW")),
         )
     except OSError as error:
         raise InputError(f"LIB={path}: cannot be read ({error.strerror}): give a Liberty file (.lib)") from error
     except (ValueError, KeyError, IndexError) as error:
-        raise InputError(
-            f"LIB={path}: no Liberty file that can be read ({error}): give a .lib of typical tables"
-        ) from error
-    if voltage <= 0:
+        raise InputError(f"LIB={path}: no Liberty file that can be read ({error}): give another .lib") from error
+    if result.voltage <= 0:
         raise InputError(f"LIB={path}: nom_voltage is missing: power cannot be computed without it")
-    if not any(cell.flip_flop and cell.taken for cell in read_cells.values()):
-        raise InputError(f"LIB={path}: no flip-flop among its {len(read_cells)} cells: the design has thousands")
-    return result
-
-
-# Boolean expressions.
-
-
-def boolean(text: str) -> str:
-    """A Liberty expression as one of Verilog.
-
-    Liberty: ! before or ' after is not, & or * or a space is and, + or | is or, ^ is exclusive or.
-
-    Raises
-    ------
-    ValueError
-    """
-    tokens = re.findall(r"[A-Za-z_][\w\[\]]*|[01]|[!'()&*+|^]", text)
-    at = 0
-
-    def peek() -> str:
-        return tokens[at] if at < len(tokens) else ""
-
-    def primary() -> str:
-        nonlocal at
-        token = peek()
-        at += 1
-        if token == "!":
-            value = f"~{primary()}"
-        elif token == "(":
-            value = f"({either()})"
-            if peek() != ")":
-                raise ValueError(f"{text}: a ) is missing")
-            at += 1
-        elif re.match(r"[A-Za-z_01]", token):
-            value = f"1'b{token}" if token in "01" else token
-        else:
-            raise ValueError(f"{text}: no Boolean expression")
-        while peek() == "'":
-            value = f"~{value}"
-            at += 1
-        return value
-
-    def exclusive() -> str:  # binds tighter than and in Liberty
-        nonlocal at
-        value = primary()
-        while peek() == "^":
-            at += 1
-            value = f"({value} ^ {primary()})"
-        return value
-
-    def both() -> str:
-        nonlocal at
-        value = exclusive()
-        while peek() and peek() not in "+|)":
-            if peek() in "&*":
-                at += 1
-            value = f"({value} & {exclusive()})"
-        return value
-
-    def either() -> str:
-        nonlocal at
-        value = both()
-        while peek() and peek() in "+|":
-            at += 1
-            value = f"({value} | {both()})"
-        return value
-
-    result = either()
-    if at != len(tokens):
-        raise ValueError(f"{text}: no Boolean expression")
+    if not any(cell.flip_flop for cell in result.cells.values()):
+        raise InputError(f"LIB={path}: no flip-flop among its {len(result.cells)} cells: the design has thousands")
+    result.inverter()
     return result

@@ -1,19 +1,58 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the flows of make synth, make fpga and make asic share: the design, read by Yosys."""
+"""Steps that make synth, make fpga and make asic share: from a request to a design that Yosys has read."""
 
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
-from commands.common import repository
+from commands.common import repository, results
+from commands.run import sim
 from tactile_depth.configuration import Configuration
+from tactile_depth.frames import Frames, load_frames
 from tactile_depth.sensor import Sensor, load
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
-# Small ROMs are LUTs. Vivado says "distributed", which Yosys takes for a RAM of LUTs and finds none to read alone.
+# Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
+
+
+def design(request: sim.Request, source: str | None = None) -> tuple[Frames, Sensor, Configuration]:
+    """Return frames, calibration on their grid and configuration of a request; `source` replaces its frames.
+
+    Raises
+    ------
+    InputError
+    """
+    calibration = sim.load_sensor(request)
+    Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
+    size = (request.rows, request.columns)
+    frames = load_frames(source or request.frames, size, request.reference, request.seed, request.press)
+    calibration = calibration.on_grid(frames)
+    return frames, calibration, sim.configure(request, calibration)
+
+
+@contextmanager
+def workspace(out: Path, files: Iterable[str]) -> Iterator[Path]:
+    """Make `out` and yield an empty folder inside it; the folder stays after a RuntimeError, which names a log in it.
+
+    Raises
+    ------
+    InputError, OSError
+    """
+    results.make(out, files)
+    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out)).resolve()
+    try:
+        yield work
+    except RuntimeError:
+        raise
+    except BaseException:
+        shutil.rmtree(work, ignore_errors=True)
+        raise
+    shutil.rmtree(work, ignore_errors=True)
 
 
 def read(
@@ -26,16 +65,19 @@ def read(
     extra: Sequence[Path] = (),
     options: str = "",
 ) -> list[str]:
-    """Write the sources and the ROMs of a configuration into a folder; lines of Yosys that read them there.
+    """Write sources and ROMs of a configuration into a folder, and return the lines of Yosys that read them there.
 
-    `parameters` are those of `top`, by default of the whole design; `extra` are sources beside hdl/, and in place of
-    those of the same name there; `options` go to the front end.
+    Parameters
+    ----------
+    parameters : of `top`; those of the design by default
+    extra : sources beside those of hdl/; they replace files of the same name
+    options : of the front end
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_roms(folder, load(calibration) if isinstance(calibration, str) else calibration, config)
     names = list({source.name: shutil.copy(source, folder) for source in [*repository.sources(), *extra]})
-    given = top_parameters(config) if parameters is None else parameters
-    values = " ".join(f"-G {name}={value}" for name, value in given.items())
+    of_top = top_parameters(config) if parameters is None else parameters
+    values = " ".join(f"-G {name}={value}" for name, value in of_top.items())
     return [
         f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {values} {' '.join(names)}",
         f"hierarchy -top {top}",

@@ -24,7 +24,7 @@ import numpy as np
 
 from commands.common import results, variables
 from commands.common.repository import ROOT
-from commands.hardware import synth
+from commands.hardware import asic, synth
 from commands.run import reflex, sim
 from commands.study import baselines, extremes, sweep
 from commands.study.tune import CLOCK_MHZ
@@ -471,9 +471,8 @@ def fpga_figure(document: dict[str, Any]) -> Figure:
 
 
 def asic_figure(document: dict[str, Any]) -> Figure:
-    from commands.hardware import asic
-
-    return asic.figure(document)
+    head, *rows = asic.rows(document)
+    return Figure("asic", "In standard cells", document["method"], document["command"], table(head, rows))
 
 
 def hardware_figures() -> list[Figure]:

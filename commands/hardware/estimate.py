@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Estimate at 45 nm from recorded figures of the logic, and the published figures. `make asic` measures neither."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from commands.hardware import memory_model
+
+CLOCK_MHZ = 166.0
+SOURCE = "NanGate FreePDK45, typical corner, version 0.1.0, 2026-11-23"
+PUBLISHED = (
+    f"published, {CLOCK_MHZ:g} MHz",
+    5.10,
+    324.0,
+    "docs/results.md: NanGate FreePDK45, typical corner, single-port SRAM by CACTI and bsg_fakeram, another "
+    "pipeline; here one figure per bit of memory, a write and a read port each, no wires and no clock tree",
+)
+
+
+class Recorded(NamedTuple):
+    """Logic of a design of 128 x 128 at 45 nm and CLOCK_MHZ, and its memories."""
+
+    logic_mm2: float
+    without_delays_mw: float | None
+    with_delays_mw: tuple[float, float]  # least and greatest
+    worst_slack_ns: float
+    memories: int
+    memory_bits: int
+    accessed_bits_per_clock: float  # by `make asic` with Debian's library; no library changes it
+
+
+RECORDED = {
+    "tridiagonal": Recorded(0.227, 56.0, (88.0, 91.0), 1.89, 26, 865_095, 0.0),
+    "spectral": Recorded(0.41, None, (178.0, 185.0), 0.32, 32, 1_420_403, 0.0),
+}
+
+
+def at_45_nm(solver: str) -> tuple[str, float, float, str]:
+    """Return name, area in mm2, power in mW and source: recorded logic and the memory model."""
+    logic = RECORDED[solver]
+    area_mm2 = logic.logic_mm2 + memory_model.area_um2(logic.memory_bits, memory_model.NODE_NM) / 1e6
+    access_pj = memory_model.energy_pj(logic.accessed_bits_per_clock, memory_model.NODE_NM, memory_model.VOLTAGE)
+    power_mw = sum(logic.with_delays_mw) / 2 + access_pj * CLOCK_MHZ / 1e3
+    name = f"45 nm estimate, {solver}, 128 x 128, {CLOCK_MHZ:g} MHz"
+    return name, area_mm2, power_mw, f"not of this run: logic recorded with {SOURCE}; memory model"
