@@ -1,29 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make synth`: what a configuration takes of an FPGA, by Yosys: the whole, each core, each memory.
+"""`make synth`: resources of a configuration on an FPGA, by Yosys: of the design, of each core, of each memory.
 
 TARGET=xczu7ev, the variables of `make sim` that choose a configuration, and OUT. GRIDS=64,128: a table over grids and
 both solvers. Exit status: 0 when the design fits, 1 when not, 2 on bad input.
 
-Every design is mapped twice, both at once, with the cores of the top and of the solver kept apart so that each has its
-figures and the whole is their sum. As UltraScale+ it goes as far as its multipliers and memories: DSP48E2, block RAM,
-UltraRAM. LUTs and registers come from a mapping to 7-series logic, the only one for which Yosys packs registers and
-adders into multipliers; its DSP is given the 27 x 18 bits of a DSP48E2.
+Every design is mapped twice at the same time. The cores of the top and of the solver keep their boundaries, so that
+each has its figures and the design is their sum. The mapping to UltraScale+ ends at multipliers and memories: DSP48E2,
+block RAM, UltraRAM. LUTs and registers come from a mapping to 7-series logic, the only one for which Yosys packs
+registers and adders into multipliers; its DSP gets the 27 x 18 bits of a DSP48E2.
 """
 
 from __future__ import annotations
 
 import importlib.metadata
 import json
-import math
 import os
 import re
 import shutil
 import sys
-import tempfile
-import threading
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -31,16 +29,17 @@ from typing import Any
 from tqdm import tqdm
 
 from commands.common import repository, results, variables
+from commands.common.markdown import table
 from commands.common.signals import threads
 from commands.hardware import synthesis, yosys
+from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
 from commands.run import sim
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.frames import REST_SCENE, load_frames
+from tactile_depth.frames import REST_SCENE
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters
 
-TOP = "tactile_depth"
 OUT = repository.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
 CONFIGURING = (
@@ -52,7 +51,7 @@ RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
 
 @dataclass(frozen=True)
 class Target:
-    """A device: its name and what it has."""
+    """A device and its resources."""
 
     device: str
     has: Mapping[str, int]
@@ -64,18 +63,12 @@ TARGETS = {
         {"DSP48E2": 1728, "BRAM36": 312, "UltraRAM": 96, "LUT": 230_400, "FF": 460_800},
     )
 }
-# The published pipeline on the same device, 24 bit: what it states of each grid.
+# The published pipeline on the same device, 24 bit: the figures that it states of each grid.
 PUBLISHED: dict[int, dict[str, int]] = {
     64: {"DSP48E2": 82, "LUT": 12_280, "UltraRAM": 8},
     128: {"UltraRAM": 32},
     256: {"DSP48E2": 108, "LUT": 21_413, "UltraRAM": 64, "BRAM36": 176},
 }
-
-# Memories.
-
-ULTRA_SHAPE = (4096, 72)
-BLOCK_SHAPES = ((512, 72), (1024, 36), (2048, 18), (4096, 9), (8192, 4), (16384, 2), (32768, 1))
-BLOCKS_PER_ULTRA = 8  # 36 Kb and 288 Kb
 
 # Cells of the two mappings.
 
@@ -90,27 +83,6 @@ MEMORY_LUTS = {
 REGISTERS = ("FDRE", "FDSE", "FDCE", "FDPE")
 NO_LUTS = ("CARRY4", "MUXF7", "MUXF8", "DSP48E1", "RAMB36E1", "RAMB18E1")
 
-# A 7-series DSP with the multiplier of a DSP48E2; registers and cascades, which xilinx_dsp adds, are the same.
-WIDE_DSP = r"""
-module \$__MUL27X18 (input [26:0] A, input [17:0] B, output [44:0] Y);
-  parameter A_SIGNED = 0;
-  parameter B_SIGNED = 0;
-  parameter A_WIDTH = 0;
-  parameter B_WIDTH = 0;
-  parameter Y_WIDTH = 0;
-  wire [47:0] product;
-  DSP48E1 #(
-    .ACASCREG(0), .ADREG(0), .ALUMODEREG(0), .AREG(0), .BCASCREG(0), .BREG(0), .CARRYINREG(0), .CARRYINSELREG(0),
-    .CREG(0), .DREG(0), .INMODEREG(0), .MREG(0), .OPMODEREG(0), .PREG(0),
-    .A_INPUT("DIRECT"), .B_INPUT("DIRECT"), .USE_MULT("MULTIPLY"), .USE_SIMD("ONE48"), .USE_DPORT("FALSE")
-  ) _TECHMAP_REPLACE_ (
-    .A({{3{A[26]}}, A}), .B(B), .C(48'd0), .D(25'd0), .CARRYIN(1'b0), .P(product),
-    .INMODE(5'd0), .ALUMODE(4'd0), .OPMODE(7'b0000101), .CARRYINSEL(3'd0),
-    .ACIN(30'd0), .BCIN(18'd0), .PCIN(48'd0)
-  );
-  assign Y = product[44:0];
-endmodule
-"""
 SYNTH = f"synth_xilinx -top {TOP} -flatten -noiopad -noclkbuf"
 DEVICE = [f"{SYNTH} -family xcup -uram -run begin:map_ffram"]
 LOGIC = [
@@ -142,39 +114,8 @@ NOTES = (
 
 
 @dataclass(frozen=True)
-class Memory:
-    """An array of the RTL. `style`: ultra, block, distributed, logic, or nothing, which is left to the tool."""
-
-    path: str
-    depth: int
-    width: int
-    style: str
-    rom: bool
-
-    @property
-    def ultras(self) -> int:
-        """UltraRAMs of 4,096 x 72 bits, one word to a row."""
-        depth, width = ULTRA_SHAPE
-        return math.ceil(self.depth / depth) * math.ceil(self.width / width)
-
-    @property
-    def blocks(self) -> float:
-        """Block RAMs of 36 Kb; half of one where 18 Kb are enough."""
-        if any(self.depth <= depth and self.width <= width / 2 for depth, width in BLOCK_SHAPES if width > 1):
-            return 0.5
-        return min(math.ceil(self.depth / depth) * math.ceil(self.width / width) for depth, width in BLOCK_SHAPES)
-
-    def plain(self) -> dict[str, float]:
-        """By its style: UltraRAMs and block RAMs."""
-        return {
-            "UltraRAM": self.ultras if self.style == "ultra" else 0,
-            "BRAM36": self.blocks if self.style == "block" else 0,
-        }
-
-
-@dataclass(frozen=True)
 class Core:
-    """What one instance of a core takes; `path` is empty for what lies between the cores."""
+    """Resources of one instance of a core; `path` is empty for the logic between the cores."""
 
     name: str
     path: str
@@ -183,34 +124,19 @@ class Core:
 
 @dataclass(frozen=True)
 class Design:
-    """What a configuration takes of a target.
+    """Resources of a configuration on a target."""
 
-    Attributes
-    ----------
-    configuration : dict
-        Grid, solver, boundary, widths, gradient model, flat field.
-    totals : dict
-        Each of RESOURCES, memories by the plain rule.
-    details : dict
-        LUTs as logic, memory and shift registers; memories as Yosys maps them; all memory in UltraRAMs.
-    cores : list of Core
-    memories : list of Memory
-    misfit : str
-        Which resource is not enough and by how much; empty when the design fits.
-    seconds : float
-    """
-
-    configuration: dict[str, Any]
-    totals: dict[str, float]
-    details: dict[str, float]
+    configuration: dict[str, Any]  # grid, solver, boundary, widths, gradient model, flat field
+    totals: dict[str, float]  # of RESOURCES, memories by the plain rule
+    details: dict[str, float]  # kinds of LUTs, memories as Yosys maps them, all memory in UltraRAMs
     cores: list[Core]
     memories: list[Memory]
-    misfit: str
+    misfit: str  # the resources that are not enough; empty when the design fits
     seconds: float
 
 
 def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
-    """KEY=VALUE arguments; the grids are empty without GRIDS.
+    """Return target, its name, grids and request; the grids are empty without GRIDS.
 
     Raises
     ------
@@ -229,22 +155,47 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
 
 
 def configured(request: sim.Request) -> tuple[Configuration, Sensor]:
-    """The configuration of a request, and the calibration on its grid.
+    """Return the configuration of a request, and the calibration on its grid.
 
     Raises
     ------
     InputError
     """
-    calibration = sim.load_sensor(request)
-    Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
-    # A reference frame says how wide the camera's pixels are on the grid: it is read as a frame too.
+    # A reference frame gives the width of the camera's pixels on the grid, so it is read as a frame too.
     source = sim.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
-    frames = load_frames(source, (request.rows, request.columns), request.reference, request.seed)
-    calibration = calibration.on_grid(frames)
-    return sim.configure(request, calibration), calibration
+    _, calibration, config = synthesis.design(request, source)
+    return config, calibration
+
+
+def designs(request: sim.Request, grids: Sequence[int]) -> list[tuple[sim.Request, str]]:
+    """Return the designs to build, each with the reason why it cannot be built, which is empty for most.
+
+    Raises
+    ------
+    InputError
+        Neither solver has a configuration for one of the grids.
+    """
+    if not grids:
+        configured(request)
+        return [(request, "")]
+    every: list[tuple[sim.Request, str]] = []
+    for size in grids:
+        reasons = []
+        for solver in COLUMNS:
+            each = replace(request, rows=size, columns=size, solver=solver)
+            try:
+                configured(each)
+                every.append((each, ""))
+            except InputError as error:
+                reasons.append(str(error))
+                every.append((each, reasons[-1]))
+        if len(reasons) == len(COLUMNS):
+            raise InputError(f"GRIDS={size}: {reasons[0]}")
+    return every
 
 
 def described(config: Configuration) -> dict[str, Any]:
+    """Return a configuration as resources.json states it."""
     return {
         "grid": [config.rows, config.columns],
         "solver": config.solver,
@@ -261,9 +212,9 @@ def described(config: Configuration) -> dict[str, Any]:
 
 
 def elaborate(config: Configuration, calibration: Sensor, folder: Path) -> tuple[list[str], list[str]]:
-    """Write sources and ROMs and read them: lines that read them again, and all modules, <core>$<path>.
+    """Return the lines of Yosys that read a design, and all its modules, <core>$<path>.
 
-    <folder>/design.json then holds the memories.
+    Sources and ROMs are written to the folder; <folder>/design.json holds the memories.
 
     Raises
     ------
@@ -277,30 +228,8 @@ def elaborate(config: Configuration, calibration: Sensor, folder: Path) -> tuple
     return lines, list(json.loads((folder / "design.json").read_text())["modules"])
 
 
-def memories(design: Path) -> list[Memory]:
-    """Of an elaborated design, largest first."""
-    found = []
-    for module, content in json.loads(design.read_text())["modules"].items():
-        for name, cell in content["cells"].items():
-            if cell["type"] != "$mem_v2":
-                continue
-            depth, width, writers = (int(cell["parameters"][key], 2) for key in ("SIZE", "WIDTH", "WR_PORTS"))
-            attributes = cell["attributes"]
-            style = attributes.get("ram_style") or attributes.get("rom_style") or ""
-            # ram.sv and rom.sv call their array words, in a generate block of its style
-            path = path_of(module) + ("" if ".words" in name else f".{name.removeprefix(chr(92))}")
-            found.append(Memory(path.lstrip("."), depth, width, style, writers == 0))
-    return sorted(found, key=lambda memory: (-memory.depth * memory.width, memory.path))
-
-
-def path_of(module: str) -> str:
-    """Of <core>$tactile_depth.<path>: the path without generate blocks, but for those of a loop."""
-    _, _, path = module.partition(f"${TOP}.")
-    return ".".join(part for part in path.split(".") if not re.fullmatch(r"g_\w+", part))
-
-
 def kept(modules: Sequence[str]) -> list[str]:
-    """Those that keep their boundary: the cores of the top, and in the solver's place those of the solver."""
+    """Return the modules that keep their boundary: the cores of the top, with those of the solver for the solver."""
     return [m for m in modules if re.fullmatch(r"(u_solver\.)?u_\w+", path_of(m)) and path_of(m) != "u_solver"]
 
 
@@ -308,23 +237,24 @@ def kept(modules: Sequence[str]) -> list[str]:
 
 
 def tally(stat: Path) -> dict[str, Counter[str]]:
-    """Cells of each module by type."""
+    """Return the number of cells of each type in each module."""
     modules = json.loads(stat.read_text())["modules"]
     return {name.removeprefix("\\"): Counter(module["num_cells_by_type"]) for name, module in modules.items()}
 
 
 def device_counts(cells: Counter[str]) -> dict[str, float]:
+    """Return multipliers and memories of the mapping to UltraScale+."""
     counts: dict[str, float] = {name: cells[cell] for cell, name in DEVICE_CELLS.items()}
     return counts | {"BRAM36": sum(weight * cells[cell] for cell, weight in BLOCK_CELLS.items())}
 
 
 def logic_counts(cells: Counter[str], modules: Sequence[str]) -> dict[str, float]:
-    """LUTs and registers.
+    """Return LUTs and registers of the mapping to 7-series logic.
 
     Raises
     ------
     RuntimeError
-        A cell that has no count here.
+        A cell has no count here.
     """
     known = {*LOGIC_LUTS, *SHIFT_LUTS, *MEMORY_LUTS, *REGISTERS, *NO_LUTS, *modules}
     if strange := sorted(cell for cell in cells if cell not in known and not cell.startswith("$")):
@@ -337,28 +267,18 @@ def logic_counts(cells: Counter[str], modules: Sequence[str]) -> dict[str, float
     return {"LUT": sum(kinds.values()), "FF": sum(cells[cell] for cell in REGISTERS), **kinds}
 
 
-def follow(logs: Sequence[Path], label: str, finished: threading.Event) -> None:
-    """A line that shows the pass each log is at, until `finished`."""
-    with tqdm(desc=label, leave=False, disable=None, bar_format="{desc} {elapsed}") as bar:
-        while not finished.wait(1):
-            passes = []
-            for log in logs:
-                text = log.read_text(errors="replace") if log.exists() else ""
-                found = re.findall(r"^\d[\d.]* Executing (\S+)", text[-200_000:], re.M)
-                passes.append(found[-1] if found else "reading")
-            bar.set_description_str(f"{label}: {', '.join(passes)}")
-
-
 def mapped(
     lines: Sequence[str], cores: Sequence[str], boxes: Sequence[str], folder: Path, label: str
 ) -> tuple[dict[str, Counter[str]], dict[str, Counter[str]]]:
-    """Cells of each module in the two mappings, run at once. `boxes`: modules that the mapping to logic leaves out.
+    """Return the cells of each module in the two mappings, which run at the same time.
+
+    The mapping to logic leaves out the modules `boxes`.
 
     Raises
     ------
     RuntimeError
     """
-    (folder / "wide_dsp.v").write_text(WIDE_DSP)
+    shutil.copy(Path(__file__).with_name("wide_dsp.v"), folder)
     keep = [f"setattr -mod -set keep_hierarchy 1 {core}" for core in cores]
     steps = {"device": DEVICE, "logic": [*(f"blackbox {box}" for box in boxes), *LOGIC]}
     scripts = []
@@ -366,15 +286,10 @@ def mapped(
         script = folder / f"{name}.ys"
         script.write_text("\n".join([*lines, *keep, *commands, f"tee -q -o {name}.json stat -json"]) + "\n")
         scripts.append(script)
-    finished = threading.Event()
-    watcher = threading.Thread(target=follow, args=([s.with_suffix(".log") for s in scripts], label, finished))
-    watcher.start()
-    try:
-        with threads(len(scripts)) as pool:
-            faults = [fault for fault in pool.map(lambda s: yosys.run(s, timeout_s=TIMEOUT_S), scripts) if fault]
-    finally:
-        finished.set()
-        watcher.join()
+    with threads(len(scripts)) as pool:
+        runs = [pool.submit(yosys.run, script, timeout_s=TIMEOUT_S) for script in scripts]
+        finished = tqdm(as_completed(runs), desc=label, total=len(runs), unit="mapping", leave=False, disable=None)
+        faults = [fault for run in finished if (fault := run.result())]
     if faults:
         raise RuntimeError("; ".join(faults))
     device, logic = (tally(folder / f"{name}.json") for name in steps)
@@ -382,7 +297,7 @@ def mapped(
 
 
 def misfit(totals: Mapping[str, float], target: Target) -> str:
-    """What there is not enough of; empty when all fits."""
+    """Return the resources that are not enough; empty when all fits."""
     short = [
         f"{name} {totals[name]:,g} of {target.has[name]:,}, {totals[name] - target.has[name]:,g} too many"
         for name in RESOURCES
@@ -392,7 +307,7 @@ def misfit(totals: Mapping[str, float], target: Target) -> str:
 
 
 def synthesize(config: Configuration, calibration: Sensor, target: Target, folder: Path) -> Design:
-    """One design. Memories that do not fit end it after a second; nothing is mapped then.
+    """Return the resources of a design; when its memories do not fit, nothing is mapped.
 
     Raises
     ------
@@ -400,24 +315,24 @@ def synthesize(config: Configuration, calibration: Sensor, target: Target, folde
     """
     began = time.monotonic()
     lines, modules = elaborate(config, calibration, folder)
-    found = memories(folder / "design.json")
+    arrays = memories(folder / "design.json")
     cores = kept(modules)
-    plain = {name: sum(memory.plain()[name] for memory in found) for name in ("UltraRAM", "BRAM36")}
+    plain = {name: sum(memory.plain()[name] for memory in arrays) for name in ("UltraRAM", "BRAM36")}
     details = {"memory in UltraRAM": plain["UltraRAM"] + plain["BRAM36"] / BLOCKS_PER_ULTRA}
 
     def design(totals: dict[str, float], listed: list[Core]) -> Design:
         seconds = round(time.monotonic() - began, 1)
-        return Design(described(config), totals, details, listed, found, misfit(totals, target), seconds)
+        return Design(described(config), totals, details, listed, arrays, misfit(totals, target), seconds)
 
     if misfit(plain, target):
         return design(plain, [])
-    boxes = [m for m in modules if any(path_of(m) == memory.path and memory.style == "ultra" for memory in found)]
+    boxes = [m for m in modules if any(path_of(m) == memory.path and memory.style == "ultra" for memory in arrays)]
     label = f"{config.solver} {config.rows}x{config.columns}"
     device, logic = mapped(lines, cores, boxes, folder, label)
     listed = []
     for module in (*cores, TOP):
         path = path_of(module)
-        inside = [memory for memory in found if memory.path.startswith(f"{path}.")] if path else []
+        inside = [memory for memory in arrays if memory.path.startswith(f"{path}.")] if path else []
         counts = device_counts(device[module]) | logic_counts(logic[module], modules)
         counts |= {f"mapped {name}": counts[name] for name in plain}
         counts |= {name: sum(memory.plain()[name] for memory in inside) for name in plain}
@@ -427,36 +342,31 @@ def synthesize(config: Configuration, calibration: Sensor, target: Target, folde
     return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]))
 
 
-# Telling.
+# Report.
 
 
-def core_table(design: Design) -> str:
-    """A line for each core, then the whole."""
-    lines = [f"{'core':<40}" + "".join(f"{name:>10}" for name in RESOURCES)]
-    for core in design.cores:
-        name = f"{core.name} ({core.path.removeprefix('u_solver.')})" if core.path else "between the cores"
-        lines.append(f"{name:<40}" + "".join(f"{core.counts[resource]:>10,g}" for resource in RESOURCES))
-    return "\n".join([*lines, f"{'the whole':<40}" + "".join(f"{design.totals[name]:>10,g}" for name in RESOURCES)])
-
-
-def memory_table(design: Design) -> str:
-    lines = [f"{'memory':<52}{'words':>10}{'bits':>6}  {'style':<12}{'UltraRAM':>9}{'BRAM36':>8}"]
-    for memory in design.memories:
-        kind = f"{memory.style or '-'}{', ROM' if memory.rom else ''}"
-        counts = "".join(f"{count:>{width},g}" for count, width in zip(memory.plain().values(), (9, 8), strict=True))
-        lines.append(f"{memory.path:<52}{memory.depth:>10,}{memory.width:>6}  {kind:<12}{counts}")
-    return "\n".join(lines)
-
-
-def told(design: Design, target: Target) -> str:
-    """Everything of one design."""
+def text(design: Design, target: Target) -> str:
+    """Return the printed report of one design."""
+    cores = [
+        (f"{core.name} ({core.path.removeprefix('u_solver.')})", core.counts) for core in design.cores if core.path
+    ]
+    cores += [("between the cores", core.counts) for core in design.cores if not core.path]
+    by_core = [
+        [name, *(f"{counts[resource]:,g}" for resource in RESOURCES)]
+        for name, counts in [*cores, ("sum", design.totals)]
+    ]
+    by_memory = [
+        [memory.path, f"{memory.depth:,}", str(memory.width), f"{memory.style or '-'}{', ROM' if memory.rom else ''}"]
+        + [f"{count:,g}" for count in memory.plain().values()]
+        for memory in design.memories
+    ]
     d = design.details
     use = ", ".join(f"{name} {100 * design.totals[name] / target.has[name]:.1f} %" for name in RESOURCES)
     return "\n".join(
         [
-            core_table(design),
+            table(("core", *RESOURCES), by_core),
             "",
-            memory_table(design),
+            table(("memory", "words", "bits", "style", "UltraRAM", "BRAM36"), by_memory),
             "",
             f"of the {target.device}: {use}",
             f"LUTs: {d['LUT as logic']:,g} logic, {d['LUT as memory']:,g} memory, "
@@ -469,7 +379,7 @@ def told(design: Design, target: Target) -> str:
 
 
 def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
-    """The designs of a resources.json beside the published one: head, then a row each."""
+    """Return the designs of a resources.json beside the published one: head, then rows."""
     rows = [["design", "grid", *RESOURCES, "memory in UltraRAM", "does not fit"]]
     stated: set[int] = set()
     for design in document["designs"]:
@@ -487,27 +397,8 @@ def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
     return rows
 
 
-def grid_table(document: Mapping[str, Any]) -> str:
-    """`grid_rows` as Markdown."""
-    head, *rows = grid_rows(document)
-    widths = [max(len(row[column]) for row in (head, *rows)) for column in range(len(head))]
-
-    def line(row: Sequence[str]) -> str:
-        first, *others = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-        return f"| {' | '.join([first.strip().ljust(widths[0]), *others])} |"
-
-    return "\n".join([line(head), line(["-" * width for width in widths]), *(line(row) for row in rows)])
-
-
-def write_json(path: Path, document: Mapping[str, Any]) -> None:
-    """All of it or nothing."""
-    fresh = path.with_suffix(f".{os.getpid()}")
-    fresh.write_text(json.dumps(document, indent=1) + "\n")
-    os.replace(fresh, path)
-
-
 def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
-    """What constraints/xczu7ev_ooc.tcl reads beside hdl/: the ROMs and the parameters."""
+    """Write ROMs and parameters, which constraints/xczu7ev_ooc.tcl reads beside hdl/."""
     kept_files = out / "rom"
     kept_files.mkdir(exist_ok=True)
     for old in kept_files.glob("*.hex"):
@@ -519,18 +410,12 @@ def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
 
 
 def run(arguments: list[str]) -> int:
-    """Everything; returns the exit status."""
+    """Run the flow and return the exit status."""
     target, name, grids, request = parse(arguments)
     if not Path(yosys.YOSYS).exists():
         raise InputError("Yosys is not installed in this Python environment: run `make setup`")
-    requests = [request]
-    if grids:
-        requests = [replace(request, rows=n, columns=n, solver=solver) for n in grids for solver in COLUMNS]
-    else:
-        configured(request)  # before anything is made
+    requests = designs(request, grids)
     out = request.out or OUT / (name if grids else f"{name}-{request.solver}-{request.rows}x{request.columns}")
-    results.make(out, ["resources.json"])
-    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
     document: dict[str, Any] = {
         "target": name,
         "device": target.device,
@@ -540,38 +425,35 @@ def run(arguments: list[str]) -> int:
         "notes": list(NOTES),
         "designs": [],
     }
-    try:
-        for each in requests:
-            try:
-                config, calibration = configured(each)
-            except InputError as error:
-                if not grids:
-                    raise
+    built = []
+    with synthesis.workspace(out, ["resources.json"]) as work:
+        for each, reason in requests:
+            if reason:
                 grid = {"grid": [each.rows, each.columns], "solver": each.solver}
-                document["designs"].append(asdict(Design(grid, {}, {}, [], [], f"not built: {error}", 0.0)))
-                continue
-            folder = work / f"{config.solver}-{config.columns}"
-            design = synthesize(config, calibration, target, folder)
-            document["designs"].append(asdict(design))
-            write_json(out / "resources.json", document)
-            if not grids:
-                keep_sources(folder, config, out)
-                if not design.misfit:
-                    print(told(design, target))
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
+                built.append(Design(grid, {}, {}, [], [], f"not built: {reason}", 0.0))
+            else:
+                config, calibration = configured(each)
+                folder = work / f"{config.solver}-{config.columns}"
+                built.append(synthesize(config, calibration, target, folder))
+                if not grids:
+                    keep_sources(folder, config, out)
+            document["designs"].append(asdict(built[-1]))
+            (work / "resources.json").write_text(json.dumps(document, indent=1) + "\n")
+            results.replace(work, ["resources.json"], out)
     if grids:
-        write_json(out / "resources.json", document)
-        print(grid_table(document))
-        print("\n".join(NOTES))
+        head, *rows = grid_rows(document)
+        print("\n".join([table(head, rows), *NOTES]))
+    elif not built[0].misfit:
+        print(text(built[0], target))
     print(f"results: {os.path.relpath(out / 'resources.json')}")
-    if not grids and design.misfit:
-        print(f"make synth: it does not fit the {target.device}: {design.misfit}", file=sys.stderr)
-        return 1
-    return 0
+    if not grids and built[0].misfit:
+        print(f"make synth: it does not fit the {target.device}: {built[0].misfit}", file=sys.stderr)
+        return variables.MISMATCH
+    return variables.EQUAL
 
 
 def main() -> None:
+    """Run the command with the arguments of the process."""
     with variables.reported("synth"):
         sys.exit(run(sys.argv[1:]))
 

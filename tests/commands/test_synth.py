@@ -10,6 +10,7 @@ import pytest
 
 from commands.common import repository
 from commands.hardware import synth
+from commands.hardware.fpga_memory import Memory, memories, path_of
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import cost
 from tactile_depth.sensor import synthetic
@@ -19,16 +20,16 @@ XCZU7EV = synth.TARGETS["xczu7ev"]
 
 
 def memory(depth, width, style="block"):
-    return synth.Memory("u_ram", depth, width, style, rom=False)
+    return Memory("u_ram", depth, width, style, rom=False)
 
 
 def test_memories_and_cores_are_those_of_the_rtl(tmp_path):
     _, modules = synth.elaborate(TINY, synthetic(TINY.bits_per_channel), tmp_path)
-    found = synth.memories(tmp_path / "design.json")
+    found = memories(tmp_path / "design.json")
     behind_wrapper = Counter((memory.width, memory.depth) for memory in found if memory.style)
     assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(TINY).memories)
     assert len({memory.path for memory in found}) == len(found)
-    cores = {synth.path_of(module) for module in synth.kept(modules)}
+    cores = {path_of(module) for module in synth.kept(modules)}
     assert {"u_guard", "u_events", "u_registers", "u_solver.u_stack", "u_solver.u_row_forward"} <= cores
     assert "u_solver" not in cores
 
@@ -96,18 +97,29 @@ def test_a_design_too_large_ends_with_a_line(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.glob(".work*"))
 
 
+def test_a_grid_that_one_solver_has_is_built_with_that_solver():
+    """The other one is named with the reason."""
+    _, _, grids, request = synth.parse(["GRIDS=1024"])
+    reasons = {each.solver: reason for each, reason in synth.designs(request, grids)}
+    assert reasons["tridiagonal"] == ""
+    assert "1024" in reasons["spectral"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["TARGET=xc7a35t"], "TARGET=xc7a35t is unknown: accepted is xczu7ev"),
         (["FRAMES=ball"], "FRAMES=ball: unknown variable: accepted are TARGET"),
         (["GRIDS=64;128"], "GRIDS=64;128: accepted are whole numbers"),
+        (["GRIDS=64,7"], "GRIDS=7: "),
         (["N=1024", "SOLVER=spectral"], "1024"),
         (["OUT=README.md"], "OUT=README.md is a file"),
     ],
 )
 def test_bad_input(arguments, said, capsys, monkeypatch):
+    """Refused before Yosys runs."""
     monkeypatch.chdir(repository.ROOT)
+    monkeypatch.setattr(synth.yosys, "run", None)
     monkeypatch.setattr(sys, "argv", ["synth", *arguments])
     with pytest.raises(SystemExit) as ended:
         synth.main()
