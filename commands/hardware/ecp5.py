@@ -1,48 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Registers into the multipliers of an ECP5, which Yosys leaves outside them.
+"""Packs registers into the multipliers of an ECP5, which Yosys leaves outside them.
 
-A MULT18X18D has registers at its inputs and at its output. With them the routes between a product and the registers
-around it fall away, and most of its delay.
+A MULT18X18D has registers at its inputs and at its output. With them the routes between a product and its registers
+disappear, and so does most of the delay.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 MULTIPLIER, REGISTER = "MULT18X18D", "TRELLIS_FF"
 SIDES, WIDTH = "AB", 18
-CLOCKS = 4  # clocks, enables and resets of a multiplier, of each
+CLOCKS = 4  # number of clocks, of enables and of resets of a multiplier
 Bit = int | str  # of Yosys' JSON: number of a net, or "0", "1", "x"
+Cells = dict[str, dict[str, Any]]
 
 
 class Control(NamedTuple):
-    """What a register obeys."""
+    """Clock and enable of a register."""
 
     clock: Bit
     enable: Bit
 
 
-def _control(register: dict) -> Control | None:
-    """Of a register that nothing resets; None: another."""
-    parameters, ports = register["parameters"], register["connections"]
-    if ports["LSR"] != ["0"] or parameters["REGSET"] != "RESET" or parameters["CLKMUX"] != "CLK":
-        return None
-    return Control(ports["CLK"][0], ports["CE"][0] if parameters["CEMUX"] == "CE" else "1")
+Controls = dict[str, set[Control | None]]  # of each group of registers of a multiplier
 
 
-def pack(module: dict) -> dict[str, int]:
+def pack(module: dict[str, Any]) -> dict[str, int]:
     """Move registers around multipliers into them, in a flat module of Yosys' JSON after synth_ecp5.
 
-    Operands: where all bits of both come from registers without reset, those of an operand under one enable. A constant
-    bit counts as registered: the other bits are as unknown before their first clock. Product: where then each bit goes
-    into such a register alone, all under one enable.
+    Operands move when every bit of both comes from a register without reset and each operand has one enable. A constant
+    bit counts as registered, because the other bits are unknown before their first clock too. The product of such a
+    multiplier moves when every bit goes into one register without reset and nowhere else, all with one enable.
 
     Returns
     -------
-    multipliers, how many of them have their operands registered inside, and their product too; registers that went
+    number of multipliers, of those with registered operands, of those with a registered product too, and of registers
+    that were removed
     """
-    cells = module["cells"]
+    cells: Cells = module["cells"]
     registers = {cell["connections"]["Q"][0]: name for name, cell in cells.items() if cell["type"] == REGISTER}
     behind = {cell["connections"]["DI"][0]: name for name, cell in cells.items() if cell["type"] == REGISTER}
     readers: Counter[Bit] = Counter(
@@ -57,17 +54,9 @@ def pack(module: dict) -> dict[str, int]:
     before = len(cells)
     operands = products = 0
     for multiplier in multipliers:
-        ports, parameters = multiplier["connections"], multiplier["parameters"]
-        controls = {}
-        sources: dict[str, dict] = {}  # of pins
-        for side in SIDES:
-            inputs = {f"{side}{place}": ports[f"{side}{place}"][0] for place in range(WIDTH)}
-            inputs = {pin: bit for pin, bit in inputs.items() if isinstance(bit, int)}
-            if all(bit in registers for bit in inputs.values()):
-                found = {pin: cells[registers[bit]] for pin, bit in inputs.items()}
-                sources |= found
-                controls[f"INPUT{side}"] = {_control(register) for register in found.values()}
-        if len(controls) != len(SIDES) or not _one_each(controls):
+        ports = multiplier["connections"]
+        sources, controls = _sources(ports, cells, registers)
+        if len(controls) != len(SIDES) or not _compatible(controls):
             continue
         operands += 1
         for pin, register in sources.items():
@@ -78,39 +67,62 @@ def pack(module: dict) -> dict[str, int]:
         if outputs and all(readers[bit] == 1 and bit in behind for bit in outputs.values()):
             sinks = {pin: behind[bit] for pin, bit in outputs.items()}
             after = {**controls, "OUTPUT": {_control(cells[name]) for name in sinks.values()}}
-            if _one_each(after):
+            if _compatible(after):
                 products += 1
                 controls = after
                 for pin, name in sinks.items():
                     ports[pin] = cells.pop(name)["connections"]["Q"]
                     del registers[ports[pin][0]]
-        chosen = {name: control for name, (control,) in controls.items() if control}
-        enables = list(dict.fromkeys(control.enable for control in chosen.values()))
-        for name, control in chosen.items():
-            parameters[f"REG_{name}_CLK"] = "CLK0"
-            parameters[f"REG_{name}_CE"] = f"CE{enables.index(control.enable)}"
-        parameters |= {"GSR": "DISABLED", "RESETMODE": "SYNC"}
-        pins = {f"RST{place}": "0" for place in range(CLOCKS)}
-        pins |= {f"CLK{place}": "0" for place in range(1, CLOCKS)}
-        pins["CLK0"] = next(iter(chosen.values())).clock
-        pins |= {f"CE{place}": enables[place] if place < len(enables) else "0" for place in range(CLOCKS)}
-        for pin, bit in pins.items():
-            ports[pin] = [bit]
-            multiplier["port_directions"][pin] = "input"
+        _configure(multiplier, {name: control for name, (control,) in controls.items() if control})
     for bit, name in registers.items():
         if not readers[bit]:
             del cells[name]
-    return {
-        "multipliers": len(multipliers),
-        "operands": operands,
-        "products": products,
-        "registers": before - len(cells),
-    }
+    removed = before - len(cells)
+    return {"multipliers": len(multipliers), "operands": operands, "products": products, "registers": removed}
 
 
-def _one_each(controls: dict[str, set[Control | None]]) -> bool:
-    """Whether each group of registers obeys one control, and all one clock."""
+def _sources(
+    ports: dict[str, list[Bit]], cells: Cells, registers: dict[Bit, str]
+) -> tuple[dict[str, dict[str, Any]], Controls]:
+    """Return the register behind each input pin, and the controls of the operands that are registered."""
+    sources: dict[str, dict[str, Any]] = {}
+    controls: Controls = {}
+    for side in SIDES:
+        bits = {f"{side}{place}": ports[f"{side}{place}"][0] for place in range(WIDTH)}
+        inputs = {pin: bit for pin, bit in bits.items() if isinstance(bit, int)}
+        if all(bit in registers for bit in inputs.values()):
+            behind_pins = {pin: cells[registers[bit]] for pin, bit in inputs.items()}
+            sources |= behind_pins
+            controls[f"INPUT{side}"] = {_control(register) for register in behind_pins.values()}
+    return sources, controls
+
+
+def _control(register: dict[str, Any]) -> Control | None:
+    """Return the control of a register without reset; None for any other register."""
+    parameters, ports = register["parameters"], register["connections"]
+    if ports["LSR"] != ["0"] or parameters["REGSET"] != "RESET" or parameters["CLKMUX"] != "CLK":
+        return None
+    return Control(ports["CLK"][0], ports["CE"][0] if parameters["CEMUX"] == "CE" else "1")
+
+
+def _compatible(controls: Controls) -> bool:
+    """Return whether each group of registers has one control, and all groups have one clock."""
     every = [control for group in controls.values() for control in group]
-    return (
-        len(every) == len(controls) and None not in every and len({control.clock for control in every if control}) == 1
-    )
+    clocks = {control.clock for control in every if control}
+    return len(every) == len(controls) and None not in every and len(clocks) == 1
+
+
+def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None:
+    """Switch on the registers of a multiplier."""
+    enables = list(dict.fromkeys(control.enable for control in controls.values()))
+    for name, control in controls.items():
+        multiplier["parameters"][f"REG_{name}_CLK"] = "CLK0"
+        multiplier["parameters"][f"REG_{name}_CE"] = f"CE{enables.index(control.enable)}"
+    multiplier["parameters"] |= {"GSR": "DISABLED", "RESETMODE": "SYNC"}
+    pins: dict[str, Bit] = {f"RST{place}": "0" for place in range(CLOCKS)}
+    pins |= {f"CLK{place}": "0" for place in range(1, CLOCKS)}
+    pins["CLK0"] = next(iter(controls.values())).clock
+    pins |= {f"CE{place}": enables[place] if place < len(enables) else "0" for place in range(CLOCKS)}
+    for pin, bit in pins.items():
+        multiplier["connections"][pin] = [bit]
+        multiplier["port_directions"][pin] = "input"

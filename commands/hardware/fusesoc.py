@@ -28,11 +28,11 @@ def generate(description: Path, folder: Path) -> None:
     InputError
     """
     wanted = yaml.safe_load(description.read_text())
-    given = wanted.get("parameters") or {}
-    for key in given:
+    values = wanted.get("parameters") or {}
+    for key in values:
         if key not in synth.CONFIGURING:
             raise InputError(f"{key}: unknown variable: accepted are {', '.join(synth.CONFIGURING)}")
-    config, calibration = synth.configured(sim.parse([f"{key}={value}" for key, value in given.items()]))
+    config, calibration = synth.configured(sim.parse([f"{key}={value}" for key, value in values.items()]))
     write_roms(folder, calibration, config)
     parameters = top_parameters(config)
     core = {
@@ -53,6 +53,7 @@ def generate(description: Path, folder: Path) -> None:
 
 
 def main() -> None:
+    """Run the generator with the arguments that FuseSoC gives."""
     try:
         generate(Path(sys.argv[1]), Path.cwd())
     except InputError as error:

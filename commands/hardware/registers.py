@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make registers`: everything that is written from registers/tactile_depth.rdl.
+"""`make registers`: writes all files that registers/tactile_depth.rdl describes.
 
-Committed, so that nobody needs these tools to read or to use them: the page by peakrdl-markdown, the C header by
-peakrdl-cheader, and two by the templates here: register_map_pkg.sv, since no exporter writes a package that Icarus 11
-takes, and the JSON that register_map.py reads, since a run needs neither the compiler nor its 40 MB. The
-Python access layer of peakrdl-python goes to build/: it is thousands of lines, most of them its library.
+Four files are committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by
+peakrdl-cheader, register_map_pkg.sv, because no exporter writes a package that Icarus 11 reads, and the JSON that
+register_map.py reads, because a run then needs no compiler of 40 MB. The Python access layer of peakrdl-python goes to
+build/: it has thousands of lines, most of them its library.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any
 from peakrdl_cheader.c_standards import CStandard
 from peakrdl_cheader.exporter import CHeaderExporter
 from peakrdl_markdown import MarkdownExporter
-from peakrdl_python import PythonExporter
-from systemrdl import RDLCompiler
+from peakrdl_python.exporter import PythonExporter
+from systemrdl.compiler import RDLCompiler
 from systemrdl.node import FieldNode, RegNode, RootNode
 
 from commands.common import variables
@@ -34,19 +34,19 @@ WRITTEN_BY = f"Written by `make registers` from {SOURCE.relative_to(ROOT)}: chan
 
 
 def compiled(source: Path = SOURCE, inst_name: str | None = None) -> RootNode:
-    """The elaborated map, under its own name or under `inst_name`."""
+    """Return the elaborated map, under its own name or under `inst_name`."""
     compiler = RDLCompiler()
     compiler.compile_file(str(source))
     return compiler.elaborate(inst_name=inst_name)
 
 
 def access(field: FieldNode) -> str:
-    """One of tactile_depth.registers.register_map.ACCESSES.
+    """Return the access of a field, one of tactile_depth.registers.register_map.ACCESSES.
 
     Raises
     ------
     ValueError
-        Software sees the field in a way that no register of ours has.
+        No register of this design has such an access.
     """
     onwrite, onread = field.get_property("onwrite"), field.get_property("onread")
     properties = (
@@ -69,6 +69,7 @@ def access(field: FieldNode) -> str:
 
 
 def field_of(node: FieldNode) -> dict[str, Any]:
+    """Return a field as the JSON states it."""
     encode = node.get_property("encode")
     return {
         "name": node.inst_name,
@@ -83,6 +84,7 @@ def field_of(node: FieldNode) -> dict[str, Any]:
 
 
 def register_of(node: RegNode) -> dict[str, Any]:
+    """Return a register as the JSON states it."""
     return {
         "name": node.inst_name,
         "offset": node.absolute_address,
@@ -93,11 +95,12 @@ def register_of(node: RegNode) -> dict[str, Any]:
 
 
 def camel(name: str) -> str:
+    """Return a name with underscores in UpperCamelCase."""
     return "".join(word.capitalize() for word in name.split("_"))
 
 
 def package(registers: list[dict[str, Any]]) -> str:
-    """Text of hdl/registers/register_map_pkg.sv."""
+    """Return the text of hdl/registers/register_map_pkg.sv."""
     offsets, resets, bits, values = [], [], [], []
     for register in registers:
         name = camel(register["name"])
@@ -132,19 +135,19 @@ def package(registers: list[dict[str, Any]]) -> str:
 
 
 def address_width(registers: list[dict[str, Any]]) -> int:
-    """Bits of a byte address: 8 serve 64 registers, and a map that outgrows them grows by itself."""
+    """Return the bits of a byte address: 8, enough for 64 registers, or more for a larger map."""
     return max(8, max(register["offset"] for register in registers).bit_length())
 
 
 def generated(root: RootNode) -> dict[Path, str]:
-    """Every committed file that is written from the map, and its text."""
+    """Return the text of each committed file that is written from the map."""
     top = root.top
     registers = [register_of(node) for node in top.registers(unroll=True)]
     described = {"written_by": WRITTEN_BY, "address_width": address_width(registers), "registers": registers}
     with TemporaryDirectory() as folder:
         page, header = Path(folder) / "registers.md", Path(folder) / f"{NAME}.h"
         MarkdownExporter().export(top, str(page), input_files=[str(SOURCE.relative_to(ROOT))])
-        # Names by place, not by type: a type that is used twice would get a hash for its name.
+        # Names by position, not by type: a type that is used twice would get a hash for its name.
         CHeaderExporter().export(top, str(header), reuse_typedefs=False, std=CStandard.gnu11)
         texts = {
             ROOT / "docs" / page.name: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
@@ -158,8 +161,8 @@ def generated(root: RootNode) -> dict[Path, str]:
 
 
 def python_layer(folder: Path) -> None:
-    """The package `tactile_depth_registers` in the folder, with its library: needs nothing else installed."""
-    PythonExporter().export(
+    """Write the package `tactile_depth_registers` into a folder, with its library."""
+    PythonExporter().export(  # type: ignore[no-untyped-call]
         compiled(inst_name=LAYER_NAME).top,
         str(folder),
         skip_test_case_generation=True,
@@ -168,13 +171,14 @@ def python_layer(folder: Path) -> None:
 
 
 def main() -> None:
+    """Run the command with the arguments of the process."""
     with variables.reported("registers"):
         variables.given(sys.argv[1:], ())
         run()
 
 
 def run() -> None:
-    """Write every file, and say which have changed."""
+    """Write every file, and print which have changed."""
     root = compiled()
     for path, text in generated(root).items():
         changed = not path.exists() or path.read_text() != text

