@@ -159,12 +159,9 @@ def synthesise(
 def timing(folder: Path, netlist: Netlist, period_ns: float, node_nm: float) -> tuple[dict[str, Any], gate_sim.Delays]:
     """Return the worst slack, where that path begins and ends, and the delays of all gates."""
     (folder / "netlist.v").write_text(verilog(netlist))
+    load, _ = typical(netlist.library)
     steps = ["read_liberty cells.lib", "read_verilog netlist.v", f"link_design {netlist.name}"]
-    steps += [
-        f"set period_ns {period_ns!r}",
-        f"source {SDC}",
-        f"set_load {typical(netlist.library)[0]!r} [all_outputs]",
-    ]
+    steps += [f"set period_ns {period_ns!r}", f"source {SDC}", f"set_load {load!r} [all_outputs]"]
     if netlist.macros:
         steps.append(f"set_input_delay {memory_model.access_ns(node_nm)!r} -clock clk [get_ports from_memory*]")
         steps.append(f"set_output_delay {memory_model.setup_ns(node_nm)!r} -clock clk [get_ports to_memory*]")
@@ -174,18 +171,16 @@ def timing(folder: Path, netlist: Netlist, period_ns: float, node_nm: float) -> 
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     log, sdf = folder / "timing.log", folder / "netlist.sdf"
     log.write_text(result.stdout + result.stderr)
-    ends = [re.search(rf"{end}: (\S+)", result.stdout) for end in ("Startpoint", "Endpoint")]
+    ends = re.findall(r"(?:Startpoint|Endpoint): (\S+)", result.stdout)
     slack = re.search(r"(-?[\d.]+)\s+slack", result.stdout)
     errors = re.findall(r"^Error.*", log.read_text(), re.MULTILINE)
     if errors or slack is None or not sdf.exists():
         raise RuntimeError(f"OpenSTA: {errors[0] if errors else 'it printed no path'}: see {log}")
-    names = []
-    for end in ends:
-        gate = re.fullmatch(r"c(\d+)", end[1]) if end else None
-        names.append(netlist.instances[int(gate[1])].path or netlist.name if gate else end[1] if end else "")
+    gates = netlist.instances
+    path = [gates[int(end[1:])].path or netlist.name if re.fullmatch(r"c\d+", end) else end for end in ends]
     worst_ns = float(slack[1])
     report = {"clock_mhz": 1000 / period_ns, "period_ns": period_ns, "worst_slack_ns": worst_ns}
-    return {**report, "fastest_mhz": 1000 / (period_ns - worst_ns), "path": names}, delays(sdf.read_text())
+    return {**report, "fastest_mhz": 1000 / (period_ns - worst_ns), "path": path}, delays(sdf.read_text())
 
 
 def delays(text: str) -> dict[int, dict[tuple[str, str], tuple[float, float]]]:

@@ -18,11 +18,26 @@ struct Gate {  // out = bit of `table` that the inputs select; delays of a rise 
   int32_t out, count, in[6], rise[6], fall[6];
 };
 
+using List = std::vector<int32_t>;
+using Values = std::vector<uint8_t>;  // of all nets
+
 struct Memory {
   int32_t width;
-  std::vector<int32_t> write_en, write_address, write_data, read_en, read_address, read_data;
-  std::vector<uint8_t> words;
+  List write_en, write_address, write_data, read_en, read_address, read_data, words;  // words: bits at power-up
   int64_t reads = 0, writes = 0;
+};
+
+struct Design {  // in the order of the input
+  int32_t nets;
+  std::vector<Gate> logic, registers;
+  std::vector<Memory> memories;
+  int32_t rst, tvalid, tlast, tuser;
+  List tdata;
+  int32_t tready, depth_valid;
+  List depth;
+  int32_t columns, frames;
+  List pixels, codes;
+  int32_t window_start, window_size, other_ps;  // other_ps: delay of memories and inputs
 };
 
 int32_t word() {
@@ -31,8 +46,8 @@ int32_t word() {
   return value;
 }
 
-std::vector<int32_t> list() {
-  std::vector<int32_t> values(word());
+List list() {
+  List values(word());
   for (auto& value : values) value = word();
   return values;
 }
@@ -50,10 +65,43 @@ std::vector<Gate> gates() {
   return all;
 }
 
-uint8_t evaluate(const Gate& gate, const std::vector<uint8_t>& value) {
+std::vector<Memory> memories() {
+  std::vector<Memory> all(word());
+  for (auto& memory : all) memory = {word(), list(), list(), list(), list(), list(), list(), list()};
+  return all;
+}
+
+uint8_t evaluate(const Gate& gate, const Values& value) {
   unsigned index = 0;
   for (int i = 0; i < gate.count; i++) index |= static_cast<unsigned>(value[gate.in[i]]) << i;
   return static_cast<uint8_t>(gate.table >> index & 1);
+}
+
+uint64_t number(const List& bus, const Values& value) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < bus.size(); i++) sum |= static_cast<uint64_t>(value[bus[i]]) << i;
+  return sum;
+}
+
+// Nets that a clock edge changes, with their values after it; memories are read and written.
+std::vector<std::pair<int32_t, uint8_t>> edge(Design& design, const Values& value) {
+  std::vector<std::pair<int32_t, uint8_t>> following;
+  for (const auto& gate : design.registers) following.emplace_back(gate.out, evaluate(gate, value));
+  for (auto& memory : design.memories) {
+    if (value[memory.read_en[0]]) {
+      const uint64_t from = number(memory.read_address, value) * memory.width;
+      for (int32_t i = 0; i < memory.width; i++)
+        following.emplace_back(memory.read_data[i], from + i < memory.words.size() ? memory.words[from + i] : 0);
+      memory.reads++;
+    }
+    if (!memory.write_en.empty() && value[memory.write_en[0]]) {
+      const uint64_t to = number(memory.write_address, value) * memory.width;
+      for (int32_t i = 0; i < memory.width; i++)
+        if (to + i < memory.words.size()) memory.words[to + i] = value[memory.write_data[i]];
+      memory.writes++;
+    }
+  }
+  return following;
 }
 
 // Event-driven simulation of single clocks with inertial delays: a pulse shorter than the delay of a gate is lost.
@@ -62,21 +110,21 @@ class Window {
   std::vector<uint32_t> without, with;  // transitions of each net without and with delays
   int64_t wrong = 0;                    // clocks that settled otherwise than without delays
 
-  Window(int32_t nets, const std::vector<Gate>& logic, const std::vector<Gate>& registers, int32_t other_ps)
-      : without(nets), with(nets), logic_(logic), readers_(nets), source_(nets, true), rise_(nets, other_ps),
-        fall_(nets, other_ps), serial_(nets) {
-    for (size_t g = 0; g < logic.size(); g++) {
-      source_[logic[g].out] = false;
-      for (int i = 0; i < logic[g].count; i++) readers_[logic[g].in[i]].emplace_back(g, i);
+  explicit Window(const Design& design)
+      : without(design.nets), with(design.nets), logic_(design.logic), readers_(design.nets),
+        source_(design.nets, true), rise_(design.nets, design.other_ps), fall_(rise_), serial_(design.nets) {
+    for (size_t g = 0; g < logic_.size(); g++) {
+      source_[logic_[g].out] = false;
+      for (int i = 0; i < logic_[g].count; i++) readers_[logic_[g].in[i]].emplace_back(g, i);
     }
-    for (const auto& gate : registers) {  // the delay from the clock
+    for (const auto& gate : design.registers) {  // the delay from the clock
       rise_[gate.out] = gate.rise[0];
       fall_[gate.out] = gate.fall[0];
     }
   }
 
   // From the settled state `before` a clock edge to the settled state `after`.
-  void clock(const std::vector<uint8_t>& before, const std::vector<uint8_t>& after) {
+  void clock(const Values& before, const Values& after) {
     value_ = target_ = before;
     for (size_t net = 0; net < before.size(); net++) {
       without[net] += before[net] != after[net];
@@ -114,8 +162,8 @@ class Window {
   const std::vector<Gate>& logic_;
   std::vector<std::vector<std::pair<int32_t, int>>> readers_;  // gate and input
   std::vector<bool> source_;  // not driven by logic
-  std::vector<int32_t> rise_, fall_;
-  std::vector<uint8_t> value_, target_;  // target: the value after the pending event
+  List rise_, fall_;
+  Values value_, target_;  // target: the value after the pending event
   std::vector<uint32_t> serial_;
   std::priority_queue<Event> queue_;
 };
@@ -123,93 +171,47 @@ class Window {
 }  // namespace
 
 int main() {
-  const int32_t nets = word();
-  const auto logic = gates();
-  const auto registers = gates();
-  std::vector<Memory> memories(word());
-  for (auto& memory : memories) {
-    memory.width = word();
-    for (auto* pins : {&memory.write_en, &memory.write_address, &memory.write_data, &memory.read_en,
-                       &memory.read_address, &memory.read_data})
-      *pins = list();
-    const auto bits = list();
-    memory.words.assign(bits.begin(), bits.end());
-  }
-  const int32_t rst = word(), tvalid = word(), tlast = word(), tuser = word();
-  const auto tdata = list();
-  const int32_t tready = word(), depth_valid = word();
-  const auto depth = list();
-  const int32_t columns = word(), frames = word();
-  const auto pixels = list();
-  const auto codes = list();
-  const int32_t window_start = word(), window_size = word(), other_ps = word();
-  Window window(nets, logic, registers, other_ps);
-
-  std::vector<uint8_t> value(nets, 0), before;
-  std::vector<std::pair<int32_t, uint8_t>> following;  // nets that the edge changes, and their values after it
-  std::vector<uint32_t> toggles(nets, 0);
+  Design d{word(), gates(), gates(), memories(), word(), word(), word(), word(), list(), word(), word(), list(),
+           word(), word(), list(), list(), word(), word(), word()};
+  Window window(d);
+  Values value(d.nets, 0), before;
+  std::vector<uint32_t> toggles(d.nets, 0);
   const auto set = [&](int32_t net, uint8_t bit) {
     toggles[net] += value[net] ^ bit;
     value[net] = bit;
   };
-  const auto number = [&](const std::vector<int32_t>& bus) {
-    uint64_t sum = 0;
-    for (size_t i = 0; i < bus.size(); i++) sum |= static_cast<uint64_t>(value[bus[i]]) << i;
-    return sum;
-  };
-
   value[1] = 1;
-  const int64_t size = static_cast<int64_t>(pixels.size());
+  const int64_t size = static_cast<int64_t>(d.pixels.size());
   int64_t sent = 0, received = 0, wrong = 0, clock_of_last = -1;
   for (int64_t clock = 0;; clock++) {
-    if (clock > (frames + 2) * size + 100000) return 4;  // it takes no pixels
+    if (clock > (d.frames + 2) * size + 100000) return 4;  // it takes no pixels
     const bool reset = clock < 8;
-    set(rst, reset);
-    set(tvalid, !reset && sent < frames * size);
-    set(tlast, sent % columns == columns - 1);
-    set(tuser, sent % size == 0);
-    for (size_t i = 0; i < tdata.size(); i++) set(tdata[i], pixels[sent % size] >> i & 1);
-    for (const auto& gate : logic) set(gate.out, evaluate(gate, value));
+    set(d.rst, reset);
+    set(d.tvalid, !reset && sent < d.frames * size);
+    set(d.tlast, sent % d.columns == d.columns - 1);
+    set(d.tuser, sent % size == 0);
+    for (size_t i = 0; i < d.tdata.size(); i++) set(d.tdata[i], d.pixels[sent % size] >> i & 1);
+    for (const auto& gate : d.logic) set(gate.out, evaluate(gate, value));
 
     if (!reset) {
-      if (value[depth_valid]) {
-        wrong += number(depth) != static_cast<uint32_t>(codes[received % size]);
-        received++;
-      }
-      if (clock_of_last < 0 && sent >= (frames - 1) * size) {  // the last frame begins: count from here
-        clock_of_last = 0;
-        toggles.assign(nets, 0);
-        for (auto& memory : memories) memory.reads = memory.writes = 0;
-      } else if (clock_of_last >= 0) {
+      if (value[d.depth_valid]) wrong += number(d.depth, value) != static_cast<uint32_t>(d.codes[received++ % size]);
+      if (clock_of_last >= 0) {
         clock_of_last++;
+      } else if (sent >= (d.frames - 1) * size) {  // the last frame begins: count from here
+        clock_of_last = 0;
+        toggles.assign(d.nets, 0);
+        for (auto& memory : d.memories) memory.reads = memory.writes = 0;
       }
-      if (clock_of_last >= window_start && clock_of_last < window_start + window_size) window.clock(before, value);
+      if (clock_of_last >= d.window_start && clock_of_last < d.window_start + d.window_size) window.clock(before, value);
       if (clock_of_last >= 0) before = value;
       if (clock_of_last == size) break;
-      if (value[tvalid] && value[tready]) sent++;
+      if (value[d.tvalid] && value[d.tready]) sent++;
     }
-
-    following.clear();
-    for (const auto& gate : registers) following.emplace_back(gate.out, evaluate(gate, value));
-    for (auto& memory : memories) {
-      if (value[memory.read_en[0]]) {
-        const uint64_t from = number(memory.read_address) * memory.width;
-        for (int32_t i = 0; i < memory.width; i++)
-          following.emplace_back(memory.read_data[i], from + i < memory.words.size() ? memory.words[from + i] : 0);
-        memory.reads++;
-      }
-      if (!memory.write_en.empty() && value[memory.write_en[0]]) {
-        const uint64_t to = number(memory.write_address) * memory.width;
-        for (int32_t i = 0; i < memory.width; i++)
-          if (to + i < memory.words.size()) memory.words[to + i] = value[memory.write_data[i]];
-        memory.writes++;
-      }
-    }
-    for (const auto& [net, bit] : following) set(net, bit);
+    for (const auto& [net, bit] : edge(d, value)) set(net, bit);
   }
 
   std::vector<int64_t> output{received, wrong, clock_of_last, window.wrong};
-  for (const auto& memory : memories) output.insert(output.end(), {memory.reads, memory.writes});
+  for (const auto& memory : d.memories) output.insert(output.end(), {memory.reads, memory.writes});
   for (const auto* counts : {&toggles, &window.without, &window.with})
     output.insert(output.end(), counts->begin(), counts->end());
   std::fwrite(output.data(), sizeof output[0], output.size(), stdout);

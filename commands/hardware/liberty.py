@@ -233,7 +233,7 @@ class Library:
             and functions(cell) == {cell.outputs[0]: (cell.inputs, 0b01)}
         ]
         if not inverters:
-            raise InputError(f"LIB: the library {self.name} holds no inverter")
+            raise InputError("it holds no inverter")
         return min(inverters, key=lambda cell: (cell.area, cell.name))
 
 
@@ -257,22 +257,18 @@ def _numbers(values: list[str]) -> tuple[float, ...]:
     return tuple(float(number) for number in " ".join(values).replace(",", " ").split())
 
 
-def _pin(group: Group, templates: dict[str, Group]) -> Pin:
-    attributes = group.attributes
-    pin = Pin(attributes.get("direction", ""), group.number("capacitance"), attributes.get("function", ""))
-    for power in group.all("internal_power"):
-        tables = [_table(table, templates) for table in power.groups if table.kind.endswith("power")]
-        if tables:
-            pin.energy.setdefault(power.attributes.get("related_pin", ""), []).extend(tables)
-    for timing in group.all("timing"):
-        pin.slews += [_table(table, templates) for table in timing.groups if table.kind.endswith("_transition")]
-    return pin
-
-
 def _cell(group: Group, templates: dict[str, Group]) -> Cell:
     pins: dict[str, Pin] = {}
     for pin in group.all("pin"):
-        pins |= dict.fromkeys(pin.names, _pin(pin, templates))
+        direction, function = (pin.attributes.get(name, "") for name in ("direction", "function"))
+        pins |= dict.fromkeys(pin.names, result := Pin(direction, pin.number("capacitance"), function))
+        for power in pin.all("internal_power"):
+            tables = [_table(table, templates) for table in power.groups if table.kind.endswith("power")]
+            if tables:
+                result.energy.setdefault(power.attributes.get("related_pin", ""), []).extend(tables)
+        for timing in pin.all("timing"):
+            slews = [table for table in timing.groups if table.kind.endswith("_transition")]
+            result.slews += [_table(table, templates) for table in slews]
     flip_flop = next(group.all("ff"), None)
     return Cell(group.names[0], group.number("area"), group.number("cell_leakage_power"), pins, flip_flop)
 
@@ -296,8 +292,6 @@ def read(path: Path) -> Library:
         library = groups_of(path.read_text(encoding="latin-1"))
         templates = {group.names[0]: group for group in library.groups if group.kind.endswith("_template")}
         amount, unit = library.lists.get("capacitive_load_unit", ["1", "pf"])
-        if library.attributes.get("voltage_unit", "1V") != "1V":
-            raise ValueError("its unit of voltage is not 1V")
         result = Library(
             library.names[0],
             library.number("nom_voltage"),
@@ -305,13 +299,11 @@ def read(path: Path) -> Library:
             float(amount) * PREFIX[unit.lower()[0]],
             _unit(library.attributes.get("leakage_power_unit", "1nW")),
         )
-    except OSError as error:
-        raise InputError(f"LIB={path}: cannot be read ({error.strerror}): give a Liberty file (.lib)") from error
-    except (ValueError, KeyError, IndexError) as error:
-        raise InputError(f"LIB={path}: no Liberty file that can be read ({error}): give another .lib") from error
-    if result.voltage <= 0:
-        raise InputError(f"LIB={path}: nom_voltage is missing: power cannot be computed without it")
-    if not any(cell.flip_flop for cell in result.cells.values()):
-        raise InputError(f"LIB={path}: no flip-flop among its {len(result.cells)} cells: the design has thousands")
-    result.inverter()
+        if result.voltage <= 0 or library.attributes.get("voltage_unit", "1V") != "1V":
+            raise ValueError("nom_voltage is missing or not in V")
+        if not any(cell.flip_flop for cell in result.cells.values()):
+            raise ValueError(f"no flip-flop among its {len(result.cells)} cells")
+        result.inverter()
+    except (OSError, ValueError, KeyError, IndexError) as error:
+        raise InputError(f"LIB={path}: no Liberty file that can be used ({error}): give another .lib") from error
     return result

@@ -357,10 +357,11 @@ def without(text, cell):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (None, "cannot be read (No such file"),
-        ("not liberty at all", "no Liberty file that can be read (not stands where"),
+        (None, "can be used ([Errno 2] No such file"),
+        ("not liberty at all", "no Liberty file that can be used (not stands where"),
         ("library(a) { cell(b) {", "is not closed"),
         ("cell(b) { }", "holds no library group"),
+        (LIBERTY.replace('voltage_unit : "1V"', 'voltage_unit : "1mV"'), "not in V"),
         (without(LIBERTY, "DFF"), "no flip-flop among its 2 cells"),
         (LIBERTY.replace("nom_voltage : 2;", ""), "nom_voltage is missing"),
         (LIBERTY.replace('"1, 3"', '"1, 3, 5"'), "3 values for 2 points"),
@@ -373,7 +374,7 @@ def test_bad_library(tmp_path, text, said):
     if text is not None:
         path.write_text(text)
     with pytest.raises(InputError) as error:
-        read(path).inverter()
+        read(path)
     assert said in str(error.value)
     assert "\n" not in str(error.value)
 
@@ -388,7 +389,7 @@ def test_groups_nest():
     ("arguments", "said"),
     [
         (["LIB=two.lib"], "NODE_NM is missing"),
-        ([f"LIB={__file__}"], "no Liberty file that can be read"),
+        ([f"LIB={__file__}"], "no Liberty file that can be used"),
         (["LIB=two.lib", "NODE_NM=90", "CLOCK_MHZ=fast"], "CLOCK_MHZ=fast: accepted is a number"),
         (["NODE_NM=-1", "LIB=two.lib"], "NODE_NM=-1: accepted is a number"),
         (["LIB=two.lib", "NODE_NM=90", "TIMED=dot_product"], "TIMED=dot_product: unknown variable"),
