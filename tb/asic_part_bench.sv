@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // asic_part_bench: gates of a core, with delays or without, on operands that go by twice.
 //
-// given.txt holds the inputs of `part`, a line for each clock. With DELAYS the design in it is annotated from part.sdf.
+// operands.txt holds the inputs of `part`, a line for each clock. With DELAYS the design in it is annotated from part.sdf.
 // The first pass fills the registers; toggles of the second pass go to part.vcd. Simulation only.
 
 `timescale 1ns/1ps
@@ -14,7 +14,7 @@ module asic_part_bench #(
 ) ();
 
   logic clk = 1'b0;
-  logic [Inputs-1:0] given[2*Clocks];
+  logic [Inputs-1:0] operands[2*Clocks];
   logic [Inputs-1:0] in;
 
   part part (.clk(clk), .in(in));
@@ -23,8 +23,8 @@ module asic_part_bench #(
 `ifdef DELAYS
     $sdf_annotate("part.sdf", part.dut);
 `endif
-    $readmemb("given.txt", given);
-    in = given[0];
+    $readmemb("operands.txt", operands);
+    in = operands[0];
     #(Period);
     for (int i = 1; i <= 2 * Clocks; i++) begin
       if (i == Clocks) begin
@@ -33,7 +33,7 @@ module asic_part_bench #(
         #(Period);  // a change in the moment of $dumpvars is lost
       end
       clk = 1'b1;
-      in <= #(Settle) given[i%(2*Clocks)];
+      in <= #(Settle) operands[i%(2*Clocks)];
       #(Period / 2) clk = 1'b0;
       #(Period / 2);
       if (i == 2 * Clocks - 1) $dumpoff;

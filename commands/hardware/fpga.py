@@ -80,20 +80,20 @@ def parse(arguments: list[str]) -> Request:
     ------
     InputError
     """
-    given = variables.given(arguments, ("TARGET", "SEEDS", *CHOICES))
-    target = given.pop("TARGET", "")
+    values = variables.given(arguments, ("TARGET", "SEEDS", *CHOICES))
+    target = values.pop("TARGET", "")
     if target not in BOARDS:
         raise InputError(f"TARGET={target} is unknown: accepted are {', '.join(BOARDS)}")
-    seeds = given.pop("SEEDS", "1,2,3")
+    seeds = values.pop("SEEDS", "1,2,3")
     try:
         numbers = tuple(int(seed) for seed in seeds.split(","))
     except ValueError:
         numbers = ()
     if not numbers or not all(0 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
         raise InputError(f"SEEDS={seeds}: accepted are different whole numbers with commas between, as 1,2,3")
-    if "CONFIG" not in given:
-        given.setdefault("SOLVER", "tridiagonal")
-    return Request(target, numbers, sim.parse([f"{key}={value}" for key, value in given.items()]))
+    if "CONFIG" not in values:
+        values.setdefault("SOLVER", "tridiagonal")
+    return Request(target, numbers, sim.parse([f"{key}={value}" for key, value in values.items()]))
 
 
 def check() -> None:

@@ -202,7 +202,8 @@ int main() {
         toggles.assign(d.nets, 0);
         for (auto& memory : d.memories) memory.reads = memory.writes = 0;
       }
-      if (clock_of_last >= d.window_start && clock_of_last < d.window_start + d.window_size) window.clock(before, value);
+      const int64_t place = clock_of_last - d.window_start;
+      if (place >= 0 && place < d.window_size) window.clock(before, value);
       if (clock_of_last >= 0) before = value;
       if (clock_of_last == size) break;
       if (value[d.tvalid] && value[d.tready]) sent++;

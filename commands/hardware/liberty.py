@@ -21,8 +21,8 @@ LARGEST_GATE = 6  # inputs
 NOISE = re.compile(r"/\*.*?\*/|//[^\n]*|\\\s*\n", re.DOTALL)
 LIST_ITEM = re.compile(r'"[^"]*"|[^\s,"]+')
 STATEMENT = re.compile(
-    r"""(?:(?P<name>[^\s{}();:,"]+)\s*(?:\((?P<list>(?:"[^"]*"|[^)"])*)\)\s*(?P<brace>\{)?|:\s*(?P<value>"[^"]*"|[^;}]*))"""
-    r"|\})[\s;]*"
+    r"""(?P<name>[^\s{}();:,"]+)\s*(?:\((?P<list>(?:"[^"]*"|[^)"])*)\)\s*(?P<brace>\{)?|:\s*(?P<value>"[^"]*"|[^;}]*))"""
+    r"[\s;]*|\}[\s;]*"
 )
 UNIT = re.compile(r"([\d.eE+-]*?)\s*([munpfk]?)([A-Za-z]+)$")
 PREFIX = {"": 1.0, "k": 1e3, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15}

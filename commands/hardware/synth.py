@@ -142,16 +142,16 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
     ------
     InputError
     """
-    given = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, "OUT"))
-    name = given.pop("TARGET", next(iter(TARGETS)))
+    values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, "OUT"))
+    name = values.pop("TARGET", next(iter(TARGETS)))
     if name not in TARGETS:
         raise InputError(f"TARGET={name} is unknown: accepted is {', '.join(TARGETS)}")
-    grids = given.pop("GRIDS", "")
+    grids = values.pop("GRIDS", "")
     try:
         sizes = [int(size) for size in grids.split(",")] if grids else []
     except ValueError as error:
         raise InputError(f"GRIDS={grids}: accepted are whole numbers with commas, as 64,128,256") from error
-    return TARGETS[name], name, sizes, sim.parse([f"{key}={value}" for key, value in given.items()])
+    return TARGETS[name], name, sizes, sim.parse([f"{key}={value}" for key, value in values.items()])
 
 
 def configured(request: sim.Request) -> tuple[Configuration, Sensor]:
@@ -190,7 +190,7 @@ def designs(request: sim.Request, grids: Sequence[int]) -> list[tuple[sim.Reques
                 reasons.append(str(error))
                 every.append((each, reasons[-1]))
         if len(reasons) == len(COLUMNS):
-            raise InputError(f"GRIDS={size}: {reasons[0]}")
+            raise InputError(f"GRIDS={size}: {reasons[-1]}")
     return every
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For `make synth`: a 7-series DSP with the multiplier of a DSP48E2; xilinx_dsp adds registers and cascades, which are alike.
+// For `make synth`: a 7-series DSP with the multiplier of a DSP48E2. Yosys' xilinx_dsp adds registers and cascades, which
+// are the same in both.
 
 module \$__MUL27X18 (input [26:0] A, input [17:0] B, output [44:0] Y);
   parameter A_SIGNED = 0;

@@ -163,7 +163,7 @@ def test_whole_design_in_gates(library, tmp_path):
         "s_axil_rready": ("input", [next(nets)]),
         "m_axis_tvalid": ("output", [out_valid]), "m_axis_tdata": ("output", out),
     }  # fmt: skip
-    netlist = Netlist("whole", ports, gates, library, 2)
+    netlist = Netlist("design", ports, gates, library, 2)
     rng = np.random.default_rng(1)
     words = rng.integers(0, 256, 16)
     initial = "".join(f"{word:08b}" for word in reversed(words))
@@ -172,14 +172,14 @@ def test_whole_design_in_gates(library, tmp_path):
     macro = Macro(8, 16, initial)
     stimulus = Stimulus(pixels, codes, columns=8, frames=3, window=range(4, 9))
     delays = {i: {("A", "Y"): (0.2, 0.1), ("CK", "Q"): (0.3, 0.3)} for i in range(len(gates))}
-    seen = gate_sim.simulate(netlist, [macro], stimulus, delays, 0.5, tmp_path)
-    assert (seen.codes, seen.wrong, seen.wrong_with_delays) == (3 * 64 - 1, 0, 0)
-    assert seen.accesses == [(1.0, 0.0)]
+    activity = gate_sim.simulate(netlist, [macro], stimulus, delays, 0.5, tmp_path)
+    assert (activity.codes, activity.wrong, activity.wrong_with_delays) == (3 * 64 - 1, 0, 0)
+    assert activity.accesses == [(1.0, 0.0)]
     steady = np.append(codes[-1], codes)
-    assert seen.toggles[out[0]] * 64 == np.count_nonzero(np.diff(steady & 1))
+    assert activity.toggles[out[0]] * 64 == np.count_nonzero(np.diff(steady & 1))
     in_window = codes[1:7]  # two clocks later
-    assert seen.window[out[0]] * 5 == np.count_nonzero(np.diff(in_window & 1))
-    assert seen.window_with_delays == seen.window  # nothing to glitch
+    assert activity.window[out[0]] * 5 == np.count_nonzero(np.diff(in_window & 1))
+    assert activity.window_with_delays == activity.window  # nothing to glitch
     wrong = np.where(np.arange(64) == 5, codes ^ 1, codes)
     assert gate_sim.simulate(netlist, [macro], Stimulus(pixels, wrong, 8, 3, range(0)), {}, 0.5, tmp_path).wrong == 3
 
@@ -264,7 +264,7 @@ def icarus_toggles(folder, netlist, operands, delays, settle_ns, period_ns):
     widths = [len(netlist.ports[name][1]) for name in names]
     words = ["".join(f"{int(value) & (1 << w) - 1:0{w}b}" for value, w in zip(row, widths, strict=True))
              for row in zip(*(operands[name] for name in names), strict=True)]  # fmt: skip
-    (folder / "given.txt").write_text("\n".join(words * 2))
+    (folder / "operands.txt").write_text("\n".join(words * 2))
     cells = []
     for i, instance, _ in netlist.gates:
         paths = [f"(IOPATH {a} {b} ({rise}) ({fall}))" for (a, b), (rise, fall) in delays.get(i, {}).items()]
@@ -306,7 +306,7 @@ def as_design(netlist, operands, widths):
     design |= {"s_axis_tready": ("output", ["1"]), "m_axis_tvalid": ("output", design["s_axis_tvalid"][1])}
     design |= {"m_axis_tready": ("input", ports["en"]), "m_axis_tdata": ("output", ports["sum"])}
     design["s_axis_tdata"] = ("input", [bit for name in widths for bit in ports[name]])
-    return Netlist("whole", design, netlist.instances, netlist.library, netlist.clock), pixels
+    return Netlist("design", design, netlist.instances, netlist.library, netlist.clock), pixels
 
 
 def test_small_core_end_to_end(tmp_path):
@@ -334,20 +334,20 @@ def test_small_core_end_to_end(tmp_path):
     bits = {"a0": 6, "b0": 5, "a1": 6, "b1": 5}
     operands = {name: rng.integers(-(1 << w - 1), 1 << w - 1, 40) for name, w in bits.items()}
     sums = operands["a0"] * operands["b0"] + operands["a1"] * operands["b1"]
-    whole, words = as_design(netlist, operands, bits)
+    design, words = as_design(netlist, operands, bits)
     stimulus = Stimulus(words, np.roll(sums, LATENCY), 40, 3, range(1, 41))
-    seen = gate_sim.simulate(whole, [], stimulus, delays, 0.2, tmp_path)
-    assert seen.codes == 3 * 40
-    assert seen.wrong <= LATENCY  # those before the first sum
-    assert seen.wrong_with_delays == 0
+    activity = gate_sim.simulate(design, [], stimulus, delays, 0.2, tmp_path)
+    assert activity.codes == 3 * 40
+    assert activity.wrong <= LATENCY  # those before the first sum
+    assert activity.wrong_with_delays == 0
 
     outputs = {net for _, gate, cell in netlist.gates for pin in cell.outputs for net in gate.pins.get(pin, [])}
     plain = icarus_toggles(tmp_path, netlist, operands, {}, 0.0, 5.0)
-    assert {net: round(40 * seen.window[net]) for net in outputs} == {net: plain[net] for net in outputs}
+    assert {net: round(40 * activity.window[net]) for net in outputs} == {net: plain[net] for net in outputs}
     timed = icarus_toggles(tmp_path, netlist, operands, delays, 0.2, 5.0)
-    total, by_icarus = (sum(counts[net] for net in outputs) for counts in (seen.window_with_delays, timed))
+    total, by_icarus = (sum(counts[net] for net in outputs) for counts in (activity.window_with_delays, timed))
     assert 40 * total == pytest.approx(by_icarus, rel=0.02)
-    assert total > 1.2 * sum(seen.window[net] for net in outputs)  # glitches
+    assert total > 1.2 * sum(activity.window[net] for net in outputs)  # glitches
 
 
 def without(text, cell):
@@ -355,7 +355,7 @@ def without(text, cell):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         (None, "can be used ([Errno 2] No such file"),
         ("not liberty at all", "no Liberty file that can be used (not stands where"),
@@ -369,13 +369,13 @@ def without(text, cell):
         (without(LIBERTY, "INV"), "holds no inverter"),
     ],
 )
-def test_bad_library(tmp_path, text, said):
+def test_bad_library(tmp_path, text, message):
     path = tmp_path / "bad.lib"
     if text is not None:
         path.write_text(text)
     with pytest.raises(InputError) as error:
         read(path)
-    assert said in str(error.value)
+    assert message in str(error.value)
     assert "\n" not in str(error.value)
 
 
@@ -386,7 +386,7 @@ def test_groups_nest():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["LIB=two.lib"], "NODE_NM is missing"),
         ([f"LIB={__file__}"], "no Liberty file that can be used"),
@@ -396,12 +396,12 @@ def test_groups_nest():
         (["LIB=two.lib", "NODE_NM=90", "SOLVER=fast"], "SOLVER=fast is unknown"),
     ],
 )
-def test_bad_input(tmp_path, monkeypatch, arguments, said):
+def test_bad_input(tmp_path, monkeypatch, arguments, message):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.lib").write_text(LIBERTY)
     with pytest.raises(InputError) as error:
         asic.parse(arguments)
-    assert said in str(error.value)
+    assert message in str(error.value)
 
 
 def test_missing_tool_is_one_line(tmp_path, monkeypatch):

@@ -115,7 +115,7 @@ def test_only_registers_without_reset_are_packed():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         ([], "TARGET= is unknown: accepted are ulx3s"),
         (["TARGET=ulx3s", "SEEDS=1,x"], "SEEDS=1,x: accepted are different whole numbers"),
@@ -126,10 +126,10 @@ def test_only_registers_without_reset_are_packed():
         (["TARGET=ulx3s", "REFERENCE=none.png"], "none.png"),
     ],
 )
-def test_bad_input(arguments, said, tmp_path):
+def test_bad_input(arguments, message, tmp_path):
     """Refused before anything is written."""
     out = tmp_path / "out"
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         fpga.run(fpga.parse([*arguments, f"OUT={out}"]), "")
     assert not out.exists()
 

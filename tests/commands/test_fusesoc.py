@@ -46,10 +46,10 @@ def test_the_generator_writes_parameters_and_tables(tmp_path):
     assert generated(tmp_path, {"SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}).returncode == 0
     made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
     config = Configuration(columns=16, rows=8, solver="tridiagonal")
-    given = {name: parameter["default"] for name, parameter in made["parameters"].items()}
+    defaults = {name: parameter["default"] for name, parameter in made["parameters"].items()}
     # The calibration's slopes set the formats, so only what they do not touch is the default's.
-    assert given.keys() == top_parameters(config).keys()
-    assert (given["Rows"], given["Size"], given["Tridiagonal"]) == (8, 16, 1)
+    assert defaults.keys() == top_parameters(config).keys()
+    assert (defaults["Rows"], defaults["Size"], defaults["Tridiagonal"]) == (8, 16, 1)
     files = {name for file in made["filesets"]["tables"]["files"] for name in file}
     assert files == {path.name for path in tmp_path.glob("*.hex")}
     assert "gradient.hex" in files

@@ -25,10 +25,10 @@ def memory(depth, width, style="block"):
 
 def test_memories_and_cores_are_those_of_the_rtl(tmp_path):
     _, modules = synth.elaborate(TINY, synthetic(TINY.bits_per_channel), tmp_path)
-    found = memories(tmp_path / "design.json")
-    behind_wrapper = Counter((memory.width, memory.depth) for memory in found if memory.style)
+    arrays = memories(tmp_path / "design.json")
+    behind_wrapper = Counter((memory.width, memory.depth) for memory in arrays if memory.style)
     assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(TINY).memories)
-    assert len({memory.path for memory in found}) == len(found)
+    assert len({memory.path for memory in arrays}) == len(arrays)
     cores = {path_of(module) for module in synth.kept(modules)}
     assert {"u_guard", "u_events", "u_registers", "u_solver.u_stack", "u_solver.u_row_forward"} <= cores
     assert "u_solver" not in cores
@@ -106,7 +106,7 @@ def test_a_grid_that_one_solver_has_is_built_with_that_solver():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["TARGET=xc7a35t"], "TARGET=xc7a35t is unknown: accepted is xczu7ev"),
         (["FRAMES=ball"], "FRAMES=ball: unknown variable: accepted are TARGET"),
@@ -116,7 +116,7 @@ def test_a_grid_that_one_solver_has_is_built_with_that_solver():
         (["OUT=README.md"], "OUT=README.md is a file"),
     ],
 )
-def test_bad_input(arguments, said, capsys, monkeypatch):
+def test_bad_input(arguments, message, capsys, monkeypatch):
     """Refused before Yosys runs."""
     monkeypatch.chdir(repository.ROOT)
     monkeypatch.setattr(synth.yosys, "run", None)
@@ -125,7 +125,7 @@ def test_bad_input(arguments, said, capsys, monkeypatch):
         synth.main()
     assert ended.value.code == 2
     error = capsys.readouterr().err
-    assert said in error
+    assert message in error
     assert error.count("\n") == 1
 
 
