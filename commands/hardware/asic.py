@@ -274,7 +274,7 @@ def text(report: Mapping[str, Any]) -> str:
             "logic without delays, mW: " + ", ".join(f"{name} {milliwatts:.2f}" for name, milliwatts in parts.items()),
             f"worst slack {time['worst_slack_ns']:.2f} of {time['period_ns']:.2f} ns ({time['fastest_mhz']:.0f} MHz): "
             f"{' to '.join(time['path'])}",
-            *(f"{name:<30}{area:>10}{power:>11}  {source}" for name, area, power, source in rows(report)),
+            *(f"{name:<48}{area:>10}{power:>11}  {source}" for name, area, power, source in rows(report)),
             report["method"],
         ]
     )
