@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make fpga`: its packing of registers in simulation, what it refuses, what it reads from its tools."""
 
+import contextlib
 import json
 import shutil
 import subprocess
@@ -139,6 +140,17 @@ def test_bad_input_is_one_line():
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 2
     assert result.stderr == "make fpga: TARGET=ulx4m is unknown: accepted are ulx3s\n"
+
+
+@pytest.mark.parametrize(("error", "logs"), [(RuntimeError, 1), (InputError, 0), (KeyboardInterrupt, 0), (None, 0)])
+def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path, error, logs):
+    """A RuntimeError names a log in it."""
+    with contextlib.suppress(error or ()), synthesis.workspace(tmp_path, ["fpga.json"]) as work:
+        (work / "tool.log").touch()
+        if error:
+            raise error("why")
+    assert len(list(tmp_path.glob("*/tool.log"))) == logs
+    assert len(list(tmp_path.iterdir())) == logs
 
 
 def test_a_missing_tool_is_named(monkeypatch):
