@@ -5,8 +5,9 @@ A word is a tuple in the order of the bus's fields: data, last, user unless said
 """
 
 import random
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import cycle, repeat
+from typing import Any
 
 import cocotb
 from cocotb.triggers import RisingEdge
@@ -20,7 +21,7 @@ VIDEO = ("data", "last", "user")
 # Profiles: generators of one bool a clock. For a sink True is ready; for a source True is a word offered. Names of up
 # to 10 letters, so that cocotb calls tests by them.
 
-PROFILES = {
+PROFILES: dict[str, Callable[[random.Random], Iterator[bool]]] = {
     "none": lambda rng: repeat(True),
     "one_in_4": lambda rng: cycle((True, True, True, False)),
     "alternate": lambda rng: cycle((False, True)),
@@ -38,13 +39,15 @@ def _signals(fields: Sequence[str], prefix: str) -> dict[str, str]:
     return {name: prefix + name for name in ("valid", "ready", *fields)}
 
 
-class AxisSource(BusDriver):
+class AxisSource(BusDriver):  # type: ignore[misc]
     """Sends words, each held until it is taken. In a transaction None is a clock without a word.
 
     `offers` is a profile: when it is False no new word is offered. Pins are "<name>_<prefix>valid" and so on.
     """
 
-    def __init__(self, dut, name, fields=VIDEO, prefix="", offers=None):
+    def __init__(
+        self, dut: Any, name: str, fields: Sequence[str] = VIDEO, prefix: str = "", offers: Iterator[bool] | None = None
+    ) -> None:
         self._signals = _signals(fields, prefix)
         self.offers = offers or repeat(True)
         super().__init__(dut, name, dut.clk)
@@ -82,10 +85,10 @@ class AxisSource(BusDriver):
         valid.value = 0
 
 
-class AxisSink(BusDriver):
+class AxisSink(BusDriver):  # type: ignore[misc]
     """Drives ready from a profile, whether there is something valid or not; `stall(profile)` changes it."""
 
-    def __init__(self, dut, name, prefix="", accepts=None):
+    def __init__(self, dut: Any, name: str, prefix: str = "", accepts: Iterable[bool] | None = None) -> None:
         self._signals = {"ready": prefix + "ready"}
         super().__init__(dut, name, dut.clk)
         self.stall(accepts or repeat(True))
@@ -100,7 +103,7 @@ class AxisSink(BusDriver):
             await RisingEdge(self.clock)
 
 
-class AxisMonitor(BusMonitor):
+class AxisMonitor(BusMonitor):  # type: ignore[misc]
     """Keeps what passes, and checks the rules: a word once valid stays the same until ready; none in reset.
 
     valid and ready are never unknown, nor is a field while valid is high (on Icarus X raises where it is
@@ -115,19 +118,23 @@ class AxisMonitor(BusMonitor):
         For each entry of `words`, the clock of its handshake, and the first in which it stood on the pins.
     """
 
-    def __init__(self, dut, name, fields=VIDEO, prefix="", silence=False):
+    def __init__(
+        self, dut: Any, name: str, fields: Sequence[str] = VIDEO, prefix: str = "", silence: bool | str = False
+    ) -> None:
         self._signals = _signals(fields, prefix)
         self.clock_count = 0
         self.silence = silence
         self.forget()
         super().__init__(dut, name, dut.clk)
         self.pins = [getattr(self.bus, field) for field in fields]
-        self.make = Word._make if tuple(fields) == VIDEO else tuple
+        self.make: Any = Word._make if tuple(fields) == VIDEO else tuple
 
     def forget(self) -> None:
-        self.words, self.taken, self.offered = [], [], []
+        self.words: list[Any] = []
+        self.taken: list[int] = []
+        self.offered: list[int] = []
 
-    async def _monitor_recv(self):
+    async def _monitor_recv(self) -> None:
         valid, ready, edge = self.bus.valid, self.bus.ready, RisingEdge(self.clock)
         reset, was_reset = self.entity.rst, True  # so that nothing is read before the first edge
         enable = getattr(self.entity, self.silence) if isinstance(self.silence, str) else None
@@ -176,7 +183,7 @@ def video(pixels: Iterable[int], columns: int) -> list[Word]:
 
 # Each way to break a frame, and some that break nothing, with the faults it is flagged as when whole frames come
 # before and after it. `inner` says whether the position is anywhere but at the beginning of a row.
-BREAKS = {
+BREAKS: dict[str, Callable[[bool], tuple[str, ...]]] = {
     "whole": lambda inner: (),
     "waited": lambda inner: (),  # silent for as long as the time-out allows
     "row_short": lambda inner: ("row_short",),  # the row ends at the position, the next follows
@@ -216,8 +223,9 @@ def faults_of(kind: str, position: int, columns: int) -> tuple[str, ...]:
 def broken(words: Sequence[Word], kind: str, position: int, columns: int, silent: int = 0) -> list[Word | None]:
     """A frame with one break at a position, as a camera would go on from there, `silent` clocks silent if it is of
     that kind."""
-    before, word, after = list(words[:position]), words[position], list(words[position + 1 :])
-    without_start = [other._replace(user=0) for other in before]
+    before: list[Word | None] = list(words[:position])
+    word, after = words[position], list(words[position + 1 :])
+    without_start: list[Word | None] = [other._replace(user=0) for other in words[:position]]
     match kind:
         case "whole":
             return list(words)

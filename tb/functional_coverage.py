@@ -9,9 +9,10 @@ its counts in the run folder; commands/verify/coverage.py adds them up over all 
 import json
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import cocotb
 from cocotb.triggers import RisingEdge
@@ -54,12 +55,12 @@ POINTS = {
 }
 
 
-def label(point, *values) -> str:
+def label(point: str, *values: object) -> str:
     return f"{point}: {', '.join(map(str, values))}"
 
 
-def impossible(point: str, solver: str, values: tuple) -> str | None:
-    """Why a bin cannot be hit, or None."""
+def impossible(point: str, solver: str, values: Sequence[Any]) -> str | None:
+    """Return the reason why a bin cannot be hit, or None."""
     if point == "fault, place":
         fault, place = values
         ends = place in ("end of a row", "last pixel")
@@ -81,9 +82,9 @@ def impossible(point: str, solver: str, values: tuple) -> str | None:
 
 
 def bins() -> dict[str, str | None]:
-    """Every bin, and why it is impossible, or None."""
+    """Return every bin with the reason why it is impossible, or None."""
     return {
-        label(point, solver, *values): impossible(point, solver, values)
+        label(point, solver, *values): impossible(point, str(solver), values)
         for point, axes in POINTS.items()
         for solver, *values in product(SOLVERS, *axes)
     }
@@ -100,11 +101,11 @@ def place_of(row: int, column: int, rows: int, columns: int) -> str:
 class FunctionalCoverage:
     """Counts bins, clock by clock."""
 
-    def __init__(self, dut, config, offers: str, accepts: str):
+    def __init__(self, dut: Any, config: Configuration, offers: str, accepts: str) -> None:
         self.dut, self.config, self.offers, self.accepts = dut, config, offers, accepts
         self.hits: Counter[str] = Counter()
 
-    def hit(self, point: str, *values) -> None:
+    def hit(self, point: str, *values: object) -> None:
         self.hits[label(point, self.config.solver, *values)] += 1
 
     def phases(self, held: bool, taken: bool) -> Iterator[str]:
@@ -181,7 +182,7 @@ class FunctionalCoverage:
                     self.hit("silence inside a frame", "given up")
                     quiet = 0
             # A whole frame is told a clock after its last pixel: with a fault of the next one's first.
-            ends = ["good"] * bool(dut.u_registers.event_frame_in.value) + [fault] * bool(fault)
+            ends = ["good"] * bool(dut.u_registers.event_frame_in.value) + ([fault] if fault else [])
             for end in ends:
                 frames.append(end)
                 if len(frames) > 2 and frames[-2] != "good":
@@ -219,7 +220,7 @@ class FunctionalCoverage:
             self.hit("reset clocks, phase", clocks, phase)
 
 
-def start(dut, config, offers: str, accepts: str) -> None:
+def start(dut: Any, config: Configuration, offers: str, accepts: str) -> None:
     """Count from now to the end of the test, in a run with HDL_COVERAGE=1."""
     if os.environ.get("HDL_COVERAGE") == "1":
         cocotb.start_soon(FunctionalCoverage(dut, config, offers, accepts).watch())
