@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from commands.common import variables
-from commands.common.repository import ROOT, cores, sources
+from commands.common.repository import ROOT, chosen, cores, sources
 from commands.common.signals import threads
 from tactile_depth.configuration import Configuration
 from tactile_depth.contact import contact_events
@@ -709,14 +709,22 @@ def combined(outcomes: Mapping[str, Outcome]) -> str:
     return ", ".join(wrong) or "PASS"
 
 
-def selected(core: str | None) -> list[Proof | Structure]:
-    """Those of one core, or all."""
+def selected(cores: str) -> list[Proof | Structure]:
+    """Return the proofs of the cores in a value of CORE=a,b, or all proofs for an empty value.
+
+    Raises
+    ------
+    InputError
+        A core does not exist or has no proof.
+    """
     every: tuple[Proof | Structure, ...] = (*STRUCTURES, *PROOFS)
-    known = sorted({proof.core for proof in every})
-    if core and core not in known:
-        reason = f": {WITHOUT_CONTROL[core]}" if core in WITHOUT_CONTROL else f": there are {', '.join(known)}"
-        raise InputError(f"CORE={core} has no proof{reason}")
-    return [proof for proof in every if core in (None, "", proof.core)]
+    if not cores:
+        return list(every)
+    names = chosen(cores)
+    for name in names:
+        if name in WITHOUT_CONTROL:
+            raise InputError(f"CORE={name} has no proof: {WITHOUT_CONTROL[name]}")
+    return [proof for proof in every if proof.core in names]
 
 
 def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
@@ -799,7 +807,7 @@ def main() -> None:
         DOCUMENT.write_text(document())
         return
     with variables.reported("formal"):
-        sys.exit(prove(selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE"))))
+        sys.exit(prove(selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE", ""))))
 
 
 def prove(proofs: Sequence[Proof | Structure]) -> int:

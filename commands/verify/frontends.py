@@ -202,11 +202,12 @@ def prove(case: Case, folder: Path = FOLDER) -> tuple[str, float]:
 
 def main() -> None:
     with variables.reported("frontends"):
-        core = variables.given(sys.argv[1:], ("CORE",)).get("CORE")
-        known = sorted({case.core for case in cases()})
-        if core not in (None, *known):
-            raise InputError(f"CORE={core} is unknown: accepted are {', '.join(known)}")
-        sys.exit(run([case for case in cases() if core in (None, case.core)]))
+        values = variables.given(sys.argv[1:], ("CORE",))
+        names = repository.chosen(values["CORE"]) if "CORE" in values else list(repository.cores())
+        within = WITHIN_THE_WHOLE.intersection(names)
+        if "CORE" in values and within:
+            raise InputError(f"CORE={','.join(sorted(within))}: compared within tactile_depth: give CORE=tactile_depth")
+        sys.exit(run([case for case in cases() if case.core in names]))
 
 
 def run(chosen: list[Case]) -> int:

@@ -30,7 +30,6 @@ from tqdm import tqdm
 from commands.common import repository, variables
 from commands.verify import equivalence, mutants, protocols
 from commands.verify.equivalence import EQUIVALENT, Protocol, Spans, settle
-from tactile_depth.errors import InputError
 
 OUT = repository.ROOT / "build" / "mutate"
 LEAF, WHOLE = 100.0, 95.0  # per cent of the mutants that are not equivalent
@@ -266,10 +265,7 @@ def parse(arguments: list[str]) -> dict[str, str]:
 def main() -> None:
     with variables.reported("mutate"):
         choices = parse(sys.argv[1:])
-        names = choices["CORE"].split(",")
-        for name in names:
-            if name not in CORES:
-                raise InputError(f"CORE={name} is unknown: accepted are {', '.join(CORES)}")
+        names = repository.chosen(choices["CORE"])
         modules = {path.stem for path in repository.sources()}
         if modules != CORES.keys() | LEFT_OUT.keys():
             raise variables.Mismatch(

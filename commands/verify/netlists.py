@@ -189,10 +189,7 @@ def parse(arguments: list[str]) -> tuple[list[str], int]:
     """
     given = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
     given |= variables.given(arguments, given)
-    names = given["CORE"].split(",")
-    for name in names:
-        if name not in mutate.CORES:
-            raise InputError(f"CORE={name} is unknown: accepted are {', '.join(mutate.CORES)}")
+    names = repository.chosen(given["CORE"])
     return names, variables.number(given, "SEED", 1, 0, 10**9)
 
 
