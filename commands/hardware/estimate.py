@@ -5,21 +5,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from commands.common import published
 from commands.hardware import memory_model
 
-CLOCK_MHZ = 166.0
 SOURCE = "NanGate FreePDK45, typical corner, version 0.1.0, 2026-11-23"
 PUBLISHED = (
-    f"published, {CLOCK_MHZ:g} MHz",
-    5.10,
-    324.0,
+    f"published, {published.CLOCK_MHZ:g} MHz",
+    published.ASIC_AREA_MM2,
+    published.ASIC_POWER_MW,
     "docs/results.md: NanGate FreePDK45, typical corner, single-port SRAM by CACTI and bsg_fakeram, another "
     "pipeline; here one figure per bit of memory, a write and a read port each, no wires and no clock tree",
 )
 
 
 class Recorded(NamedTuple):
-    """Logic of a design of 128 x 128 at 45 nm and CLOCK_MHZ, and its memories."""
+    """Logic of a design of 128 x 128 at 45 nm and published.CLOCK_MHZ, and its memories."""
 
     logic_mm2: float
     without_delays_mw: float | None
@@ -41,6 +41,6 @@ def at_45_nm(solver: str) -> tuple[str, float, float, str]:
     logic = RECORDED[solver]
     area_mm2 = logic.logic_mm2 + memory_model.area_um2(logic.memory_bits, memory_model.NODE_NM) / 1e6
     access_pj = memory_model.energy_pj(logic.accessed_bits_per_clock, memory_model.NODE_NM, memory_model.VOLTAGE)
-    power_mw = sum(logic.with_delays_mw) / 2 + access_pj * CLOCK_MHZ / 1e3
-    name = f"45 nm estimate, {solver}, 128 x 128, {CLOCK_MHZ:g} MHz"
+    power_mw = sum(logic.with_delays_mw) / 2 + access_pj * published.CLOCK_MHZ / 1e3
+    name = f"45 nm estimate, {solver}, 128 x 128, {published.CLOCK_MHZ:g} MHz"
     return name, area_mm2, power_mw, f"not of this run: logic recorded with {SOURCE}; memory model"

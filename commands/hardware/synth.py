@@ -28,7 +28,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import repository, results, variables
+from commands.common import published, repository, results, variables
 from commands.common.markdown import table
 from commands.common.signals import threads
 from commands.hardware import synthesis, yosys
@@ -63,13 +63,6 @@ TARGETS = {
         {"DSP48E2": 1728, "BRAM36": 312, "UltraRAM": 96, "LUT": 230_400, "FF": 460_800},
     )
 }
-# The published pipeline on the same device, 24 bit: the figures that it states of each grid.
-PUBLISHED: dict[int, dict[str, int]] = {
-    64: {"DSP48E2": 82, "LUT": 12_280, "UltraRAM": 8},
-    128: {"UltraRAM": 32},
-    256: {"DSP48E2": 108, "LUT": 21_413, "UltraRAM": 64, "BRAM36": 176},
-}
-
 # Cells of the two mappings.
 
 DEVICE_CELLS = {"DSP48E2": "DSP48E2", "URAM288": "UltraRAM"}
@@ -384,9 +377,9 @@ def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
     stated: set[int] = set()
     for design in document["designs"]:
         height, width = design["configuration"]["grid"]
-        if height == width in PUBLISHED and width not in stated:
+        if height == width in published.RESOURCES and width not in stated:
             stated.add(width)
-            known = PUBLISHED[width]
+            known = published.RESOURCES[width]
             stores = f"{known.get('UltraRAM', 0) + known.get('BRAM36', 0) / BLOCKS_PER_ULTRA:,.1f}"
             cells = [f"{known[name]:,}" if name in known else "-" for name in RESOURCES]
             rows.append(["published", f"{width} x {width}", *cells, stores, ""])

@@ -30,13 +30,12 @@ import numpy as np
 from scipy.stats import mannwhitneyu
 from tqdm import tqdm
 
-from commands.common import markdown, repository, results, variables
+from commands.common import markdown, published, repository, results, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
 from commands.common.signals import threads
 from commands.run import bench, reflex_pictures
 from commands.run.sim import CONTACT_THRESHOLD
-from commands.study.tune import CLOCK_MHZ
 from tactile_depth import reference
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
@@ -50,12 +49,6 @@ DEFAULT_OUT = repository.ROOT / "build" / "reflex"
 PIN = "ball"  # its round tip, of models/tactile_depth/scenes.py
 STOP_MM = 1.0  # the press ends so deep
 DECIDING_CLOCKS = 1  # from the deciding depth's leaving to `contact`
-
-# The published figures, ms: contact to command and contact to motion, mean and standard deviation; range of the latter.
-PUBLISHED: dict[str, dict[str, Any]] = {
-    "near": {"trials": 50, "command": (10.2, 3.2), "motion": (28.3, 4.9), "range": (16.7, 37.5)},
-    "host": {"trials": 81, "command": (148.6, 28.3), "motion": (169.9, 27.8), "range": (108.3, 260.4)},
-}
 
 # What the delays are made of.
 FRAME_MS = {"near": 1000 / 400, "host": 1000 / 25}
@@ -181,10 +174,10 @@ def parse(arguments: Sequence[str]) -> Request:
     number = partial(variables.number, given)
     request = Request(
         size=number("N", 128, *COLUMNS["spectral"]),
-        clock_mhz=number("CLOCK_MHZ", CLOCK_MHZ, 0.5, 400, float),
+        clock_mhz=number("CLOCK_MHZ", published.CLOCK_MHZ, 0.5, 400, float),
         speed=number("SPEED", SPEED_MM_S, 5, 200, float),
-        trials=number("TRIALS", PUBLISHED["near"]["trials"], 2, 10_000),
-        host_trials=number("HOST_TRIALS", PUBLISHED["host"]["trials"], 2, 10_000),
+        trials=number("TRIALS", published.REFLEX["near"]["trials"], 2, 10_000),
+        host_trials=number("HOST_TRIALS", published.REFLEX["host"]["trials"], 2, 10_000),
         seed=number("SEED", 1, 0, 10**9),
         simulator=given.get("SIM", simulation.SIMULATORS[0]),
         video=Path(given["VIDEO"]) if "VIDEO" in given else None,
@@ -514,7 +507,7 @@ def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
 
 def within_published(near: dict[str, Any]) -> bool:
     """Mean within the published mean +- standard deviation, and a spread no wider than the published one."""
-    mean, spread = PUBLISHED["near"]["motion"]
+    mean, spread = published.REFLEX["near"]["motion"]
     return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
 
 
@@ -533,7 +526,12 @@ def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
             f"constant, {near.read_out * near.frame:.3f} ms",
             f"assumption: all of the frame, {gap} clocks a pixel",
         ),
-        Delay("near", "pipeline", "the clocks counted in each trial", f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)"),
+        Delay(
+            "near",
+            "pipeline",
+            "the clocks counted in each trial",
+            f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)",
+        ),
         Delay(
             "both", "servo", f"normal, {near.servo:g} +- {near.servo_spread:g} ms", "published; its shape: assumption"
         ),
@@ -632,7 +630,7 @@ def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]
         "simulator": request.simulator,
         "machine": machine(),
         "load_before": load,
-        "published": PUBLISHED,
+        "published": published.REFLEX,
         "delays": [asdict(delay) for delay in delays(request, near, host)],
         "near": solvers,
         "host": {
@@ -676,11 +674,11 @@ def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
 
 def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
     """What would have to differ for the published mean and spread of contact to command."""
-    mean, spread = PUBLISHED["near"]["command"]
+    mean, spread = published.REFLEX["near"]["command"]
     middle = near["parts"]["indentation grows to the threshold, and the next exposure comes"]["mean"]
     growth = middle - setup.frame / 2
     wanted = growth + mean - near["command"]["mean"]
-    motion, motion_spread = PUBLISHED["near"]["motion"]
+    motion, motion_spread = published.REFLEX["near"]["motion"]
     others = near["motion"]["mean"] - growth
     slowest, quickest = (motion + sign * motion_spread - others for sign in (1, -1))  # growth, ms
     clock = setup.frame / math.sqrt(12)

@@ -37,9 +37,8 @@ import numpy as np
 import scipy.fft
 from tqdm import tqdm
 
-from commands.common import markdown, repository, results, variables
+from commands.common import markdown, published, repository, results, variables
 from commands.common.machine import machine
-from commands.study.tune import CLOCK_MHZ
 from tactile_depth import reference
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
@@ -418,7 +417,7 @@ def parse(arguments: Sequence[str]) -> Request:
     return Request(
         grids=tuple(sorted(set(grids))),
         runs=number("RUNS", RUNS, FEWEST_RUNS, 1_000_000),
-        clock_mhz=number("CLOCK_MHZ", CLOCK_MHZ, 0.001, 10_000, float),
+        clock_mhz=number("CLOCK_MHZ", published.CLOCK_MHZ, 0.001, 10_000, float),
         out=Path(given["OUT"]) if given["OUT"] else DEFAULT_OUT,
     )
 

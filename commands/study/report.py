@@ -23,11 +23,11 @@ import matplotlib
 import numpy as np
 
 from commands.common import results, variables
+from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, MEMORY_MBIT, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, sim
 from commands.study import baselines, extremes, sweep
-from commands.study.tune import CLOCK_MHZ
 from tactile_depth import reference
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
@@ -45,18 +45,12 @@ UM_PER_MM = 1000
 EXTREMES_SIZE = 64
 EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
 
-# The published pipeline (XCZU7EV, 166 MHz, 24 bit): cycles from first pixel to first depth by grid, RMS to double
-# precision in % of peak over 15 contacts after a fitted scale and offset, memory of its UltraRAM at 128.
-PUBLISHED_LATENCY = {64: 9421, 128: 35107, 256: 135448}
-PUBLISHED_RMS, PUBLISHED_WORST = sweep.PUBLISHED_RMS_PERCENT, 0.26
-PUBLISHED_MBIT = 32 * 288 * 1024 / 1e6
-
 # Told apart without colour.
 LOOKS: dict[str, dict[str, Any]] = {
     "spectral": {"color": "#08306b", "marker": "o", "linestyle": "-"},
     "tridiagonal": {"color": "#e6550d", "marker": "s", "linestyle": "--"},
 }
-PUBLISHED: dict[str, Any] = {
+PUBLISHED_LOOK: dict[str, Any] = {
     "color": "black",
     "marker": "*",
     "markersize": 13,
@@ -160,8 +154,8 @@ def headline(runs: dict[str, Run]) -> Figure:
             )
         )
     rows.append(
-        ("published", f"{PUBLISHED_LATENCY[SIZE]:,} ({PUBLISHED_LATENCY[SIZE] / CLOCK_MHZ:,.0f} us)", "-",
-         f"{PUBLISHED_RMS} ({PUBLISHED_WORST})", "-")
+        ("published", f"{FIRST_DEPTH_CYCLES[SIZE]:,} ({FIRST_DEPTH_CYCLES[SIZE] / CLOCK_MHZ:,.0f} us)", "-",
+         f"{RMS_PERCENT} ({WORST_RMS_PERCENT})", "-")
     )  # fmt: skip
     head = (
         "solver",
@@ -212,7 +206,7 @@ def grid_figure(folder: Path) -> Figure:
         axis.plot(
             grids, [last_pixel_to_first_depth(c) for c in configs], **dotted, label=f"{solver}, from the last pixel"
         )
-    axis.plot(list(PUBLISHED_LATENCY), list(PUBLISHED_LATENCY.values()), **PUBLISHED)
+    axis.plot(list(FIRST_DEPTH_CYCLES), list(FIRST_DEPTH_CYCLES.values()), **PUBLISHED_LOOK)
     axis.set_xscale("log", base=2)
     axis.set_yscale("log")
     shown = sorted({int(grid) for line in axis.get_lines() for grid in np.asarray(line.get_xdata())})
@@ -257,7 +251,10 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
         at = places + 0.4 * (index - 0.5)
         axis.bar(at, rms, 0.38, color=LOOKS[solver]["color"], hatch=hatches[index], edgecolor="white", label=solver)
     axis.axhline(
-        PUBLISHED_RMS, color="black", linestyle=":", label=f"published, mean of 15 contacts: {PUBLISHED_RMS} %"
+        RMS_PERCENT,
+        color="black",
+        linestyle=":",
+        label=f"published, mean of 15 contacts: {RMS_PERCENT} %",
     )
     axis.set_yscale("log")
     axis.set_xticks(places, [name.replace("_", " ") for name in BENCH], rotation=35, ha="right")
@@ -307,7 +304,7 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
             label=f"{solver}, DEPTH_RANGE=worst",
         )
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
-        axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
+        axis.axhline(RMS_PERCENT, color="black", linestyle=":")
         axis.set(yscale="log", xlabel=name)
         axis.xaxis.set_major_locator(MaxNLocator(integer=True))
         axis.grid(alpha=0.3)
@@ -315,7 +312,7 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     left.legend()
     text = (
         f"Mean of the contacts at {SIZE} (with marks), and the worst (thin). Left with {default.coefficient_width}-bit "
-        f"coefficients, right with {default.data_width}-bit words. Dotted and level: the published {PUBLISHED_RMS} %; "
+        f"coefficients, right with {default.data_width}-bit words. Dotted and level: the published {RMS_PERCENT} %; "
         "dotted and falling: the mean where no slopes can saturate anything."
     )
     return Figure("words", "Word lengths", text, "make sweep", picture(figure, folder, "words"))
@@ -324,9 +321,9 @@ def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
 def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained", sharey=True)
     columns = (
-        ("first_depth_cycles", "cycles, first pixel to first depth", 1.0, PUBLISHED_LATENCY[SIZE]),
+        ("first_depth_cycles", "cycles, first pixel to first depth", 1.0, FIRST_DEPTH_CYCLES[SIZE]),
         ("multipliers", "multipliers of 27 x 18", 1.0, None),
-        ("memory_bits", "memory, Mbit", 1e-6, PUBLISHED_MBIT),
+        ("memory_bits", "memory, Mbit", 1e-6, MEMORY_MBIT),
     )
     for axis, (column, name, scale, published) in zip(axes, columns, strict=True):
         for solver in COLUMNS:
@@ -342,9 +339,9 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
             ]
             axis.step(*zip(*front, strict=True), where="post", label=solver, **LOOKS[solver] | {"marker": ""})
         if published is not None:
-            axis.plot([published], [PUBLISHED_RMS], **PUBLISHED)
+            axis.plot([published], [RMS_PERCENT], **PUBLISHED_LOOK)
         else:
-            axis.axhline(PUBLISHED_RMS, color="black", linestyle=":")
+            axis.axhline(RMS_PERCENT, color="black", linestyle=":")
         axis.set(xlabel=name, yscale="log")
         axis.set_xlim(left=0)
         axis.grid(alpha=0.3)

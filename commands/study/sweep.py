@@ -24,7 +24,7 @@ from typing import Any, BinaryIO
 import joblib
 from tqdm import tqdm
 
-from commands.common import results, variables
+from commands.common import published, results, variables
 from commands.common.repository import ROOT
 from tactile_depth import accuracy
 from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
@@ -36,7 +36,6 @@ GRIDS = (32, 64, 128, 256, 512)
 ACCEPTED = ("OUT", "DASK_SCHEDULER")
 HEADER = (*CONFIGURATION, *MEASURED)
 CONNECT_S, WORKERS_S = 10, 60  # how long a cluster, and its first worker, is waited for
-PUBLISHED_RMS_PERCENT = 0.17  # mean over its 15 contacts, after a fitted scale and offset
 
 Choices = dict[str, Any]
 Key = tuple[str, ...]
@@ -284,10 +283,10 @@ def summary(rows: list[Row]) -> str:
             for row in rows
             if all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
             and not row["problem"]
-            and float(row["rms_percent_mean"]) <= PUBLISHED_RMS_PERCENT
+            and float(row["rms_percent_mean"]) <= published.RMS_PERCENT
         ]
         if narrow:
-            lines.append(f"{solver}: mean RMS at most {PUBLISHED_RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
+            lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
         lines += cost_of_worst(rows, solver)
     refused = sum(bool(row["problem"]) for row in rows)
     lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, results, variables
+from commands.common import published, repository, results, variables
 from commands.common import simulator as simulation
 from commands.run import sim
 from tactile_depth import reference
@@ -40,7 +40,6 @@ OF_SIM = (
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
 DEFAULT_TOLERANCE = 0.1  # % of peak
-CLOCK_MHZ = 166.0  # of the published pipeline
 DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
 
 # The XCZU7EV: DSP48E2 slices; block RAMs of 36 Kbit and UltraRAMs of 288 Kbit.
@@ -244,7 +243,7 @@ def parse(arguments: list[str]) -> tuple[sim.Request, Limits, list[str]]:
     limits = Limits(
         tolerance=above_zero("TOLERANCE", DEFAULT_TOLERANCE),
         latency_us=above_zero("MAX_LATENCY_US", math.inf),
-        clock_mhz=above_zero("CLOCK_MHZ", CLOCK_MHZ),
+        clock_mhz=above_zero("CLOCK_MHZ", published.CLOCK_MHZ),
         multipliers=above_zero("MAX_DSP", math.inf),
         memory_kbit=above_zero("MAX_MEMORY_KBIT", math.inf),
     )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from commands.common import published
 from commands.run import bench, reflex, reflex_pictures
 from commands.study import report
 from tactile_depth.configuration import COLUMNS, Configuration
@@ -98,7 +99,7 @@ def test_rank_sum():
 
 
 def test_published_spread():
-    mean, spread = reflex.PUBLISHED["near"]["motion"]
+    mean, spread = published.REFLEX["near"]["motion"]
     assert reflex.within_published({"mean": mean - 0.99 * spread, "sd": spread})
     assert not reflex.within_published({"mean": mean + 1.01 * spread, "sd": 1})
     assert not reflex.within_published({"mean": mean, "sd": 1.01 * spread})

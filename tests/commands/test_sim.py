@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from skimage import io
 
+from commands.common import published
 from commands.run import sim
 from commands.run.draw import painted
 from commands.run.flags import Flags
@@ -19,8 +20,6 @@ from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.pipeline import Pipeline
 from tactile_depth.samples import sample
 from tactile_depth.sensor import load
-
-PUBLISHED_FIRST_DEPTH = {64: 9421, 128: 35107, 256: 135448}  # cycles, DESIGN of the pipeline on the XCZU7EV
 
 
 def run(tmp_path, *arguments):
@@ -51,7 +50,7 @@ def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
     latency = first_depth_latency(Configuration(columns=size, solver=solver))
     assert only(report["first_depth_latency_cycles"]) == latency
     bar = 2 * size**2 + 16 * size if solver == "spectral" else size**2 + 8 * size + 64
-    assert latency <= bar < PUBLISHED_FIRST_DEPTH[size]
+    assert latency <= bar < published.FIRST_DEPTH_CYCLES[size]
     if solver == "tridiagonal":
         assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * size + 64
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from commands.common import repository
+from commands.common import published, repository
 from commands.run import sim
 from commands.study import sweep
 from tactile_depth import accuracy
@@ -89,7 +89,7 @@ def test_bench_at_the_default_and_at_twenty_bits(solver):
     assert float(row["rms_percent_mean"]) <= 0.005
     assert float(row["rms_percent_worst"]) <= 0.015
     narrow = accuracy.measure({"solver": solver, "data_width": 20})
-    assert float(narrow["rms_percent_mean"]) <= sweep.PUBLISHED_RMS_PERCENT
+    assert float(narrow["rms_percent_mean"]) <= published.RMS_PERCENT
 
 
 @pytest.mark.parametrize(
