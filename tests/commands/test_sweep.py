@@ -156,7 +156,7 @@ def test_a_torn_header_is_mended(tmp_path, length):
 def test_an_interrupted_sweep_goes_on(tmp_path, moment):
     rows = [{"columns": 64, "data_width": width, "coefficient_width": c} for width in (20, 22) for c in range(10, 20)]
     script = (
-        "import json, sys; from commands import sweep; "
+        "import json, sys; from commands.study import sweep; "
         "rows = json.loads(sys.argv.pop()); sweep.plan = lambda: rows; sweep.main()"
     )
     environment = {**os.environ, "LOKY_MAX_CPU_COUNT": "1"}
