@@ -21,13 +21,12 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import mannwhitneyu
 from tqdm import tqdm
 
 from commands.common import markdown, published, repository, results, variables
@@ -35,131 +34,42 @@ from commands.common import simulator as simulation
 from commands.common.machine import machine
 from commands.common.signals import threads
 from commands.run import bench, reflex_pictures
+from commands.run.reflex_model import (
+    CAMERA_BYTES,
+    EXPOSURE,
+    FRAME_MS,
+    HOST_NAMES,
+    NEAR_NAMES,
+    SPEED_MM_S,
+    USB_BYTES_PER_MS,
+    Draws,
+    Request,
+    Setup,
+    Times,
+    calibration_on,
+    delays,
+    draw,
+    in_software,
+    picture,
+    rank_sum,
+    sensitivity,
+    spacing,
+    statistics,
+    times,
+    within_published,
+)
+from commands.run.reflex_tables import sentences, tables
 from commands.run.sim import CONTACT_THRESHOLD
-from tactile_depth import reference
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.latency import last_pixel_to_first_depth
-from tactile_depth.scenes import SENSOR_WIDTH_MM, Press, render, scene_pixel_pitch_mm
-from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load
+from tactile_depth.scenes import SENSOR_WIDTH_MM, scene_pixel_pitch_mm
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
 
 RESULTS = ("reflex.json", "reflex.png")
 DEFAULT_OUT = repository.ROOT / "build" / "reflex"
-PIN = "ball"  # its round tip, of models/tactile_depth/scenes.py
-STOP_MM = 1.0  # the press ends so deep
 DECIDING_CLOCKS = 1  # from the deciding depth's leaving to `contact`
-
-# What the delays are made of.
-FRAME_MS = {"near": 1000 / 400, "host": 1000 / 25}
-SPEED_MM_S = 20.0
-EXPOSURE = 0.5  # of the frame time
-SERVO_MS, SERVO_SPREAD_MS = 18.1, 3.3
-USB_BYTES_PER_MS = 8 * 3 * 1024  # high speed: 8 microframes a ms, isochronous, at most 3 transactions of 1,024 bytes
-CAMERA_BYTES = 640 * 480 * 2  # YUYV
-DRIVER_BUFFERS = 4
-ASLEEP_MS = 1.0
-
-SCALES = (0.5, 2.0)  # of the sensitivity table
-
-
-@dataclass(frozen=True)
-class Delay:
-    """One row of the table of delays: what the simulation takes from where."""
-
-    path: str
-    name: str
-    distribution: str
-    source: str
-
-
-@dataclass(frozen=True)
-class Setup:
-    """A path in numbers. Each may be scaled by itself, which is what the sensitivity table does.
-
-    Attributes
-    ----------
-    speed : float, mm/s
-    threshold : float, mm
-    frame : float, ms
-        From one exposure to the next.
-    exposure : float
-        Share of the frame time, at its end.
-    read_out : float
-        Share of the frame time from the end of the exposure to the last pixel.
-    transfer : float, ms
-        What a link takes in its place.
-    waiting, compute, wake_up : float
-        Scales of what was drawn or measured in each trial.
-    servo, servo_spread : float, ms
-    """
-
-    speed: float
-    threshold: float
-    frame: float
-    exposure: float
-    read_out: float = 0.0
-    transfer: float = 0.0
-    waiting: float = 1.0
-    compute: float = 1.0
-    wake_up: float = 1.0
-    servo: float = SERVO_MS
-    servo_spread: float = SERVO_SPREAD_MS
-
-    def exposed(self, phase: float, frame: int) -> float:
-        """When the exposure of a frame ends, ms after the contact; number 0 is the first to end after it."""
-        return (phase + frame) * self.frame
-
-    def middle(self, phase: float, frame: int) -> float:
-        """The middle of its exposure: what a picture of a steady press shows."""
-        return self.exposed(phase, frame) - self.exposure * self.frame / 2
-
-    def depth(self, phase: float, frame: int) -> float:
-        """How deep the pin is then, mm."""
-        return min(max(self.speed * self.middle(phase, frame) / 1000, 0.0), STOP_MM)
-
-
-@dataclass(frozen=True)
-class Draws:
-    """What chance decides in the trials of a path; one entry a trial.
-
-    Attributes
-    ----------
-    phase : float array, shares of a frame time from the contact to the end of the exposure
-    waiting : int array, finished frames that wait in the driver before this one
-    servo : float array, standard normal
-    noise : int array, seeds of the camera's noise
-    """
-
-    phase: np.ndarray
-    waiting: np.ndarray
-    servo: np.ndarray
-    noise: np.ndarray
-
-
-def draw(trials: int, seed: int, path: str) -> Draws:
-    random = np.random.default_rng([seed, list(FRAME_MS).index(path)])
-    return Draws(
-        random.random(trials),
-        random.integers(DRIVER_BUFFERS, size=trials),
-        random.standard_normal(trials),
-        random.integers(2**32, size=trials),
-    )
-
-
-@dataclass(frozen=True)
-class Request:
-    """What the user asked for."""
-
-    size: int
-    clock_mhz: float
-    speed: float
-    trials: int
-    host_trials: int
-    seed: int
-    simulator: str
-    video: Path | None
-    out: Path
 
 
 def parse(arguments: Sequence[str]) -> Request:
@@ -203,14 +113,6 @@ def parse(arguments: Sequence[str]) -> Request:
 # Frames.
 
 
-def picture(setup: Setup, draws: Draws, trial: int, frame: int, size: int) -> np.ndarray:
-    """What the sensor sees of a trial in one of its frames: uint8 (size, size, 3)."""
-    depth = setup.depth(draws.phase[trial], frame)
-    seed = int(np.random.SeedSequence([int(draws.noise[trial]), frame + 1]).generate_state(1)[0])
-    name, press = (PIN, Press(depth)) if depth else ("flat", Press())
-    return render(name, size, seed=seed, press=press).frames[0]
-
-
 @dataclass(frozen=True)
 class Sent:
     """A frame on its way to the RTL. `slow`: at the camera's timing."""
@@ -232,10 +134,6 @@ def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
         yield Sent(trial, frame, 2 * depth >= setup.threshold)
         if depth >= 1.5 * setup.threshold:
             return
-
-
-def calibration_on(size: int) -> Sensor:
-    return load("synthetic").scaled(scene_pixel_pitch_mm(size) / SYNTHETIC_PIXEL_PITCH_MM)
 
 
 # Near the sensor.
@@ -273,12 +171,6 @@ class Loop:
     codes: np.ndarray  # int32 (frames, size, size), as they left
     decisions: list[Decision]
     faults: list[str]
-
-
-def spacing(request: Request) -> tuple[int, int]:
-    """Clocks from pixel to pixel at the camera's timing, and of a frame time."""
-    period = round(FRAME_MS["near"] * request.clock_mhz * 1000)
-    return period // request.size**2, period
 
 
 def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
@@ -393,187 +285,7 @@ def threshold_code(config: Configuration) -> int:
 # Trials.
 
 
-@dataclass(frozen=True)
-class Times:
-    """Of each trial of a path, ms; `parts` add up to contact to motion."""
-
-    command: np.ndarray
-    motion: np.ndarray
-    parts: dict[str, np.ndarray]
-
-
-def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, wake_up: np.ndarray) -> Times:
-    """From the deciding frames to motion.
-
-    Parameters
-    ----------
-    frames : int array, the deciding frame of each trial
-    compute, wake_up : float array, ms: from the last pixel to the decision, and how late the operating system was
-    """
-    middles = np.array([setup.middle(phase, frame) for phase, frame in zip(draws.phase, frames, strict=True)])
-    parts = {
-        "indentation grows to the threshold, and the next exposure comes": middles,
-        "half the exposure": np.full(len(frames), setup.exposure * setup.frame / 2),
-        "read-out": np.full(len(frames), setup.read_out * setup.frame),
-        "transfer": np.full(len(frames), setup.transfer),
-        "frames waiting": setup.waiting * draws.waiting * setup.frame,
-        "reconstruction": setup.compute * compute,
-        "operating system": setup.wake_up * wake_up,
-        "servo": setup.servo + setup.servo_spread * draws.servo,
-    }
-    motion = np.sum(list(parts.values()), axis=0)
-    return Times(motion - parts["servo"], motion, parts)
-
-
-def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: Sensor) -> tuple[int, float, float]:
-    """The deciding frame by double precision; how long its reconstruction took, and how late a sleep before it ended.
-
-    Returns
-    -------
-    frame : int
-    compute, wake_up : float, ms
-    """
-    for frame in itertools.count():
-        if 2 * setup.depth(draws.phase[trial], frame) < setup.threshold:
-            continue  # see `sequence`
-        pixels = picture(setup, draws, trial, frame, size)
-        begin = time.perf_counter()
-        time.sleep(ASLEEP_MS / 1000)
-        woken = time.perf_counter()
-        deepest = reference.depth(pixels, calibration).max() * scene_pixel_pitch_mm(size)
-        done = time.perf_counter()
-        if deepest > setup.threshold:
-            return frame, 1000 * (done - woken), max(1000 * (woken - begin) - ASLEEP_MS, 0.0)
-    raise AssertionError("unreachable")
-
-
-def in_software(setup: Setup, draws: Draws, size: int, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`first_above` of each trial: deciding frames, compute and wake-up in ms."""
-    calibration = calibration_on(size)
-    reference.depth(picture(setup, draws, 0, 0, size), calibration)  # the first is slower: imports, plans
-    trials = tqdm(range(len(draws.phase)), desc=name, unit="trial", leave=False, disable=None, delay=2)
-    found = [first_above(setup, draws, trial, size, calibration) for trial in trials]
-    frames, compute, wake_up = (np.array(values) for values in zip(*found, strict=True))
-    return frames, compute, wake_up
-
-
-def sensitivity(
-    setup: Setup, draws: Draws, size: int, base: tuple[np.ndarray, np.ndarray, np.ndarray], names: dict[str, str]
-) -> list[dict[str, Any]]:
-    """Contact to motion with one number of the setup halved or doubled, most moving first.
-
-    `base`: what `times` takes with the setup as it is. `names`: field of the setup to what the table calls it.
-    """
-    rows = []
-    for field, name in names.items():
-        row: dict[str, Any] = {"delay": name, "value": getattr(setup, field)}
-        for scale in SCALES:
-            changed = replace(setup, **{field: scale * getattr(setup, field)})
-            if max(changed.exposure, changed.read_out) > 1:  # no camera has time for it
-                row[f"x{scale:g}"] = None
-                continue
-            frames, compute, wake_up = base
-            if field in ("speed", "threshold", "frame", "exposure"):
-                frames, _, _ = in_software(changed, draws, size, f"{name} x {scale:g}")
-            motion = times(changed, draws, frames, compute, wake_up).motion
-            row[f"x{scale:g}"] = {"mean": float(motion.mean()), "sd": float(motion.std(ddof=1))}
-        rows.append(row)
-    middle = float(times(setup, draws, *base).motion.mean())
-
-    def moves(row: dict[str, Any]) -> float:
-        return max(abs(row[f"x{scale:g}"]["mean"] - middle) for scale in SCALES if row[f"x{scale:g}"])
-
-    return sorted(rows, key=moves, reverse=True)
-
-
 # Results.
-
-
-def statistics(values: np.ndarray) -> dict[str, Any]:
-    return {
-        "trials": len(values),
-        "mean": float(values.mean()),
-        "sd": float(values.std(ddof=1)),
-        "min": float(values.min()),
-        "max": float(values.max()),
-    }
-
-
-def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
-    """Two-sided Mann-Whitney U. 0: every trial near the sensor was quicker than every one through the host."""
-    result = mannwhitneyu(near, host, alternative="two-sided")
-    return {"U": float(result.statistic), "p": float(result.pvalue)}
-
-
-def within_published(near: dict[str, Any]) -> bool:
-    """Mean within the published mean +- standard deviation, and a spread no wider than the published one."""
-    mean, spread = published.REFLEX["near"]["motion"]
-    return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
-
-
-def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
-    """Every delay of the simulation and where it comes from."""
-    gap, _ = spacing(request)
-    threshold = f"{near.threshold:.3g} mm, {CONTACT_THRESHOLD * request.size:g} px"
-    return [
-        Delay("both", "approach", f"constant, {near.speed:g} mm/s", "assumption (SPEED); none is published"),
-        Delay("both", "threshold", f"constant, {threshold}", "that of make sim; none is published"),
-        Delay("near", "frame clock", f"uniform over {near.frame:g} ms", "published: 400 frames/s"),
-        Delay("near", "exposure", f"constant, {near.exposure:g} of a frame", "assumption; its middle counts"),
-        Delay(
-            "near",
-            "read-out",
-            f"constant, {near.read_out * near.frame:.3f} ms",
-            f"assumption: all of the frame, {gap} clocks a pixel",
-        ),
-        Delay(
-            "near",
-            "pipeline",
-            "the clocks counted in each trial",
-            f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)",
-        ),
-        Delay(
-            "both", "servo", f"normal, {near.servo:g} +- {near.servo_spread:g} ms", "published; its shape: assumption"
-        ),
-        Delay("host", "frame clock", f"uniform over {host.frame:g} ms", "published: 25 frames/s"),
-        Delay("host", "exposure", f"constant, {host.exposure:g} of a frame", "assumption; its middle counts"),
-        Delay(
-            "host",
-            "transfer",
-            f"constant, {host.transfer:.1f} ms",
-            "640 x 480 YUYV (assumption) at USB 2.0's isochronous limit, 3 x 1,024 bytes a microframe (5.6.3, 5.9.2)",
-        ),
-        Delay(
-            "host",
-            "frames waiting",
-            f"0 to {DRIVER_BUFFERS - 1} frames, each as likely",
-            "OpenCV asks V4L2 for 4 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
-        ),
-        Delay("host", "reconstruction", "as measured in each trial", "tactile_depth.reference on this machine"),
-        Delay(
-            "host", "operating system", "as measured in each trial", f"lateness after a sleep of {ASLEEP_MS:g} ms, here"
-        ),
-    ]
-
-
-NEAR_NAMES = {
-    "speed": "approach speed, mm/s",
-    "threshold": "threshold, mm",
-    "frame": "frame time, ms (exposure and read-out with it)",
-    "exposure": "exposure, share of the frame time",
-    "read_out": "read-out, share of the frame time",
-    "compute": "pipeline (scale)",
-    "servo": "servo, ms",
-    "servo_spread": "servo's spread, ms",
-}
-HOST_NAMES = {
-    **{name: text for name, text in NEAR_NAMES.items() if name not in ("frame", "read_out", "compute")},
-    "frame": "frame time, ms (exposure and waiting with it)",
-    "transfer": "transfer, ms",
-    "waiting": "frames waiting (scale)",
-    "compute": "reconstruction (scale)",
-    "wake_up": "operating system (scale)",
-}
 
 
 def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]:
@@ -699,120 +411,6 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
 
 
 # Tables.
-
-
-def plus_minus(values: dict[str, Any]) -> str:
-    return f"{values['mean']:.1f} +- {values['sd']:.1f}"
-
-
-def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """What the command prints and the report shows: title, head and rows of each table."""
-    near, host, published = document["near"], document["host"], document["published"]
-
-    def row(name: str, path: dict[str, Any]) -> tuple[str, ...]:
-        motion = path["motion"]
-        keys = [key for key in ("command_against_host", "motion_against_host") if key in path]
-        against = " / ".join(f"{path[key]['U']:g}" for key in keys) or "-"
-        spread = f"{motion['min']:.1f} to {motion['max']:.1f}"
-        return (name, str(motion["trials"]), plus_minus(path["command"]), plus_minus(motion), spread, against)
-
-    def printed(name: str, path: dict[str, Any], against: str) -> tuple[str, ...]:
-        (command, command_sd), (motion, motion_sd) = path["command"], path["motion"]
-        low, high = path["range"]
-        spread = f"{low:.1f} to {high:.1f}"
-        shown = (f"{command:.1f} +- {command_sd:.1f}", f"{motion:.1f} +- {motion_sd:.1f}")
-        return (name, str(path["trials"]), *shown, spread, against)
-
-    comparison = [
-        *(row(f"near the sensor, {solver}", path) for solver, path in near.items()),
-        printed("near the sensor, published", published["near"], "0 / 0"),
-        row("host", host),
-        printed("host, published", published["host"], "-"),
-    ]
-    first = next(iter(near))
-    parts: list[tuple[str, ...]] = [
-        *(
-            (f"near, {first}", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
-            for name, part in near[first]["parts"].items()
-        ),
-        *(("host", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}") for name, part in host["parts"].items()),
-    ]
-    clock = document["clock_mhz"]
-    pixels = math.prod(document["grid"])
-    places: list[tuple[str, ...]] = []
-    for solver, found in document["sub_frame"]["solvers"].items():
-        place, contact = found["place"], found["last_pixel_to_contact"]
-        places.append(
-            (
-                solver,
-                f"{found['last_pixel_to_first_depth']:,}",
-                f"{place['mean']:,.0f} ({place['min']:,.0f} to {place['max']:,.0f})",
-                f"{100 * place['mean'] / pixels:.0f} %",
-                f"{contact['mean']:,.0f} ({contact['min']:,.0f} to {contact['max']:,.0f})",
-                f"{contact['mean'] / clock:.1f}",
-                ", ".join(map(str, found["deciding_to_contact"])),
-            )
-        )
-    sensitive: list[tuple[str, ...]] = []
-    for path, base in (("near", near[first]), ("host", host)):
-        for line in document["sensitivity"][path]:
-            scaled = [line[f"x{scale:g}"] for scale in SCALES]
-            shifts = [f"{one['mean'] - base['motion']['mean']:+.2f}" if one else "-" for one in scaled]
-            spreads = [f"{one['sd']:.1f}" if one else "-" for one in scaled]
-            name = f"near, {first}" if path == "near" else path
-            sensitive.append((name, line["delay"], f"{line['value']:.4g}", *shifts, *spreads))
-    return {
-        "results": (
-            "Contact to command and to motion, ms",
-            ("path", "trials", "to command", "to motion", "range", "U to command / to motion"),
-            comparison,
-        ),
-        "parts": ("Where the time goes, ms", ("path", "part", "mean", "sd"), parts),
-        "delays": (
-            "The delays",
-            ("path", "delay", "distribution", "source"),
-            [tuple(delay.values()) for delay in document["delays"]],
-        ),
-        "sensitivity": (
-            "Contact to motion with one number halved or doubled, ms",
-            ("path", "number", "value", "mean moves by, x 0.5", "x 2", "sd, x 0.5", "x 2"),
-            sensitive,
-        ),
-        "sub_frame": (
-            f"The deciding depth in the frame that leaves, clocks (at {clock:g} MHz)",
-            (
-                *("solver", "last pixel to first depth", "depths before the deciding one", "of the frame"),
-                *("last pixel to contact", "us", "deciding depth to contact"),
-            ),
-            places,
-        ),
-    }
-
-
-def sentences(document: dict[str, Any]) -> list[str]:
-    """What the tables say, with their numbers."""
-    first, found = next(iter(document["near"].items()))
-    earlier, why = document["sub_frame"]["tridiagonal_earlier_clocks"], document["difference"]
-    share = 100 * earlier["mean_us"] / 1000 / found["command"]["mean"]
-    verdict = "within" if all(one["within_published"] for one in document["near"].values()) else "NOT within"
-    mean, spread = document["published"]["near"]["command"]
-
-    def speed(key: str) -> str:
-        return "infinitely many" if why[key] is None else f"{why[key]:.0f}"
-
-    return [
-        f"contact to motion near the sensor is {verdict} the published mean and trial-to-trial spread, both solvers",
-        f"the tridiagonal solver's early start: {earlier['mean']:,.0f} clocks, {earlier['mean_us']:.1f} us, "
-        f"{share:.1f} % of contact to command",
-        f"growing to the threshold takes {why['growth_ms']:.1f} ms here; the published mean of {mean} ms would leave "
-        f"it {why['growth_for_published_mean_ms']:.1f}, an approach of {speed('speed_for_published_mean_mm_s')} mm/s",
-        f"the mean contact to motion stays within the published mean +- spread for an approach of about "
-        f"{speed('slowest_within_mm_s')} to {speed('quickest_within_mm_s')} mm/s",
-        f"the frame clock alone gives a spread of {why['spread_of_frame_clock_ms']:.2f} ms; of the published {spread} "
-        f"ms {why['spread_left_ms']:.1f} ms are left to what differs from press to press and is not simulated",
-        f"double precision decides in the same frame in {document['same_frame_by_double_precision']} of "
-        f"{found['motion']['trials']} trials ({first})",
-    ]
 
 
 def show(document: dict[str, Any]) -> str:

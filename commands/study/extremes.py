@@ -13,32 +13,28 @@ import json
 import os
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from scipy.fft import dst, idst
 from tqdm import tqdm
 
 from commands.common import repository, results, variables
 from commands.common import simulator as simulation
 from commands.run import sim
 from commands.study import certify as certificate
+from commands.study.transform_noise import BIAS, Compliance, compliance, compliance_table
 from tactile_depth import reference
 from tactile_depth.accuracy import errors
 from tactile_depth.certificate import certify
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, ROWS, Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.poisson import spectral_solver
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
 from tactile_depth.sensor import load
 from tactile_depth.tactile_depth import tactile_depth
-from tactile_depth.transform.orders import bit_reversed, makhoul
-from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
-from tactile_depth.transform.twiddle_multiply import coefficient_gain
 
 RESULTS = ("extremes.json", "extremes.csv", "compliance.csv")
 CALIBRATION = "synthetic"
@@ -292,8 +288,6 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
     )
 
 
-BIAS = 5.0  # standard errors that a mean error may be from zero
-FEWEST = 32  # random blocks: a standard error from three says nothing
 DRIFT = 0.05  # by which the mean error of the first half of a run may differ from that of the second
 
 
@@ -301,149 +295,6 @@ DRIFT = 0.05  # by which the mean error of the first half of a run may differ fr
 # square and mean error of each output word over random blocks, in steps of that word, for several amplitudes and both
 # signs. Its own limits are for one 8 x 8 transform of 9-bit words. Noise alone is not enough: it spreads over all modes
 # and leaves the range of each nearly unused, so lone modes at full amplitude come too.
-
-
-@dataclass(frozen=True)
-class Compliance:
-    """Errors of a transform core against double precision, in steps of its output word."""
-
-    core: str
-    size: int
-    input: str
-    blocks: int
-    amplitude: int
-    peak: float
-    worst_mean_square: float
-    mean_square: float
-    worst_mean: float
-    mean: float
-    mean_in_standard_errors: float
-    saturations: int
-    zero_in_zero_out: bool
-
-
-def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int]]:
-    """Name to core (blocks, monitor), the same in double precision, and dimensions; natural order at both ends."""
-    size = config.columns
-    order = makhoul(size)
-    place = size - 1 - bit_reversed(size)  # of the mode at each position of a burst
-    gain = coefficient_gain(config.coefficient_width) ** (twiddle_stages(size) + 1)
-    halved = 2.0 ** -halvings(size, inverse=False)
-    into, out_of = config.row_forward, config.row_modes
-    to_modes, from_modes = config.column_inverse, config.depth_modes
-    last = config.depth
-
-    def forward(blocks: np.ndarray, monitor: Monitor) -> np.ndarray:
-        return spectral_solver.row_forward(blocks, config, monitor)[..., np.argsort(place)]
-
-    def exact_forward(blocks: np.ndarray) -> np.ndarray:
-        scale = gain * halved / 2 * 2.0 ** (out_of.fraction - into.fraction)
-        return dst(blocks, type=2) * scale
-
-    def inverse(modes: np.ndarray, monitor: Monitor) -> np.ndarray:
-        return spectral_solver.row_inverse(modes[..., place], config, monitor)
-
-    def exact_inverse(modes: np.ndarray) -> np.ndarray:
-        return idst(modes, type=2) * (2 / halved * gain * 2.0 ** (last.fraction - from_modes.fraction))
-
-    def forward_2d(blocks: np.ndarray, monitor: Monitor) -> np.ndarray:
-        columns = spectral_solver.row_forward(blocks, config, monitor)[..., np.argsort(place)].swapaxes(-1, -2)
-        return spectral_solver.column_forward(columns[..., order], config, monitor)[..., np.argsort(place)]
-
-    def exact_forward_2d(blocks: np.ndarray) -> np.ndarray:
-        scale = gain * halved / 2 * 2.0 ** (config.column_forward.fraction - out_of.fraction)
-        return dst(exact_forward(blocks).swapaxes(-1, -2), type=2) * scale
-
-    def inverse_2d(modes: np.ndarray, monitor: Monitor) -> np.ndarray:
-        columns = spectral_solver.column_inverse(modes[..., place], config, monitor)[..., np.argsort(order)]
-        return spectral_solver.row_inverse(columns.swapaxes(-1, -2)[..., place], config, monitor)
-
-    def exact_inverse_2d(modes: np.ndarray) -> np.ndarray:
-        scale = 2 / halved * gain * 2.0 ** (from_modes.fraction - to_modes.fraction)
-        return exact_inverse((idst(modes, type=2) * scale).swapaxes(-1, -2))
-
-    return {
-        "dst_forward": (forward, exact_forward, 1),
-        "dst_inverse": (inverse, exact_inverse, 1),
-        "2-D forward": (forward_2d, exact_forward_2d, 2),
-        "2-D inverse": (inverse_2d, exact_inverse_2d, 2),
-    }
-
-
-def _blocks(
-    core: str, size: int, dimensions: int, config: Configuration, count: int
-) -> Iterator[tuple[str, int, np.ndarray]]:
-    """Name, amplitude and blocks: noise of several amplitudes and both signs, lone modes and lone words.
-
-    Full amplitude is what slopes, or a depth as deep as the range, can bring to the core.
-    """
-    shape = (size,) * dimensions
-    inverse = "inverse" in core
-    rng = np.random.default_rng(1180)
-    n, k = np.arange(size), np.arange(1, size + 1)
-    sines = np.sin(np.pi * np.outer(k, 2 * n + 1) / (2 * size))
-    chosen = np.unique(np.concatenate((k[:4], k[size // 2 - 1 : size // 2 + 2], k[-4:]))) - 1
-    if inverse:
-        # Modes of fields of depth from limit to limit within the range.
-        depth = 2.0 ** (config.depth.width - 1) * config.depth_range_px / config.depth_limit_px  # type: ignore[operator]
-        exact = transforms(config)[core][1]
-        unit = np.zeros((1, *shape))
-        unit[(0,) * (dimensions + 1)] = 1
-        per_mode = float(np.abs(exact(unit)).max())  # depth that a lone first mode of 1 makes
-        full = int(depth / per_mode)
-        lone = np.zeros((len(chosen), *shape))
-        for index, mode in enumerate(chosen):
-            lone[(index,) + (mode,) * dimensions] = full
-    else:
-        full = int(2 * config.gradient_limit / config.gradient_lsb)  # of the divergence of lone slopes
-        waves = sines[chosen]
-        lone = full * (waves if dimensions == 1 else waves[:, :, None] * waves[:, None, :])
-    yield "lone modes", full, np.rint(np.concatenate((lone, -lone))).astype(np.int64)
-    for share in (1, 16, 4096):
-        for sign in (1, -1):
-            # Noise spreads: its sum at one word of an inverse transform is far below that of a lone mode.
-            amplitude = max(1, full // share // (size**dimensions if inverse else 1))
-            noise = rng.integers(-amplitude, amplitude + 1, (count, *shape))
-            yield f"noise {'+' if sign > 0 else '-'}", amplitude, sign * noise
-    yield "noise + of 5 steps", 5, rng.integers(-5, 6, (count, *shape))
-
-
-def compliance(config: Configuration, count: int) -> list[Compliance]:
-    """Every transform core of a spectral configuration, over `count` random blocks (2-D: a 32nd, at least `FEWEST`)."""
-    rows = []
-    for core, (fixed, exact, dimensions) in transforms(config).items():
-        size = config.columns
-        zero = not np.any(fixed(np.zeros((1, *(size,) * dimensions), np.int64), Monitor()))
-        drawn = count if dimensions == 1 else max(FEWEST, count // 32)
-        for name, amplitude, blocks in _blocks(core, size, dimensions, config, drawn):
-            monitor = Monitor()
-            error = fixed(blocks, monitor) - exact(blocks.astype(float))
-            square, mean = (error**2).mean(axis=0), error.mean(axis=0)
-            rows.append(
-                Compliance(
-                    core,
-                    size,
-                    name,
-                    len(blocks),
-                    amplitude,
-                    float(np.abs(error).max()),
-                    float(square.max()),
-                    float(square.mean()),
-                    float(np.abs(mean).max()),
-                    float(abs(mean.mean())),
-                    _standard_errors(error),
-                    monitor.saturations.total(),
-                    zero,
-                )
-            )
-    return rows
-
-
-def _standard_errors(error: np.ndarray) -> float:
-    """How far the mean error of blocks (blocks, ..) is from zero, in standard errors: a bias shows as many."""
-    means = error.reshape(len(error), -1).mean(axis=1)
-    spread = float(means.std(ddof=1)) / np.sqrt(len(means))
-    return float(abs(means.mean())) / spread if spread else 0.0
 
 
 # Output.
@@ -460,21 +311,6 @@ def table(rows: list[Row]) -> str:
             f"{row.extreme:<34}{row.solver:<12}{row.grid:>10}{row.data_width:>5}{row.frames:>7,}{percent}"
             f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.told else 'no':<5}{row.wrapped:>8}"
             f"  {clipped}"
-        )
-    return "\n".join(lines)
-
-
-def compliance_table(rows: list[Compliance]) -> str:
-    head = f"{'core':<13}{'size':>5}  {'input':<20}{'blocks':>7}{'amplitude':>13}{'peak':>9}"
-    lines = [
-        head
-        + f"{'worst mse':>11}{'mse':>9}{'worst mean':>12}{'mean':>10}{'in s.e.':>8}{'clipped':>9}  zero in, zero out"
-    ]
-    for row in rows:
-        lines.append(
-            f"{row.core:<13}{row.size:>5}  {row.input:<20}{row.blocks:>7,}{row.amplitude:>13,}{row.peak:>9.2f}"
-            f"{row.worst_mean_square:>11.3f}{row.mean_square:>9.3f}{row.worst_mean:>12.4f}{row.mean:>10.5f}{row.mean_in_standard_errors:>8.2f}"
-            f"{row.saturations:>9,}  {'yes' if row.zero_in_zero_out else 'NO'}"
         )
     return "\n".join(lines)
 

@@ -10,7 +10,6 @@ Each figure names the command that remakes it.
 from __future__ import annotations
 
 import base64
-import html
 import json
 import os
 import sys
@@ -26,7 +25,7 @@ from commands.common import results, variables
 from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, MEMORY_MBIT, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
-from commands.run import reflex, sim
+from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, extremes, sweep
 from tactile_depth import reference
 from tactile_depth.configuration import COLUMNS, Configuration
@@ -38,57 +37,14 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.ticker import MaxNLocator
 
+from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Figure, page, picture, table, titled
+
 DEFAULT_OUT = ROOT / "build" / "report"
 SIZE = 128
 CONSECUTIVE = 1000  # frames, at least
 UM_PER_MM = 1000
 EXTREMES_SIZE = 64
 EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
-
-# Told apart without colour.
-LOOKS: dict[str, dict[str, Any]] = {
-    "spectral": {"color": "#08306b", "marker": "o", "linestyle": "-"},
-    "tridiagonal": {"color": "#e6550d", "marker": "s", "linestyle": "--"},
-}
-PUBLISHED_LOOK: dict[str, Any] = {
-    "color": "black",
-    "marker": "*",
-    "markersize": 13,
-    "linestyle": "none",
-    "label": "published",
-}
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A picture or table of the page."""
-
-    name: str
-    title: str
-    text: str
-    command: str
-    content: str  # HTML
-
-    def section(self) -> str:
-        return (
-            f"<section id='{self.name}'><h2>{html.escape(self.title)}</h2><p>{html.escape(self.text)}</p>"
-            f"{self.content}<p class='command'><code>{html.escape(self.command)}</code></p></section>"
-        )
-
-
-def picture(figure: Any, folder: Path, name: str) -> str:
-    """Save a figure as PNG; the HTML that shows it."""
-    path = folder / f"{name}.png"
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
-    return f"<img alt='{name}' src='data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}'>"
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    def line(cells: Sequence[str], tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
-
-    return f"<table>{line(head, 'th')}{''.join(line(row, 'td') for row in rows)}</table>"
 
 
 # Measuring.
@@ -420,18 +376,14 @@ def kept(command: Any, name: str) -> str:
     return f"<img alt='{name}' src='data:image/png;base64,{data}'>"
 
 
-def titled(tables: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]]) -> str:
-    return "".join(f"<h3>{html.escape(title)}</h3>{table(head, rows)}" for title, head, rows in tables)
-
-
 def reflex_figure(document: dict[str, Any]) -> Figure:
     rows, columns = document["grid"]
     text = (
         f"{rows} x {columns}, {document['clock_mhz']:g} MHz, a pin at {document['speed_mm_s']:g} mm/s. Every command "
         "near the sensor is the clock in which the RTL's pin `contact` rises. Diamonds: mean and standard deviation. "
     )
-    text += ". ".join(reflex.sentences(document)) + "."
-    content = kept(reflex, "reflex") + titled(list(reflex.tables(document).values()))
+    text += ". ".join(reflex_tables.sentences(document)) + "."
+    content = kept(reflex, "reflex") + titled(list(reflex_tables.tables(document).values()))
     command = f"make reflex N={rows} CLOCK_MHZ={document['clock_mhz']:g} SEED={document['seed']}"
     return Figure("reflex", "The reflex", text, command, content)
 
@@ -481,24 +433,6 @@ def hardware_figures() -> list[Figure]:
     ]
     found = [(figure, latest(flow, file)) for flow, file, figure in flows]
     return [figure(document) for figure, document in found if document is not None]
-
-
-STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; color: #111; }
-img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.85rem; margin: 1rem 0; }
-th, td { border: 1px solid #999; padding: 0.25rem 0.6rem; text-align: left; } th { background: #eee; }
-.command { color: #444; } code { font-size: 0.85rem; } nav a { margin-right: 1rem; }
-"""
-
-
-def page(figures: Sequence[Figure]) -> str:
-    links = "".join(f"<a href='#{figure.name}'>{html.escape(figure.title)}</a>" for figure in figures)
-    sections = "".join(figure.section() for figure in figures)
-    return (
-        "<!doctype html><html lang='en'><head><meta charset='utf-8'><title>tactile-depth: report</title>"
-        f"<style>{STYLE}</style></head><body><h1>tactile-depth: what it achieves</h1><nav>{links}</nav>{sections}"
-        "</body></html>"
-    )
 
 
 def build(folder: Path) -> Path:

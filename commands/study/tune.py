@@ -330,14 +330,8 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
             print(_none(search, solvers))
             return 1
 
-    counted = search.cost(best)
-    assert counted is not None
-    print(f"cheapest of {len(search.tried)} tried: {best}")
-    left = f"leaves a margin of {MARGIN:g} to {limits.tolerance:g}"
-    print(f"its worst frame of those tuned on: {search.tried[best]:.4f} % of peak, which {left}")
     default = next((at for solver in COLUMNS if build(at := Widths(solver, *DEFAULT_WIDTHS)) is not None), None)
-    base = search.cost(default) if default else None
-    print(f"it takes {compared(counted, base, limits)}{f'; in brackets against {default}' if base else ''}")
+    counted, base = _print_choice(search, best, default, limits)
     print(f"proof in RTL, on {len(proving.pixels)} frames that it was not tuned on:")
     proof = out / "proof"
     status = sim.run(replace(shaped(best), out=proof), proving)
@@ -373,6 +367,18 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     file = os.path.relpath(out / "config.json")
     print(f"proven: {worst:.4f} % of peak at worst, within {limits.tolerance:g}; make sim CONFIG={file}")
     return 0
+
+
+def _print_choice(search: Search, best: Widths, default: Widths | None, limits: Limits) -> tuple[Cost, Cost | None]:
+    """Print what was chosen and what it costs; return its cost and that of the default widths."""
+    counted = search.cost(best)
+    assert counted is not None
+    base = search.cost(default) if default else None
+    print(f"cheapest of {len(search.tried)} tried: {best}")
+    left = f"leaves a margin of {MARGIN:g} to {limits.tolerance:g}"
+    print(f"its worst frame of those tuned on: {search.tried[best]:.4f} % of peak, which {left}")
+    print(f"it takes {compared(counted, base, limits)}{f'; in brackets against {default}' if base else ''}")
+    return counted, base
 
 
 def _costs(counted: Cost, limits: Limits) -> dict[str, Any]:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from commands.common.variables import Mismatch
-from commands.study import baselines, report
-from commands.study.baselines import METHODS, WARM_UPS, Method, Prepared
+from commands.study import baseline_methods, baselines, report
+from commands.study.baseline_methods import METHODS, Method, Prepared
+from commands.study.baselines import WARM_UPS
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
@@ -40,7 +41,7 @@ def test_out_is_a_file(tmp_path):
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("method", [method for method in METHODS if not method.device], ids=lambda method: method.name)
 def test_methods_equal_the_reference(method, threads):
-    if problem := baselines.missing(method):
+    if problem := baseline_methods.missing(method):
         pytest.skip(f"{problem}: `make baselines` installs it")
     prepared = method.prepare(32, threads)
     f, wanted = baselines.frames(32)

@@ -7,18 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from commands.study import extremes
-from commands.study.extremes import (
-    EXTREMES,
-    compliance,
-    drift,
-    faults,
-    largest,
-    measure,
-    model_drift,
-    smallest,
-    transforms,
-)
+from commands.study import extremes, transform_noise
+from commands.study.extremes import EXTREMES, drift, faults, largest, measure, model_drift, smallest
+from commands.study.transform_noise import compliance, transforms
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, Configuration
 
@@ -85,7 +76,7 @@ def test_transforms_comply(data_width):
     for row in rows:
         assert row.zero_in_zero_out
         assert row.saturations == 0
-        assert row.mean_in_standard_errors < extremes.BIAS, row
+        assert row.mean_in_standard_errors < transform_noise.BIAS, row
         if row.input == "noise + of 5 steps":
             assert (
                 row.mean_square
@@ -99,7 +90,7 @@ def test_lone_modes_fill_the_range_that_noise_leaves_empty():
     config = Configuration(columns=SIZE)
     core = transforms(config)["2-D inverse"][0]
     largest_word = {}
-    for name, _, blocks in extremes._blocks("2-D inverse", SIZE, 2, config, 20):
+    for name, _, blocks in transform_noise._blocks("2-D inverse", SIZE, 2, config, 20):
         monitor = Monitor()
         largest_word[name] = max(largest_word.get(name, 0), int(np.abs(core(blocks, monitor)).max()))
         assert not monitor.saturations

@@ -6,27 +6,27 @@ import re
 import pytest
 
 from commands.common.repository import cores, sources
-from commands.verify import formal
+from commands.verify import formal, proofs
 
 QUICK = ("axis_skid", "burst_counter")
 CORES = list(cores())
 
 
 def proof(core):
-    return next(proof for proof in formal.PROOFS if proof.core == core)
+    return next(proof for proof in proofs.PROOFS if proof.core == core)
 
 
 @pytest.mark.parametrize("core", CORES)
 def test_every_core_is_proven_or_says_why_not(core):
-    proven = any(core == entry.core for entry in (*formal.PROOFS, *formal.STRUCTURES))
-    assert proven != (core in formal.WITHOUT_CONTROL), f"{core}: a bench in formal/ or a reason in WITHOUT_CONTROL"
+    proven = any(core == entry.core for entry in (*proofs.PROOFS, *proofs.STRUCTURES))
+    assert proven != (core in proofs.WITHOUT_CONTROL), f"{core}: a bench in formal/ or a reason in WITHOUT_CONTROL"
 
 
 def test_names_are_those_of_cores_and_benches():
-    assert {entry.core for entry in (*formal.PROOFS, *formal.STRUCTURES)} | set(formal.WITHOUT_CONTROL) == set(CORES)
-    benches = {f"fv_{entry.core}" for entry in formal.PROOFS} | set(formal.HELPERS)
+    assert {entry.core for entry in (*proofs.PROOFS, *proofs.STRUCTURES)} | set(proofs.WITHOUT_CONTROL) == set(CORES)
+    benches = {f"fv_{entry.core}" for entry in proofs.PROOFS} | set(formal.HELPERS)
     assert {path.stem for path in formal.BENCHES.rglob("*.sv")} == benches
-    names = [entry.name for entry in (*formal.PROOFS, *formal.STRUCTURES)]
+    names = [entry.name for entry in (*proofs.PROOFS, *proofs.STRUCTURES)]
     assert len(set(names)) == len(names)
 
 

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from commands.common import published
-from commands.run import bench, reflex, reflex_pictures
+from commands.run import bench, reflex, reflex_model, reflex_pictures
 from commands.study import report
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
@@ -53,56 +53,58 @@ def test_out_is_a_file(tmp_path):
 
 
 def setup(**changes):
-    return replace(reflex.Setup(speed=20, threshold=0.1, frame=2.5, exposure=0.5, read_out=0.9), **changes)
+    return replace(reflex_model.Setup(speed=20, threshold=0.1, frame=2.5, exposure=0.5, read_out=0.9), **changes)
 
 
 def test_draws_are_those_of_the_seed():
-    first, again, other = (reflex.draw(5, seed, "near") for seed in (1, 1, 2))
+    first, again, other = (reflex_model.draw(5, seed, "near") for seed in (1, 1, 2))
     for name in ("phase", "waiting", "servo", "noise"):
         np.testing.assert_array_equal(getattr(first, name), getattr(again, name))
         assert (getattr(first, name) != getattr(other, name)).any()
-    assert (first.phase != reflex.draw(5, 1, "host").phase).any()
+    assert (first.phase != reflex_model.draw(5, 1, "host").phase).any()
 
 
 def test_delays_are_distributed_as_stated():
     """Mean and standard deviation within five standard errors."""
-    draws = reflex.draw(TRIALS, 3, "host")
+    draws = reflex_model.draw(TRIALS, 3, "host")
     error = 5 / np.sqrt(TRIALS)
     assert draws.phase.mean() == pytest.approx(0.5, abs=error / np.sqrt(12))
     assert draws.phase.std() == pytest.approx(1 / np.sqrt(12), abs=error / np.sqrt(12))
     shares = np.bincount(draws.waiting) / TRIALS
-    np.testing.assert_allclose(shares, np.full(reflex.DRIVER_BUFFERS, 1 / reflex.DRIVER_BUFFERS), atol=error, rtol=0)
-    found = reflex.times(setup(), draws, np.zeros(TRIALS, int), np.zeros(TRIALS), np.zeros(TRIALS))
+    np.testing.assert_allclose(
+        shares, np.full(reflex_model.DRIVER_BUFFERS, 1 / reflex_model.DRIVER_BUFFERS), atol=error, rtol=0
+    )
+    found = reflex_model.times(setup(), draws, np.zeros(TRIALS, int), np.zeros(TRIALS), np.zeros(TRIALS))
     servo = found.motion - found.command
-    assert servo.mean() == pytest.approx(reflex.SERVO_MS, abs=error * reflex.SERVO_SPREAD_MS)
-    assert servo.std() == pytest.approx(reflex.SERVO_SPREAD_MS, abs=error * reflex.SERVO_SPREAD_MS)
+    assert servo.mean() == pytest.approx(reflex_model.SERVO_MS, abs=error * reflex_model.SERVO_SPREAD_MS)
+    assert servo.std() == pytest.approx(reflex_model.SERVO_SPREAD_MS, abs=error * reflex_model.SERVO_SPREAD_MS)
 
 
 def test_a_trial_by_hand():
-    draws = reflex.Draws(np.array([0.4]), np.array([2]), np.array([1.0]), np.array([0]))
+    draws = reflex_model.Draws(np.array([0.4]), np.array([2]), np.array([1.0]), np.array([0]))
     one = setup(transfer=3)
     assert one.exposed(0.4, 2) == pytest.approx(6.0)
     assert one.depth(0.4, 2) == pytest.approx(20e-3 * (6.0 - 0.625))
     assert one.depth(0.4, -1) == 0
-    assert one.depth(0.4, 1000) == reflex.STOP_MM
-    found = reflex.times(one, draws, np.array([2]), np.array([0.25]), np.array([0.5]))
+    assert one.depth(0.4, 1000) == reflex_model.STOP_MM
+    found = reflex_model.times(one, draws, np.array([2]), np.array([0.25]), np.array([0.5]))
     assert found.command[0] == pytest.approx(6.0 + 0.9 * 2.5 + 3 + 2 * 2.5 + 0.25 + 0.5)
-    assert found.motion[0] == pytest.approx(found.command[0] + reflex.SERVO_MS + reflex.SERVO_SPREAD_MS)
+    assert found.motion[0] == pytest.approx(found.command[0] + reflex_model.SERVO_MS + reflex_model.SERVO_SPREAD_MS)
     assert sum(part[0] for part in found.parts.values()) == pytest.approx(found.motion[0])
 
 
 def test_rank_sum():
     near, host = np.arange(50.0), 60 + np.arange(81.0)
-    assert reflex.rank_sum(near, host)["U"] == 0
-    assert reflex.rank_sum(near, host)["p"] < 1e-20
-    assert reflex.rank_sum(np.array([1.0, 4.0]), np.array([2.0, 3.0]))["U"] == 2  # 4 beats both
+    assert reflex_model.rank_sum(near, host)["U"] == 0
+    assert reflex_model.rank_sum(near, host)["p"] < 1e-20
+    assert reflex_model.rank_sum(np.array([1.0, 4.0]), np.array([2.0, 3.0]))["U"] == 2  # 4 beats both
 
 
 def test_published_spread():
     mean, spread = published.REFLEX["near"]["motion"]
-    assert reflex.within_published({"mean": mean - 0.99 * spread, "sd": spread})
-    assert not reflex.within_published({"mean": mean + 1.01 * spread, "sd": 1})
-    assert not reflex.within_published({"mean": mean, "sd": 1.01 * spread})
+    assert reflex_model.within_published({"mean": mean - 0.99 * spread, "sd": spread})
+    assert not reflex_model.within_published({"mean": mean + 1.01 * spread, "sd": 1})
+    assert not reflex_model.within_published({"mean": mean, "sd": 1.01 * spread})
 
 
 @pytest.mark.parametrize(
@@ -147,8 +149,8 @@ def test_the_loop_on_the_rtl(tmp_path, monkeypatch):
     document = json.loads((out / "reflex.json").read_text())
 
     request = reflex.parse([*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])
-    draws = reflex.draw(request.trials, request.seed, "near")
-    assert reflex.spacing(request)[0] != reflex.spacing(reflex.parse(SMALL))[0]
+    draws = reflex_model.draw(request.trials, request.seed, "near")
+    assert reflex_model.spacing(request)[0] != reflex_model.spacing(reflex.parse(SMALL))[0]
     once = replace(request, trials=1)  # of the same draws
     faster = reflex.loop(once, setup(threshold=document["threshold_mm"]), draws)
     for solver, one in zip(COLUMNS, faster, strict=True):

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables and sentences that make reflex prints and the report shows."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from commands.run.reflex_model import (
+    SCALES,
+)
+
+
+def plus_minus(values: dict[str, Any]) -> str:
+    return f"{values['mean']:.1f} +- {values['sd']:.1f}"
+
+
+def sub_frame_rows(document: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Return a row for each solver: where in the frame that leaves the deciding depth stands."""
+    clock = document["clock_mhz"]
+    pixels = math.prod(document["grid"])
+    places: list[tuple[str, ...]] = []
+    for solver, found in document["sub_frame"]["solvers"].items():
+        place, contact = found["place"], found["last_pixel_to_contact"]
+        places.append(
+            (
+                solver,
+                f"{found['last_pixel_to_first_depth']:,}",
+                f"{place['mean']:,.0f} ({place['min']:,.0f} to {place['max']:,.0f})",
+                f"{100 * place['mean'] / pixels:.0f} %",
+                f"{contact['mean']:,.0f} ({contact['min']:,.0f} to {contact['max']:,.0f})",
+                f"{contact['mean'] / clock:.1f}",
+                ", ".join(map(str, found["deciding_to_contact"])),
+            )
+        )
+    return places
+
+
+def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+    """What the command prints and the report shows: title, head and rows of each table."""
+    near, host, published = document["near"], document["host"], document["published"]
+
+    def row(name: str, path: dict[str, Any]) -> tuple[str, ...]:
+        motion = path["motion"]
+        keys = [key for key in ("command_against_host", "motion_against_host") if key in path]
+        against = " / ".join(f"{path[key]['U']:g}" for key in keys) or "-"
+        spread = f"{motion['min']:.1f} to {motion['max']:.1f}"
+        return (name, str(motion["trials"]), plus_minus(path["command"]), plus_minus(motion), spread, against)
+
+    def printed(name: str, path: dict[str, Any], against: str) -> tuple[str, ...]:
+        (command, command_sd), (motion, motion_sd) = path["command"], path["motion"]
+        low, high = path["range"]
+        spread = f"{low:.1f} to {high:.1f}"
+        shown = (f"{command:.1f} +- {command_sd:.1f}", f"{motion:.1f} +- {motion_sd:.1f}")
+        return (name, str(path["trials"]), *shown, spread, against)
+
+    comparison = [
+        *(row(f"near the sensor, {solver}", path) for solver, path in near.items()),
+        printed("near the sensor, published", published["near"], "0 / 0"),
+        row("host", host),
+        printed("host, published", published["host"], "-"),
+    ]
+    first = next(iter(near))
+    parts: list[tuple[str, ...]] = [
+        *(
+            (f"near, {first}", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
+            for name, part in near[first]["parts"].items()
+        ),
+        *(("host", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}") for name, part in host["parts"].items()),
+    ]
+    clock, places = document["clock_mhz"], sub_frame_rows(document)
+    sensitive: list[tuple[str, ...]] = []
+    for path, base in (("near", near[first]), ("host", host)):
+        for line in document["sensitivity"][path]:
+            scaled = [line[f"x{scale:g}"] for scale in SCALES]
+            shifts = [f"{one['mean'] - base['motion']['mean']:+.2f}" if one else "-" for one in scaled]
+            spreads = [f"{one['sd']:.1f}" if one else "-" for one in scaled]
+            name = f"near, {first}" if path == "near" else path
+            sensitive.append((name, line["delay"], f"{line['value']:.4g}", *shifts, *spreads))
+    return {
+        "results": (
+            "Contact to command and to motion, ms",
+            ("path", "trials", "to command", "to motion", "range", "U to command / to motion"),
+            comparison,
+        ),
+        "parts": ("Where the time goes, ms", ("path", "part", "mean", "sd"), parts),
+        "delays": (
+            "The delays",
+            ("path", "delay", "distribution", "source"),
+            [tuple(delay.values()) for delay in document["delays"]],
+        ),
+        "sensitivity": (
+            "Contact to motion with one number halved or doubled, ms",
+            ("path", "number", "value", "mean moves by, x 0.5", "x 2", "sd, x 0.5", "x 2"),
+            sensitive,
+        ),
+        "sub_frame": (
+            f"The deciding depth in the frame that leaves, clocks (at {clock:g} MHz)",
+            (
+                *("solver", "last pixel to first depth", "depths before the deciding one", "of the frame"),
+                *("last pixel to contact", "us", "deciding depth to contact"),
+            ),
+            places,
+        ),
+    }
+
+
+def sentences(document: dict[str, Any]) -> list[str]:
+    """What the tables say, with their numbers."""
+    first, found = next(iter(document["near"].items()))
+    earlier, why = document["sub_frame"]["tridiagonal_earlier_clocks"], document["difference"]
+    share = 100 * earlier["mean_us"] / 1000 / found["command"]["mean"]
+    verdict = "within" if all(one["within_published"] for one in document["near"].values()) else "NOT within"
+    mean, spread = document["published"]["near"]["command"]
+
+    def speed(key: str) -> str:
+        return "infinitely many" if why[key] is None else f"{why[key]:.0f}"
+
+    return [
+        f"contact to motion near the sensor is {verdict} the published mean and trial-to-trial spread, both solvers",
+        f"the tridiagonal solver's early start: {earlier['mean']:,.0f} clocks, {earlier['mean_us']:.1f} us, "
+        f"{share:.1f} % of contact to command",
+        f"growing to the threshold takes {why['growth_ms']:.1f} ms here; the published mean of {mean} ms would leave "
+        f"it {why['growth_for_published_mean_ms']:.1f}, an approach of {speed('speed_for_published_mean_mm_s')} mm/s",
+        f"the mean contact to motion stays within the published mean +- spread for an approach of about "
+        f"{speed('slowest_within_mm_s')} to {speed('quickest_within_mm_s')} mm/s",
+        f"the frame clock alone gives a spread of {why['spread_of_frame_clock_ms']:.2f} ms; of the published {spread} "
+        f"ms {why['spread_left_ms']:.1f} ms are left to what differs from press to press and is not simulated",
+        f"double precision decides in the same frame in {document['same_frame_by_double_precision']} of "
+        f"{found['motion']['trials']} trials ({first})",
+    ]

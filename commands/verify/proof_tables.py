@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables that the proofs of make formal read, with contents that no proof depends on."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
+
+
+def gradient_rom(folder: Path) -> None:
+    """Eight pairs of slopes of one bit, every pair twice."""
+    write_words(folder / "gradient.hex", [bin * 5 % 4 for bin in range(8)], 2)
+
+
+def quadratic_roms(folder: Path) -> None:
+    """Words of one bit, arbitrary ones, another order in every polynomial."""
+    choose = random.Random(1)
+    write_quadratic(folder, np.array([-choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
+
+
+def gain_rom(nodes: int) -> Callable[[Path], None]:
+    """Gains of one bit."""
+    gains = np.array([node % 3 & 1 for node in range(nodes)])
+    return lambda folder: write_gains(folder, np.stack((gains, gains, gains), axis=-1), 1)
+
+
+def floor_rom(folder: Path) -> None:
+    """Two nodes of two bits."""
+    write_floor(folder, np.array([-1, 1]), 2)
+
+
+def transform_roms(folder: Path) -> None:
+    """Factors of 2 bits for a transform of 8: arbitrary ones, that of no word like the next."""
+    for direction in ("forward", "inverse"):
+        for file in (f"twiddle_{direction}_0.hex", f"phase_{direction}.hex"):
+            write_words(folder / file, [(5 * n + 9) % 64 for n in range(8)], 6)
+
+
+def factor_rom(block: int) -> Callable[[Path], None]:
+    """Factors {-Im, Im, Re} of 5 bits, every field of every word another."""
+    return lambda folder: write_words(
+        folder / "factors.hex", [(3 * n + 2) % 32 << 10 | (3 * n + 1) % 32 << 5 | 3 * n % 32 for n in range(block)], 15
+    )
+
+
+def reciprocal_rom(size: int) -> Callable[[Path], None]:
+    """Words {S, M}, every one another; square.hex: M 2^S for every burst and word."""
+
+    def write(folder: Path) -> None:
+        words = [(index % 2, 1 + 3 * index) for index in range(size * (size + 1) // 2)]
+        write_words(folder / "reciprocal.hex", [shift << 8 | mantissa for shift, mantissa in words], 9)
+        square = []
+        for p in range(size):
+            for t in range(size):
+                larger, smaller = max(p, t), min(p, t)
+                shift, mantissa = words[larger * (larger + 1) // 2 + smaller]
+                square.append(mantissa << shift)
+        write_words(folder / "square.hex", square, 10)
+
+    return write
+
+
+def thomas_roms(
+    rows: int, size: int, words: int, width: int, settled_width: int, shift_width: int
+) -> Callable[[Path], None]:
+    """Tables of arbitrary contents for thomas_table.sv; square.hex: {shift, coefficient} for every row and position."""
+
+    def write(folder: Path) -> None:
+        choose = random.Random(1)
+        address_width = (words - 1).bit_length()
+        settled = [position % (rows - 1) for position in range(size)]  # settled at once, later, in the last but one row
+        base = [sum(settled[:position]) + position for position in range(size)]
+        inner = [choose.randrange(1 << width) for _ in range(words)]
+        last = [choose.randrange(1 << width) for _ in range(size)]
+        shift = [choose.randrange(1 << shift_width) for _ in range(size)]
+        assert base[-1] + settled[-1] < words
+        write_words(folder / "thomas.hex", inner, width)
+        index = [b << settled_width | s for b, s in zip(base, settled, strict=True)]
+        write_words(folder / "thomas_index.hex", index, address_width + settled_width)
+        ends = [s << width | c for s, c in zip(shift, last, strict=True)]
+        write_words(folder / "thomas_last.hex", ends, shift_width + width)
+        square = [inner[b + min(row, s)] for row in range(rows - 1) for b, s in zip(base, settled, strict=True)]
+        write_words(folder / "square.hex", square + ends, shift_width + width)
+
+    return write
