@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // asic_part_bench: gates of a core, with delays or without, on operands that go by twice.
 //
-// operands.txt holds the inputs of `part`, a line for each clock. With DELAYS the design in it is annotated from part.sdf.
+// operands.txt holds the inputs of `part`, one line per clock. With DELAYS the design takes its delays from part.sdf.
 // The first pass fills the registers; toggles of the second pass go to part.vcd. Simulation only.
 
 `timescale 1ns/1ps
