@@ -54,8 +54,8 @@ async def reset_in_mid_row(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def a_frame_begins_afresh(dut):
-    """After part of a row."""
+@cocotb.parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
+async def a_frame_begins_afresh(dut, rows, words):
+    """After `rows` rows and `words` words of the frame before."""
     (size,) = parameters(dut, "Size")
-    for strays in (1, size - 1, size + 1):
-        await check(dut, strays=strays)
+    await check(dut, strays=rows * size + words)
