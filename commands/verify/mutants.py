@@ -1,30 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """All mutants of a core in one netlist, behind a register that selects one; and the core's testbench run on each.
 
-A core's structure (parameters, sources, ROM files, test filter) is one that its own test builds: the test is called
-with something in place of `run_tb` that keeps what it is given.
+The structure of the core comes from its own test, see structures.py.
 """
 
 from __future__ import annotations
 
-import importlib
-import inspect
 import json
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from commands.common import repository
 from commands.common import simulator as simulation
+from commands.verify.structures import Structure
 
 SELECTOR = "mutsel"
 MANY = 60  # of what tests repeat to meet what comes seldom (tb/stream.py), where it is counted what they meet
 # A register becomes an input, its value, and an output, what it takes next.
-GROUPS = ("both", "verilator", "icarus", "regress")  # of the mark `structures` in tests/conftest.py
 OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
 dffunmap @register
 expose -evert-dff -sep __ w:{name} @register %u
@@ -38,60 +34,6 @@ lint_off -file "*wrapper.sv"
 lint_off -rule UNOPTFLAT -file "*mutants.v"
 lint_off -rule UNOPTFLAT -file "*wrapper.sv"
 """
-
-
-@dataclass(frozen=True)
-class Structure:
-    """What a test hands to `run_tb`."""
-
-    toplevel: str
-    sources: Sequence[str] | None
-    parameters: Mapping[str, int | str]
-    test_module: str
-    roms: Callable[[Path], None] | None
-    environment: Mapping[str, str]
-
-
-def structure(core: str, index: int) -> Structure:
-    """The index-th structure of a core's test."""
-    file = repository.cores()[core].test
-    assert file is not None, core
-    module = importlib.import_module(repository.module(file))
-    tests = [
-        function
-        for name, function in vars(module).items()
-        if name.startswith("test_")
-        and inspect.isfunction(function)
-        and "run_tb" in inspect.signature(function).parameters
-    ]
-    test = tests[0]  # the core's own; others run it in another way
-    chosen = {"simulator": "verilator"} if "simulator" in inspect.signature(test).parameters else {}
-    kept: list[Structure] = []
-
-    def keep(
-        toplevel: str,
-        sources: Sequence[str] | None,
-        parameters: Mapping[str, int | str] | None = None,
-        test_module: str | None = None,
-        roms: Callable[[Path], None] | None = None,
-        environment: Mapping[str, str] | None = None,
-        files: Sequence[Path] = (),
-    ) -> None:
-        assert not files, f"{core}: a bench of SystemVerilog"
-        bench = test_module or repository.testbench(toplevel)
-        kept.append(Structure(toplevel, sources, parameters or {}, bench, roms, environment or {}))
-
-    cases: list[tuple[Any, ...]] = [()]
-    names: list[str] = []
-    for mark in getattr(test, "pytestmark", []):
-        if mark.name == "structures":
-            names = mark.args[0].split()
-            cases = [case for group in GROUPS for case in mark.kwargs.get(group, [])]
-        elif mark.name == "parametrize":
-            names = [mark.args[0]] if isinstance(mark.args[0], str) else list(mark.args[0])
-            cases = [case if len(names) > 1 else (case,) for case in mark.args[1]]
-    test(keep, **chosen, **dict(zip(names, cases[index], strict=True)))
-    return kept[0]
 
 
 def yosys(script: str, folder: Path, name: str) -> None:

@@ -24,6 +24,7 @@ from tqdm import tqdm
 from commands.common import repository, variables
 from commands.common import simulator as simulation
 from commands.verify import mutants, mutate
+from commands.verify.structures import Structure, structure
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import synthetic
@@ -50,7 +51,7 @@ class Case:
 
     core: str
     name: str
-    structure: mutants.Structure
+    structure: Structure
     simulators: Mapping[str, str] = field(default_factory=lambda: {"icarus": ""})  # each with a filter of the tests
 
 
@@ -73,14 +74,14 @@ def cases(names: Sequence[str]) -> list[Case]:
             found += [whole(solver) for solver in COLUMNS]
             continue
         for index in mutate.CORES[name].structures:
-            found.append(Case(name, f"{name}-{index}", mutants.structure(name, index)))
+            found.append(Case(name, f"{name}-{index}", structure(name, index)))
     return found
 
 
 def whole(solver: str) -> Case:
     choices: dict[str, Any] = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
     config = Configuration(**choices)
-    structure = mutants.Structure(
+    built = Structure(
         WHOLE,
         None,
         top_parameters(config),
@@ -88,7 +89,7 @@ def whole(solver: str) -> Case:
         lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         {"CONFIGURATION": json.dumps(choices)},
     )
-    return Case(WHOLE, f"{WHOLE}-{solver}", structure, WHOLE_SIMULATORS)
+    return Case(WHOLE, f"{WHOLE}-{solver}", built, WHOLE_SIMULATORS)
 
 
 def library() -> Path:

@@ -177,7 +177,7 @@ def gradient_lookup(_: Mapping[str, int]) -> Protocol:
     word, read = "live & ~rst & en & out_valid", "live & reads"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": "live & ~rst & en"}
     compare |= {"table_read_gx": read, "table_read_gy": read, "table_in_use": "live"}
-    return Protocol(LIVE + registers, assume, compare, decides=("in_place",))
+    return Protocol(LIVE + registers, assume, compare)
 
 
 def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
@@ -216,7 +216,7 @@ def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
     word = f"{MOVES} & out_valid"
     compare = {"out_gx": word, "out_gy": word, "out_place": word, "out_valid": MOVES, "table_in_use": "live"}
     compare |= {"saturations": "live & ~rst", "table_read_word": "read"}
-    return Protocol(LIVE + registers, assume, compare, decides=("in_place",))
+    return Protocol(LIVE + registers, assume, compare)
 
 
 def bursts(size: int, rows: int | None, out_size: int | None = None, word: str = "") -> Protocol:
@@ -410,7 +410,7 @@ def reference_capture(parameters: Mapping[str, int]) -> Protocol:
     compare = dict.fromkeys(("busy", "done", "map_read", "map_write"), "live & ~rst")
     compare |= dict.fromkeys(("map_write_node", "map_write_gains"), "live & ~rst & map_write")
     compare |= {"map_read_node": "live & ~rst & map_read"}
-    return Protocol(LIVE + registers, (), compare, given, decides=("log2_frames",))
+    return Protocol(LIVE + registers, (), compare, given)
 
 
 def depth_frames(parameters: Mapping[str, int]) -> tuple[str, dict[str, str]]:
@@ -439,7 +439,7 @@ def floor_capture(parameters: Mapping[str, int]) -> Protocol:
     registers, given = depth_frames(parameters)
     compare = {"busy": "live & ~rst", "done": "live & ~rst", "map_write": "live"}
     compare |= dict.fromkeys(("map_write_node", "map_write_floor"), "live & map_write")
-    return Protocol(LIVE + registers, (), compare, given, decides=("log2_frames",))
+    return Protocol(LIVE + registers, (), compare, given)
 
 
 def frame_output(_: Mapping[str, int]) -> Protocol:

@@ -8,7 +8,7 @@ import pytest
 
 from commands.common import repository
 from commands.verify import mutate
-from commands.verify.equivalence import HOLDS, Gates, Graph, Readers, Shadow, Spans, confined
+from commands.verify.equivalence import HOLDS, Gates, Graph, confined
 from commands.verify.mutants import SELECTOR
 
 SMALL = "burst_counter"
@@ -37,8 +37,9 @@ def test_mutants_are_killed_or_proven_equivalent(outcome):
     assert seen.passed
 
 
-def test_holes_are_seen(outcome):
+def test_holes_are_seen(outcome, monkeypatch):
     """Without a reset in mid-burst nobody sees a counter that is not reset; without pauses, none that does not wait."""
+    monkeypatch.setattr(mutate, "CORE_BAR", 99.0)  # of 40 mutants one is a hole
     seen = outcome(tests="positions/pause=0.0/before=0$")
     assert seen.different > 0
     assert not seen.passed
@@ -76,34 +77,7 @@ def contrary(mutant):
     inputs = {"any_en": en, "any_rst": rst, "any_x": x, f"{SELECTOR}[0]": selector}
     latches = [(latch, to, latch) for latch, to in following.items()]
     ands = [(2 * (12 + index), a, b) for index, (a, b) in enumerate(gates.ands)]
-    return Graph(inputs, latches, outputs, ands, frozenset())
-
-
-@pytest.mark.parametrize(("mutant", "proven"), [("equal", True), ("loose", False), ("patient", False)])
-def test_what_only_a_clock_with_the_enable_makes(tmp_path, mutant, proven):
-    spans = Spans(contrary(mutant))
-    assert not spans.prove(1, tmp_path, 10), "the plain induction does for it: a poor test"
-    assert spans.prove_between_pauses(1, tmp_path, 10) == proven
-
-
-@pytest.mark.parametrize(("stays", "proven"), [(False, True), (True, False)])
-def test_where_a_difference_can_go(tmp_path, stays, proven):
-    """A register that takes a word, and in the mutant one in every clock: seen where it is looked at later as well."""
-    take, rst, x, selector, word, valid = range(2, 2 * 7, 2)
-    gates = Gates(7)
-    takes = gates.either((take, selector))
-    following = {
-        word: gates.either((gates.both(takes, x), gates.both(takes ^ 1, word))),
-        valid: gates.both(rst ^ 1, gates.either((take, valid)) if stays else take),
-    }
-    graph = Graph(
-        {"any_take": take, "any_rst": rst, "any_x[0]": x, f"{SELECTOR}[0]": selector},
-        [(latch, to, latch) for latch, to in following.items()],
-        {"out[0]": word, "looked_at_out": gates.both(valid, rst ^ 1), HOLDS: 1},
-        [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
-        frozenset((take, rst)),
-    )
-    assert Shadow(graph, 1, Readers(graph)).never(tmp_path, "shadow.aig", 5) == proven
+    return Graph(inputs, latches, outputs, ands)
 
 
 def turning(every):
@@ -122,7 +96,6 @@ def turning(every):
         [(latch, to, latch) for latch, to in following.items()],
         {"out[0]": seen, "looked_at_out": gates.both(rst ^ 1, 1 if every else even), HOLDS: 1},
         [(2 * (7 + index), a, b) for index, (a, b) in enumerate(gates.ands)],
-        frozenset(),
     )
 
 
