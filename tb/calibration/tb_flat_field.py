@@ -9,7 +9,7 @@ from tactile_depth.calibration.flat_field import dark_pixels, deviations, flat_c
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import FLAT_FIELD
 from tb.gains import Gains, Grid, random_gains, reads_as_a_pause_ends
-from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, send_apart
+from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, sample, send_apart
 
 PIXELS = 2048  # that a test sends, at least
 PIXEL = ["pixel", "place"]
@@ -120,7 +120,7 @@ async def at_power_up(dut):
 
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)]))
+@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(dut, gap, pause):
     device = Field(dut, gap, pause)
     await device.start()

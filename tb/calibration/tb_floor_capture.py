@@ -11,7 +11,7 @@ from tactile_depth.calibration.floor_capture import CLOCKS, captured_floor
 from tb.calibration.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, random_depths
 from tb.gains import Grid
-from tb.stream import REGRESS, Bench, parameters
+from tb.stream import REGRESS, Bench, parameters, sample
 
 WORDS = 2048  # that a test sends, about
 
@@ -111,7 +111,9 @@ class Capture:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3), (0.0, 0.5), (0.6, 0.0)]), log2=[0, 1, 3])
+@cocotb.parametrize(
+    (("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), log2=sample([0, 1, 3])
+)
 async def captures(dut, gap, pause, log2):
     """Of frames in a row; what came before counts for nothing."""
     device = Capture(dut, gap, pause)

@@ -11,7 +11,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.calibration.reference_capture import reference_capture, reference_capture_clocks
 from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH
 from tb.calibration.capture_bench import request, request_after
-from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, send_apart
+from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, sample, send_apart
 
 PIXELS = 512  # that a test sends, about
 SUM_CLOCKS = 5  # from a pixel to its sum in the memory
@@ -166,7 +166,7 @@ class Capture:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), log2=[0, 1, 3])
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), log2=sample([0, 1, 3]))
 async def captures(dut, gap, pause, log2):
     """Of frames in a row, without and with broken ones between."""
     device = Capture(dut, gap, pause)

@@ -14,7 +14,7 @@ from tactile_depth.contact.contact_events import CLOCKS_TO_TOUCHING, WORDS, Cont
 from tb.axis import PROFILES, profile
 from tb.stream import CLOCK_NS, REGRESS, parameters
 
-FRAMES = {0.0: 1000, 0.1: 1000 if REGRESS else 200}  # by the share of gaps
+FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 400, 0.1: 100}  # by the share of gaps
 WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
 
 

@@ -16,6 +16,7 @@ from tb.stream import (
     configuration,
     corners,
     interrupt,
+    sample,
     send_apart,
     uniform,
 )
@@ -64,7 +65,7 @@ def codes(frames, amplitude):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)]))
+@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)])))
 async def frames(dut, gap, pause):
     assert not await check(dut, codes(4, 0.002), gap, pause)
 

@@ -46,7 +46,7 @@ STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["CONTROL"]
 PINS = {"reference": "capture", "floor": "floor"}  # of what measures a table
 COUNTER_SIGNALS = {name: name.lower() for name in COUNTERS} | {"SATURATIONS": "saturations_count"}
 HELD = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE", "TIMEOUT", "DARK_LEVEL")  # as outputs
-RANDOM_CLOCKS = 10_000 if REGRESS else 3_000
+RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
 TABLE_CLOCKS = 4  # from the one in which an entry is asked for to that which takes its words, both counted
 
 

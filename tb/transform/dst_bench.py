@@ -10,7 +10,7 @@ import numpy as np
 from tactile_depth.latency import dst_forward_latency, dst_inverse_latency
 from tactile_depth.transform.dst_forward import dst_forward
 from tactile_depth.transform.dst_inverse import dst_inverse
-from tb.stream import MANY, check_bursts, corners, extremes, parameters, uniform, with_and_without_en
+from tb.stream import MANY, check_bursts, corners, extremes, parameters, sample, uniform, with_and_without_en
 
 CORES = {"dst_forward": (dst_forward, dst_forward_latency), "dst_inverse": (dst_inverse, dst_inverse_latency)}
 CLOCKS_OF_A_BURST_EDGE = 12  # in which a burst begins to enter, or to leave
@@ -30,7 +30,7 @@ async def check(dut, words, **behaviour):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0, None])
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=sample([0.3, 1.0, None]))
 async def bursts(dut, gap, pause, amplitude):
     size, width = parameters(dut, "Size", "InWidth")
     shape = (5, size, 1)
@@ -55,7 +55,7 @@ async def limits(dut):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize(late=[False, True], clips=[False, True])
+@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
 async def reset_in_mid_burst(dut, late, clips):
     """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
     size, width = parameters(dut, "Size", "InWidth")
