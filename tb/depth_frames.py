@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames of depth as auto_zero and floor_capture take them: words with the marks of frames and rows."""
 
+import random
+from typing import Any
+
 import numpy as np
 
 from tb.stream import StreamDriver, send_apart
@@ -8,7 +11,7 @@ from tb.stream import StreamDriver, send_apart
 FIELDS = ["user", "last", "frame_end", "data"]
 
 
-def depth_words(frame):
+def depth_words(frame: Any) -> list[Any]:
     """Depths (rows, columns) as tuples in the order of FIELDS."""
     rows, columns = frame.shape
     end = rows * columns - 1
@@ -16,7 +19,7 @@ def depth_words(frame):
     return [(at == 0, at % columns == columns - 1, at == end, depth) for at, depth in enumerate(data)]
 
 
-def random_depths(shape, width, chance):
+def random_depths(shape: Any, width: int, chance: random.Random) -> Any:
     """Anything, the limits alone, all of one, or small, by chance; the mean of small ones is often a tie."""
     generator = np.random.default_rng(chance.getrandbits(32))
     low, high = -(1 << width - 1), (1 << width - 1) - 1
@@ -33,17 +36,17 @@ def random_depths(shape, width, chance):
 class DepthDriver(StreamDriver):
     """Between words, marks and data are anything."""
 
-    def __init__(self, dut, bench, gap):
+    def __init__(self, dut: Any, bench: Any, gap: float) -> None:
         self.bench, self.gap = bench, gap
         super().__init__(dut, "in", "valid", FIELDS)
 
-    def idle(self):
+    def idle(self) -> None:
         super().idle()
         for field in FIELDS:
             pin = getattr(self.bus, field)
             pin.value = self.bench.random.getrandbits(len(pin))
 
-    async def words(self, words):
+    async def words(self, words: Any) -> None:
         """A frame, or part of one."""
         if self.gap:
             await send_apart(self.bench, self, words, self.gap)

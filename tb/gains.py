@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bus and capture of gain_map, and of the cores around it: both banks as they should stand, change-overs."""
 
+import random
 from dataclasses import dataclass
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -9,19 +11,19 @@ from cocotb.triggers import FallingEdge, RisingEdge
 
 from tactile_depth.calibration.flat_field import unit_gains
 from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
-from tactile_depth.configuration import GAIN_WIDTH, Format
+from tactile_depth.configuration import GAIN_WIDTH, Configuration, Format
 from tb.stream import parameters, places
 
 READ_CLOCKS = 3  # from table_read to the gain
 PAUSED = 4  # clocks of a pause before its last
 
 
-def first_gains(rows, columns, channels, width):
+def first_gains(rows: int, columns: int, channels: int, width: int) -> Any:
     """At power-up: every word another, (node rows, node columns, channels)."""
     return places(rows * columns * channels, width).reshape(rows, columns, channels) & (1 << width) - 1
 
 
-def random_gains(config, chance, channels=3, width=GAIN_WIDTH):
+def random_gains(config: Configuration, chance: random.Random, channels: int = 3, width: int = GAIN_WIDTH) -> Any:
     """Of the nodes: anything, the limits alone, or like those of a sensor, by chance."""
     generator = np.random.default_rng(chance.getrandbits(32))
     shape = (*config.reference_nodes, channels)
@@ -46,12 +48,12 @@ class Grid:
     depth: Format  # of the words of the nodes
 
     @classmethod
-    def of(cls, dut, width="Width"):
+    def of(cls, dut: Any, width: Any = "Width") -> Any:
         rows, columns, block_log2, width = parameters(dut, "Rows", "Columns", "BlockLog2", width)
         return cls(rows, columns, block_log2, Format(width, 0))
 
     @property
-    def reference_nodes(self):
+    def reference_nodes(self) -> tuple[Any, ...]:
         return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
 
@@ -63,7 +65,7 @@ class Gains:
     capture_pin = "capture_gains"
     width, per_node = GAIN_WIDTH, ENTRIES_PER_NODE
 
-    def __init__(self, dut, config):
+    def __init__(self, dut: Any, config: Configuration) -> None:
         self.dut, self.config = dut, config
         self.banks = [self.at_power_up(), self.at_power_up()]
         self.channels = self.banks[0].shape[-1]
@@ -75,17 +77,17 @@ class Gains:
         if self.reads_captured:
             dut.capture_read.value = 0
 
-    def at_power_up(self):
+    def at_power_up(self) -> Any:
         return unit_gains(self.config)
 
-    def random(self, chance):
+    def random(self, chance: random.Random) -> Any:
         return random_gains(self.config, chance)
 
-    def entries(self, words):
+    def entries(self, words: Any) -> Any:
         """What the bus writes: index to word."""
         return table_entries(words)
 
-    async def settle(self, written):
+    async def settle(self, written: bool) -> None:
         """What a test before this one has `written` is written over, with the gains at power-up. On Verilator always:
         it begins with random pins, so that a first edge may have written a word. What the banks hold at power-up is
         tested on Icarus, which begins with X, and by the top."""
@@ -98,23 +100,23 @@ class Gains:
                 self.dut.rst.value = 0
                 await RisingEdge(self.dut.clk)
 
-    def begin_frame(self):
+    def begin_frame(self) -> Any:
         """What the head of the pipeline does with a frame's first pixel; the gains of that frame."""
         if self.due:
             self.change()
         return self.banks[self.bank]
 
-    def change(self):
+    def change(self) -> None:
         """From the next frame on, or in reset, the other bank."""
         self.due = False
         self.bank ^= 1
         self.dut.table_bank.value = self.bank
 
-    async def changed(self):
+    async def changed(self) -> None:
         while self.dut.table_in_use.value != self.bank:
             await RisingEdge(self.dut.clk)
 
-    async def capture(self, gains):
+    async def capture(self, gains: np.ndarray) -> None:
         """All nodes of the bank that is not in use, as reference_capture writes them; each is read a little later."""
         await self.changed()
         mask = (1 << self.width) - 1
@@ -133,7 +135,7 @@ class Gains:
                 assert int(self.dut.capture_read_gains.value) == words[clock - 3], f"node {clock - 3} as it is read"
         self.banks[self.bank ^ 1] = gains.copy()
 
-    async def write(self, gains):
+    async def write(self, gains: Any) -> None:
         """All entries of the bank that is not in use, in order, one a clock; the unused ones too."""
         await self.changed()
         for index, word in self.entries(gains).items():
@@ -143,7 +145,7 @@ class Gains:
                     await self.write_entry(unused, (1 << self.width) - 1)
         assert np.array_equal(self.banks[self.bank ^ 1], gains)
 
-    async def rewrite(self, chance, going_on):
+    async def rewrite(self, chance: Any, going_on: Any) -> None:
         """The bank not in use, over and over; when it is complete it is asked for, and entries are read all along."""
         size = self.per_node * self.banks[0][..., 0].size
         while going_on():
@@ -155,7 +157,7 @@ class Gains:
                 await self.read(chance.randrange(size))
             self.due = True
 
-    async def write_entry(self, index, word):
+    async def write_entry(self, index: int, word: Any) -> None:
         for pin, value in (("write", 1), ("index", index), (self.name, word)):
             getattr(self.dut, f"table_{pin}").value = value
         node, channel = divmod(index, self.per_node)
@@ -164,7 +166,7 @@ class Gains:
         await RisingEdge(self.dut.clk)
         self.dut.table_write.value = 0
 
-    async def read(self, index):
+    async def read(self, index: int) -> None:
         """An entry of the bank that is not in use, compared; a change-over may come in the very clock."""
         self.dut.table_read.value, self.dut.table_index.value = 1, index
         await RisingEdge(self.dut.clk)
@@ -181,7 +183,7 @@ class Gains:
         assert got == want, f"entry {index} of bank {free}: {got:#x}, not {want:#x}"
 
 
-async def reads_as_a_pause_ends(device):
+async def reads_as_a_pause_ends(device: Any) -> None:
     """The first pixel of a frame waits in a pause for the bank that it takes over; the last node is read meanwhile, or
     as the pause ends. `device`: of a testbench, with its `gains` and `bench`."""
     gains, bench, clk = device.gains, device.bench, device.dut.clk

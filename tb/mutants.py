@@ -13,6 +13,7 @@ import resource
 import signal
 import time
 from pathlib import Path
+from typing import Any
 
 import cocotb
 import cocotb.regression
@@ -27,11 +28,11 @@ REASON_LENGTH = 240
 class Child:
     """A fork that runs the tests: its process, what it says on the way out, when it began."""
 
-    def __init__(self, number, process, pipe):
+    def __init__(self, number: int, process: Any, pipe: Any) -> None:
         self.number, self.process, self.pipe = number, process, pipe
         self.began = time.monotonic()
 
-    def result(self, status, usage):
+    def result(self, status: Any, usage: Any) -> dict[Any, Any]:
         with os.fdopen(self.pipe) as pipe:
             reason = pipe.read()
         if os.WIFEXITED(status) and os.WEXITSTATUS(status) in (SURVIVED, KILLED):
@@ -44,23 +45,23 @@ class Child:
         return {"mutant": self.number, "verdict": verdict, "reason": reason, "seconds": round(seconds, 2)}
 
 
-def end_with_the_first_failure(pipe):
+def end_with_the_first_failure(pipe: Any) -> None:
     """Of this process: leave as soon as a test fails, or when all have passed."""
-    manager = cocotb.regression.RegressionManager
+    manager: Any = cocotb.regression.RegressionManager
 
-    def failed(self, *_, result=None, **__):
+    def failed(self: Any, *_: Any, result: Any = None, **__: Any) -> None:
         reason = " ".join(f"{self._test.name}: {type(result).__name__}: {result}".split())
         os.write(pipe, reason[:REASON_LENGTH].encode())
         os._exit(KILLED)
 
-    def passed(_):
+    def passed(_: Any) -> None:
         os._exit(SURVIVED)
 
     manager._record_test_failed = failed  # cocotb has no public hook for either; its version is pinned
     manager._tear_down = passed
 
 
-def fork(number, seconds):
+def fork(number: int, seconds: Any) -> Any:
     """Returns the Child in the parent, None in the child."""
     read, write = os.pipe()
     process = os.fork()
@@ -78,7 +79,7 @@ def fork(number, seconds):
     return None
 
 
-def wait(children):
+def wait(children: Any) -> Any:
     """Wait for one of them to end; it leaves the set. Returns its result."""
     process, status, usage = os.wait4(-1, 0)
     (child,) = (child for child in children if child.process == process)
@@ -86,7 +87,7 @@ def wait(children):
     return child.result(status, usage)
 
 
-def children(numbers, jobs, keep):
+def children(numbers: Any, jobs: int, keep: Any) -> Any:
     """In the parent: returns None when all have run. In a child: returns its number at once."""
     running = {fork(0, 0)}
     if None in running:
@@ -109,7 +110,7 @@ def children(numbers, jobs, keep):
 
 
 @cocotb.test()
-async def every_mutant(dut):
+async def every_mutant(dut: Any) -> None:
     numbers = [int(number) for number in os.environ["MUTANT_NUMBERS"].split(",") if number]
     with Path(os.environ["MUTANT_RESULTS"]).open("a", buffering=1) as results:
         number = children(

@@ -4,7 +4,8 @@
 With the methods that tb_tactile_depth calls of its own drivers.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import cocotb
 from cocotb.triggers import RisingEdge
@@ -17,13 +18,14 @@ from tactile_depth.registers.axil_registers import BYTES, Response
 class SecondSource:
     """Sends rows as packets; in a row None is a clock of pause."""
 
-    def __init__(self, dut, offers: Iterable[bool]):
-        self.dut, self.offers, self.held, self.taking = dut, iter(offers), False, None
+    def __init__(self, dut: Any, offers: Iterable[bool]) -> None:
+        self.dut, self.offers, self.held = dut, iter(offers), False
+        self.taking: Any = None
         self.source = AxiStreamSource(AxiStreamBus.from_prefix(dut, "s_axis"), dut.clk, dut.rst, byte_lanes=1)
         self.source.log.setLevel("WARNING")
         self.source.set_pause_generator(self.pauses())
 
-    def pauses(self):
+    def pauses(self) -> Iterator[Any]:
         for offer in self.offers:
             yield self.held or not offer
 
@@ -31,10 +33,13 @@ class SecondSource:
         self.source.clear()
         if self.taking:
             self.taking.cancel()
-        self.held, self.taking = False, None
+        self.held = False
+        self.taking = None
 
     async def send(self, words: Sequence[Word | None]) -> None:
-        silences, packet, sent = {}, [], 0
+        silences: dict[Any, Any] = {}
+        packet = []
+        sent = 0
         for word in words:
             if word is None:
                 silences[sent] = silences.get(sent, 0) + 1
@@ -66,7 +71,7 @@ class SecondSource:
 class SecondSink:
     """Takes packets, pausing as a profile says."""
 
-    def __init__(self, dut, accepts: Iterable[bool]):
+    def __init__(self, dut: Any, accepts: Iterable[bool]) -> None:
         self.sink = AxiStreamSink(AxiStreamBus.from_prefix(dut, "m_axis"), dut.clk, dut.rst, byte_lanes=1)
         self.sink.log.setLevel("WARNING")
         self.stall(accepts)
@@ -76,7 +81,7 @@ class SecondSink:
 
     def words(self) -> list[Word]:
         """What was taken since the last call."""
-        out = []
+        out: list[Any] = []
         while not self.sink.empty():
             frame = self.sink.recv_nowait(compact=False)
             last = [0] * (len(frame.tdata) - 1) + [1]
@@ -87,7 +92,7 @@ class SecondSink:
 class SecondMaster:
     """Reads and writes registers."""
 
-    def __init__(self, dut):
+    def __init__(self, dut: Any) -> None:
         self.master = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk, dut.rst)
         for side in (self.master.write_if, self.master.read_if):
             side.log.setLevel("WARNING")

@@ -4,6 +4,7 @@
 import json
 import os
 import random
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -21,36 +22,36 @@ REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of 
 MANY = int(os.environ.get("MANY", "15" if REGRESS else "2"))
 
 
-def sample(values):
+def sample(values: list[Any]) -> list[Any]:
     """Return all values in `make regress`, and the first and the last in `make test`."""
     return values if REGRESS else [values[0], values[-1]]
 
 
-def parameters(dut, *names):
+def parameters(dut: Any, *names: str) -> tuple[int, ...]:
     """Values of the device's parameters."""
     return tuple(getattr(dut, name).value.to_signed() for name in names)
 
 
-def configuration():
+def configuration() -> Configuration:
     """The configuration that the test built the device for, from the environment variable CONFIGURATION."""
     return Configuration(**json.loads(os.environ["CONFIGURATION"]))
 
 
-def uniform(shape, width, amplitude=1.0):
+def uniform(shape: int | tuple[int, ...], width: int, amplitude: float = 1.0) -> np.ndarray:
     """Random words of `width` signed bits, up to `amplitude` of full scale, the same for a seed."""
     limit = amplitude * 2.0 ** (width - 1)
     words = np.random.default_rng(cocotb.RANDOM_SEED).uniform(-limit, limit, shape)
     return np.clip(np.rint(words), -limit, limit - 1).astype(np.int64)
 
 
-def places(count, width):
+def places(count: int, width: int) -> np.ndarray:
     """`count` words of `width` signed bits that stand for their place: all different, and every bit changes often."""
     factor = round(2.0**width * 0.618) | 1  # odd, so that no two products are the same in `width` bits
     words = [place * factor % (1 << width) for place in range(1, count + 1)]
     return np.array([word - (word >> (width - 1) << width) for word in words], np.int64)
 
 
-def extremes(size, width, fields=1):
+def extremes(size: int, width: int, fields: int = 1) -> np.ndarray:
     """Bursts (8, size, fields) of words at their limits; the first is zero throughout.
 
     Then: highest, lowest, both in turn, by halves, in turn over the fields, a lone word at either end.
@@ -65,13 +66,13 @@ def extremes(size, width, fields=1):
     return bursts
 
 
-def corners(shape, width):
+def corners(shape: int | tuple[int, ...], width: int) -> np.ndarray:
     """Random words, mostly the lowest and the highest: sums and differences of them clip in every pairing."""
     low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
     return np.random.default_rng(cocotb.RANDOM_SEED).choice([*6 * [low, high], -1, 0], shape)
 
 
-def raster(rows, columns):
+def raster(rows: int, columns: int) -> list[Any]:
     """The marks of a frame's pixels in their order: bit 0 first row, 1 first column, 2 last row, 3 last column."""
     return [
         (row == 0) | (column == 0) << 1 | (row == rows - 1) << 2 | (column == columns - 1) << 3
@@ -88,7 +89,7 @@ class StreamDriver(BusDriver):
     `frame_start` is true.
     """
 
-    def __init__(self, dut, name, qualifier, fields):
+    def __init__(self, dut: Any, name: str, qualifier: str, fields: Any) -> None:
         self._signals = [qualifier, *fields]
         super().__init__(dut, name, dut.clk)
         self.qualifier, self.fields = qualifier, fields
@@ -96,12 +97,12 @@ class StreamDriver(BusDriver):
         self.frame_pin = getattr(dut, f"{name}_frame_start", None)
         self.idle()
 
-    def idle(self):
+    def idle(self) -> None:
         getattr(self.bus, self.qualifier).value = 0
         if self.frame_pin is not None:
             self.frame_pin.value = 0
 
-    async def _driver_send(self, transaction, sync=True):
+    async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
         qualifier = getattr(self.bus, self.qualifier)
         for index, word in enumerate(transaction):
             qualifier.value = int(index == 0 or self.qualifier == "valid")
@@ -122,14 +123,16 @@ class StreamMonitor(BusMonitor):
     clocks of the qualifier, `frame_starts` says of each whether it begins a frame; elsewhere none may begin.
     """
 
-    def __init__(self, dut, name, qualifier, fields, length=1, unsigned=()):
+    def __init__(self, dut: Any, name: str, qualifier: str, fields: Any, length: int = 1, unsigned: Any = ()) -> None:
         self._signals = [qualifier, *fields]
         self.qualifier, self.fields, self.length, self.unsigned = qualifier, fields, length, unsigned
-        self.words, self.starts, self.frame_starts = [], [], []
+        self.words: list[Any] = []
+        self.starts: list[Any] = []
+        self.frame_starts: list[Any] = []
         self.frame_pin = getattr(dut, f"{name}_frame_start", None)
         super().__init__(dut, name, dut.clk)
 
-    async def _monitor_recv(self):
+    async def _monitor_recv(self) -> None:
         left, clock = 0, 0  # `clock` counts clocks with en
         qualifier = getattr(self.bus, self.qualifier)
         handles = [(getattr(self.bus, field), field in self.unsigned) for field in self.fields]
@@ -154,31 +157,31 @@ class StreamMonitor(BusMonitor):
                 self.words.append(tuple(int(h.value) if unsigned else h.value.to_signed() for h, unsigned in handles))
                 self._recv(self.words[-1])
 
-    def forget(self):
+    def forget(self) -> None:
         self.words.clear()
         self.starts.clear()
         self.frame_starts.clear()
 
-    def forget_but(self, starts):
+    def forget_but(self, starts: Any) -> None:
         """Keep the last `starts` bursts or words."""
         self.words = self.words[-starts * self.length :]
         self.starts, self.frame_starts = self.starts[-starts:], self.frame_starts[-starts:]
 
     @property
-    def in_reset(self):
+    def in_reset(self) -> bool:
         return bool(self.entity.rst.value)
 
 
 class Bench:
     """Clock, reset, an enable that pauses at random, and the sum of the `saturations` output."""
 
-    def __init__(self, dut, pause=0.0):
+    def __init__(self, dut: Any, pause: float = 0.0) -> None:
         self.dut, self.pause = dut, pause
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.clock, self.saturations = 0, 0  # clocks with en; values clipped
         self.in_reset: int | None = None  # en in the clock of a reset
 
-    async def start(self):
+    async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.rst.value, self.dut.en.value = 1, 1
         for _ in range(3):
@@ -187,7 +190,7 @@ class Bench:
         await RisingEdge(self.dut.clk)
         cocotb.start_soon(self._run())
 
-    async def _run(self):
+    async def _run(self) -> None:
         counts = hasattr(self.dut, "saturations")
         while True:
             moves = int(self.random.random() >= self.pause)
@@ -197,22 +200,23 @@ class Bench:
             if counts and not self.dut.rst.value:
                 self.saturations += int(self.dut.saturations.value)
 
-    async def reset(self, en=False):
+    async def reset(self, en: Any = False) -> None:
         """One clock of reset; unless `en` is given nothing moves on in it by itself."""
         self.in_reset = int(en)
         self.dut.rst.value, self.dut.en.value = 1, self.in_reset
         await RisingEdge(self.dut.clk)
         self.dut.rst.value = 0
-        self.in_reset, self.saturations = None, 0
+        self.in_reset = None
+        self.saturations = 0
 
-    async def clocks(self, count):
+    async def clocks(self, count: int) -> None:
         """Wait for `count` clocks with en."""
         last = self.clock + count
         while self.clock < last:
             await RisingEdge(self.dut.clk)
 
 
-async def send_apart(bench, driver, words, gap, frame=0):
+async def send_apart(bench: Any, driver: Any, words: Any, gap: float, frame: int = 0) -> None:
     """Send words (tuples) one by one, an idle clock before each with probability `gap`.
 
     Every `frame` words a frame begins; 0: none does.
@@ -224,7 +228,7 @@ async def send_apart(bench, driver, words, gap, frame=0):
         await driver.send([word])
 
 
-def check_words(got, expected, size, rows):
+def check_words(got: Any, expected: Any, size: int, rows: int) -> None:
     """Compare words (count, fields) in the order in which they leave; a difference is named by frame, row and column.
 
     A burst of `size` words is a row, `rows` of them are a frame.
@@ -241,12 +245,12 @@ def check_words(got, expected, size, rows):
         )
 
 
-def plain(word):
+def plain(word: Any) -> Any:
     """Return a word as a number, or as a list of the numbers of its fields."""
     return word.tolist() if len(word) > 1 else int(word[0])
 
 
-def check_frame_starts(monitors, frame):
+def check_frame_starts(monitors: Any, frame: Any) -> None:
     """Frames begin with every `frame`-th start that a monitor saw, and nowhere else."""
     for monitor in monitors:
         if monitor.frame_pin is not None:
@@ -254,12 +258,12 @@ def check_frame_starts(monitors, frame):
             assert monitor.frame_starts == want, f"{monitor.name}: frames begin at {monitor.frame_starts}"
 
 
-def with_and_without_en(counts):
+def with_and_without_en(counts: Any) -> list[Any]:
     """Return each count twice, since `interrupt` resets with and without en in turn."""
     return [count for count in counts for _ in range(2)]
 
 
-async def interrupt(bench, send, interrupts, monitors, quiet):
+async def interrupt(bench: Any, send: Any, interrupts: Any, monitors: Any, quiet: Any) -> None:
     """For each count in `interrupts`: send so many words, reset, with en and without by turns; nothing of them may
     leave in `quiet` clocks.
 
@@ -277,8 +281,20 @@ async def interrupt(bench, send, interrupts, monitors, quiet):
 
 
 async def check_bursts(
-    dut, bursts, model, latency, *, in_fields, out_fields, frame=3, gap=0, pause=0.0, interrupts=(), strays=0, settle=40
-):
+    dut: Any,
+    bursts: Any,
+    model: Any,
+    latency: Any,
+    *,
+    in_fields: Any,
+    out_fields: Any,
+    frame: int = 3,
+    gap: Any = 0,
+    pause: float = 0.0,
+    interrupts: Any = (),
+    strays: int = 0,
+    settle: int = 40,
+) -> tuple[Any, ...]:
     """Send bursts (count, size, fields); compare what leaves with the model of what was seen going in.
 
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
@@ -295,7 +311,7 @@ async def check_bursts(
     sink = StreamMonitor(dut, "out", "start", out_fields, length=size)
     await bench.start()
 
-    async def send(count):
+    async def send(count: int) -> None:
         for index, sent in enumerate(range(0, count, size)):
             driver.frame_start = index % frame == 0
             await driver.send(bursts[index % len(bursts), : count - sent].tolist())
@@ -326,7 +342,7 @@ async def check_bursts(
     return source, sink
 
 
-async def check_frame_memory(dut, words, model, latency, *, rows, **behaviour):
+async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, rows: int, **behaviour: Any) -> None:
     """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row.
 
     `latency` is the number of cycles from the start of the last row in to the first start out.
@@ -348,7 +364,7 @@ async def check_frame_memory(dut, words, model, latency, *, rows, **behaviour):
     assert np.all(apart == size), "a frame leaves with a pause between two bursts"
 
 
-async def drive(dut, stimuli, outputs, pause=0.0):
+async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:
     """Give the pins of each clock their values (one dict a clock); return what stood at all pins at its end.
 
     For cores without a stream. Where there is an `en` it pauses at random, and only clocks with it count.
@@ -367,7 +383,7 @@ async def drive(dut, stimuli, outputs, pause=0.0):
     await RisingEdge(dut.clk)
     if hasattr(dut, "rst"):
         dut.rst.value = 0
-    seen = {pin: [] for pin in (*stimuli[0], *outputs)}
+    seen: Any = {pin: [] for pin in (*stimuli[0], *outputs)}
     for clock in stimuli:
         for pin, value in clock.items():
             getattr(dut, pin).value = int(value)

@@ -4,6 +4,7 @@
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -17,7 +18,7 @@ READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "F
 
 
 @cocotb.test()
-async def play(dut):
+async def play(dut: Any) -> None:
     wanted = json.loads(os.environ["FRAME_BENCH"])
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     dut.rst.value, dut.go.value = 1, 0

@@ -3,6 +3,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -12,7 +13,7 @@ from tb.stream import CLOCK_NS
 
 
 @cocotb.test()
-async def seen(dut):
+async def seen(dut: Any) -> None:
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     words = []
     for address in range(16):

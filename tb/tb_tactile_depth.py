@@ -9,6 +9,7 @@ import math
 import os
 import random
 from itertools import pairwise, product, repeat
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -48,11 +49,11 @@ SKID_WORDS = 2  # that a stalled output holds
 SECOND_CLIENT = os.environ.get("CLIENT") == "second"  # cocotbext-axi drives the ports
 
 
-def pixel(red, green, blue):
+def pixel(red: int, green: int, blue: int) -> Any:
     return int(red) << RED | int(green) << GREEN | int(blue) << BLUE
 
 
-def colours(pixels):
+def colours(pixels: Any) -> Any:
     """Words of pixels to uint8 (..., 3), RGB."""
     words = np.asarray(pixels)
     return np.stack([words >> low & 255 for low in (RED, GREEN, BLUE)], axis=-1).astype(np.uint8)
@@ -61,11 +62,11 @@ def colours(pixels):
 class Pipeline:
     """The device, driven and watched at its pins."""
 
-    gains = None  # of the reference in use, if it was captured: they survive as the table does
-    floor = None  # of depth, in the same way
-    table = None  # slope codes that frames to come use: the table survives resets, so it survives a test
+    gains: Any = None  # of the reference in use, if it was captured: they survive as the table does
+    floor: Any = None  # of depth, in the same way
+    table: Any = None  # slope codes that frames to come use: the table survives resets, so it survives a test
 
-    def __init__(self, dut, offers="none", accepts="none", timeout=0):
+    def __init__(self, dut: Any, offers: str = "none", accepts: str = "none", timeout: int = 0) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.random = dut, random.Random(cocotb.RANDOM_SEED)
         self.config = configuration()
@@ -88,19 +89,19 @@ class Pipeline:
         self.into = AxisMonitor(dut, "s_axis", prefix="t", silence=bool(timeout))
         self.out = AxisMonitor(dut, "m_axis", prefix="t")
         self.comparator = ThresholdComparator()
-        self.contacts = []  # clocks in which contact rose
+        self.contacts: list[Any] = []  # clocks in which contact rose
         self.dark_level = 0
         self.drops = False  # CONTROL.drop_frames
-        self.packets = []  # of contact events, in words
+        self.packets: list[Any] = []  # of contact events, in words
         self.events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
         # A sink of records, never so slow that one is lost.
         self.takes = profile(accepts if accepts in ("one_in_4", "alternate", "random") else "none", 3)
-        self.settings = []  # of contact events, as they stood with the first depth of each frame
-        self.tables = None  # of each frame that comes, if they differ
-        self.floors = None  # the same
+        self.settings: list[Any] = []  # of contact events, as they stood with the first depth of each frame
+        self.tables: Any = None  # of each frame that comes, if they differ
+        self.floors: Any = None  # the same
         self.expect_reset_values()
 
-    async def start(self):
+    async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         cocotb.start_soon(self.watch_contact())
         cocotb.start_soon(self.watch_events())
@@ -109,13 +110,14 @@ class Pipeline:
         if self.timeout:
             await self.write("TIMEOUT", self.timeout)
 
-    def expect_reset_values(self):
+    def expect_reset_values(self) -> None:
         self.counters = dict.fromkeys(("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS"), 0)
         self.counters |= dict.fromkeys(("DEPTH_DROPPED", "RECORDS_LOST"), 0)
         self.dark_level = 0
-        self.sticky, self.latency = set(), 0
+        self.sticky: set[Any] = set()
+        self.latency = 0
 
-    async def reset(self, clocks):
+    async def reset(self, clocks: int) -> None:
         """Reset; what was sent before no longer counts."""
         self.source.abort()
         self.dut.rst.value = 1
@@ -126,7 +128,7 @@ class Pipeline:
         self.events.reset()
         self.expect_reset_values()
 
-    def forget(self):
+    def forget(self) -> None:
         if SECOND_CLIENT:
             self.sink.words()
         self.into.forget()
@@ -135,7 +137,7 @@ class Pipeline:
         self.packets.clear()
         self.settings.clear()
 
-    async def watch_contact(self):
+    async def watch_contact(self) -> None:
         """contact is what the beats up to the clock before make of it; thresholds as the registers say."""
         dut, model, edge = self.dut, self.comparator, RisingEdge(self.dut.clk)
         await edge
@@ -163,7 +165,7 @@ class Pipeline:
             if counts:
                 model.beat(depth, bool(user), dut.threshold.value.to_signed(), bool(dut.hold_contact.value))
 
-    async def watch_events(self):
+    async def watch_events(self) -> None:
         """Packets that leave, each word the same until it is taken; a reset ends one."""
         dut, edge = self.dut, RisingEdge(self.dut.clk)
         while True:
@@ -184,25 +186,25 @@ class Pipeline:
                 await edge
             assert dut.rst.value or (held is None and not words), "a record broke off"
 
-    def setting(self, register):
+    def setting(self, register: str) -> Any:
         """A register as the cores have it."""
         value = getattr(self.dut, register.lower()).value
         return value.to_signed() if "THRESHOLD" in register else value.to_unsigned()
 
-    def signed(self, data):
+    def signed(self, data: Any) -> Any:
         width = 8 * ((self.config.data_width + 7) // 8)
         return (int(data) ^ 1 << width - 1) - (1 << width - 1)
 
     # Registers.
 
-    async def write(self, name, value):
+    async def write(self, name: Any, value: Any) -> Any:
         answer = self.master.write(OFFSET[name], value & WORD)
         return await (answer if SECOND_CLIENT else response_of(answer))
 
-    async def read(self, name):
+    async def read(self, name: str) -> Any:
         return int(await self.master.read(OFFSET[name]))
 
-    async def write_bin(self, index, slopes):
+    async def write_bin(self, index: int, slopes: np.ndarray) -> Any:
         """Write one bin of the gradient table that is not in use; how its last write is answered."""
         for name, value in (
             ("TABLE_SELECT", TABLES["gradient"]),
@@ -212,7 +214,7 @@ class Pipeline:
             assert await self.write(name, int(value)) == Response.OKAY
         return await self.write("TABLE_LOW", int(slopes[0]))
 
-    async def write_table(self, table):
+    async def write_table(self, table: Any) -> None:
         """Write all bins of the table that is not in use, one after another as they come."""
         while await self.read("TABLE_COMMIT"):
             pass
@@ -224,14 +226,14 @@ class Pipeline:
             assert await self.write("TABLE_LOW", gx) == Response.OKAY, f"refused at bin {index}"
         assert await self.read("TABLE_INDEX") == 0, "it does not wrap at the end of the table"
 
-    async def read_table(self):
+    async def read_table(self) -> Any:
         """All bins of the table that is not in use."""
         await self.write("TABLE_SELECT", TABLES["gradient"])
         await self.write("TABLE_INDEX", 0)
         words = [[await self.read(name) for name in ("TABLE_HIGH", "TABLE_LOW")] for _ in self.table]
         return np.array(words, np.uint32).astype(np.int32).astype(np.int64)[:, ::-1]
 
-    async def commit(self, table=None):
+    async def commit(self, table: Any = None) -> None:
         """Have the frames that begin from now on use what was written."""
         assert await self.write("TABLE_COMMIT", COMMIT.pack(gradient=1)) == Response.OKAY
         if table is not None:
@@ -239,18 +241,18 @@ class Pipeline:
 
     # Frames.
 
-    def frame(self):
+    def frame(self) -> Any:
         """Words of a frame of random colours."""
         return video((self.random.getrandbits(24) for _ in range(self.pixels)), self.columns)
 
-    def frame_of(self, wanted):
+    def frame_of(self, wanted: Any) -> Any:
         """Words of a frame whose slopes are those of the table nearest to wanted, (rows, columns, 2).
 
         With flat-fielding, by a reference of 128: of its colours.
         """
         if self.config.flat_field:
-            sensor = synthetic(self.config.bits_per_channel)
-            deviation = wanted @ np.linalg.pinv(sensor.coefficients[..., 0]).T
+            coefficients: Any = synthetic(self.config.bits_per_channel).coefficients
+            deviation = wanted @ np.linalg.pinv(coefficients[..., 0]).T
             rgb = np.clip(np.rint(128 * (1 + deviation)), 0, 255).astype(int)
             return video([pixel(*colour) for colour in rgb.reshape(-1, 3)], self.columns)
         slopes = self.table * self.config.gradient_lsb
@@ -259,12 +261,12 @@ class Pipeline:
         parts = [(bins >> shift & (1 << bits) - 1) << 8 - bits for shift in (2 * bits, bits, 0)]
         return video((pixel(*rgb) for rgb in zip(*parts, strict=True)), self.columns)
 
-    def pressed(self, slope=0.5):
+    def pressed(self, slope: float = 0.5) -> Any:
         """Words of a frame with a pyramid in it: up one side and down the other along both axes."""
         along, down = (np.where(np.arange(n) < n // 2, slope, -slope) for n in (self.columns, self.rows))
         return self.frame_of(np.stack(np.meshgrid(along, down), axis=-1))
 
-    def model(self, frames):
+    def model(self, frames: Any) -> Any:
         """Depth codes (frames, rows, columns) and the number of values clipped, of frames in the order they came."""
         if not frames:
             return np.zeros((0, self.rows, self.columns), np.int64), 0
@@ -275,7 +277,7 @@ class Pipeline:
         codes = np.stack([zeroed(codes, self.config, monitor, floor) for codes, floor in pairs])
         return codes, monitor.saturations.total()
 
-    def solved(self, frames, monitor=None):
+    def solved(self, frames: int, monitor: Monitor | None = None) -> Any:
         """The codes before a floor is taken off."""
         rgb = colours(frames).reshape(-1, self.rows, self.columns, 3)
         if self.config.flat_field:
@@ -287,17 +289,17 @@ class Pipeline:
             slopes = np.stack([gradient_lookup(frame, table, self.config.bits_per_channel) for frame, table in pairs])
         return solve(divergence(slopes, self.config.neumann), self.config, monitor)
 
-    async def send(self, *streams):
+    async def send(self, *streams: Any) -> None:
         await self.source.send([word for stream in streams for word in stream])
 
-    async def idle(self):
+    async def idle(self) -> None:
         """Wait until no frame is in flight."""
         for _ in range(400 * self.pixels // 64):
             if not STATUS.unpack(await self.read("STATUS"))["busy"]:
                 return
         raise AssertionError("busy does not end")
 
-    async def check(self, counters=True):
+    async def check(self, counters: bool = True) -> Any:
         """Let everything drain, then compare it with the models. The source must be idle.
 
         Returns
@@ -349,7 +351,7 @@ class Pipeline:
         self.forget()
         return got
 
-    def check_events(self, depth, first):
+    def check_events(self, depth: np.ndarray, first: Any) -> None:
         """A packet a frame, each as the model has it; `first`: the place of each frame's first pixel in the input."""
         wanted = []
         for codes, settings in zip(depth, self.settings, strict=True):
@@ -364,7 +366,7 @@ class Pipeline:
         taken = [self.into.taken[place] for place in first]
         assert [time - times[0] for time in times] == [clock - taken[0] for clock in taken], "time stamps"
 
-    async def check_registers(self, counters=True):
+    async def check_registers(self, counters: bool = True) -> None:
         """Counters, sticky bits, busy, contact and the latency that the hardware counted."""
         if counters:
             have = {name: await self.read(name) for name in self.counters}
@@ -382,7 +384,7 @@ class Pipeline:
         assert latency == self.latency, f"FIRST_DEPTH_LATENCY is {latency}, on the pins it was {self.latency}"
 
 
-async def started(dut, **arguments):
+async def started(dut: Any, **arguments: Any) -> Any:
     pipeline = Pipeline(dut, **arguments)
     await pipeline.start()
     return pipeline
@@ -392,7 +394,7 @@ TEST = cocotb.test(timeout_time=3, timeout_unit="ms")
 
 
 @TEST
-async def the_configuration_is_that_of_the_models(dut):
+async def the_configuration_is_that_of_the_models(dut: Any) -> None:
     """Every parameter that the models derive is the device's."""
     pipeline = await started(dut)
     derived = top_parameters(pipeline.config)
@@ -402,7 +404,7 @@ async def the_configuration_is_that_of_the_models(dut):
 
 
 @TEST
-async def one_frame(dut):
+async def one_frame(dut: Any) -> None:
     """It drains by itself, nothing follows; latencies are those of tactile_depth.latency."""
     pipeline = await started(dut)
     await pipeline.send(pipeline.frame())
@@ -412,7 +414,7 @@ async def one_frame(dut):
 
 
 @TEST
-async def nothing_unknown(dut):
+async def nothing_unknown(dut: Any) -> None:
     """Handshakes, side-bands and contact are 0 or 1 from the second clock after reset on, valid or not."""
     pipeline = await started(dut, accepts="random")
     await RisingEdge(dut.clk)
@@ -428,7 +430,7 @@ async def nothing_unknown(dut):
 
 
 @TEST
-async def back_to_back(dut):
+async def back_to_back(dut: Any) -> None:
     """One frame every N^2 clocks exactly, and every latency the same."""
     pipeline = await started(dut)
     frames = 6
@@ -448,7 +450,7 @@ async def back_to_back(dut):
 
 
 @TEST
-async def the_clock_comes_round(dut):
+async def the_clock_comes_round(dut: Any) -> None:
     """Wherever the count of clocks returns to 0 while a frame is in flight, its latency is that of any other."""
     pipeline = await started(dut)
     for ahead in (5, pipeline.pixels // 2, pipeline.pixels + 5, first_depth_latency(pipeline.config)):
@@ -462,7 +464,7 @@ async def the_clock_comes_round(dut):
 
 @TEST
 @cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
-async def gaps_and_stalls(dut, offers, accepts):
+async def gaps_and_stalls(dut: Any, offers: str, accepts: str) -> None:
     """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
     await pipeline.send(*(pipeline.frame() for _ in range(2 if accepts == "none" else 5)))
@@ -470,7 +472,7 @@ async def gaps_and_stalls(dut, offers, accepts):
 
 
 @TEST
-async def a_sink_that_waits_for_long(dut):
+async def a_sink_that_waits_for_long(dut: Any) -> None:
     """The input stops; then everything comes, and a frame sent after it is timed as ever."""
     pipeline = await started(dut)
     pipeline.stalled = True
@@ -490,7 +492,7 @@ async def a_sink_that_waits_for_long(dut):
 
 
 @TEST
-async def capture(dut):
+async def capture(dut: Any) -> None:
     """Of two frames, with a broken one before them: colours of the frames after it are relative to their mean."""
     pipeline = await started(dut)
     start = CAPTURE.pack(start=1, log2_frames=1)
@@ -516,7 +518,7 @@ async def capture(dut):
 
 
 @TEST
-async def floor_captured(dut):
+async def floor_captured(dut: Any) -> None:
     """Of two frames, a broken one between them, while frames go on: those that begin before it is there have the floor
     of before from first depth to last, those that begin later the new one; both are in the pipeline at once."""
     pipeline = await started(dut, offers="random")
@@ -524,9 +526,9 @@ async def floor_captured(dut):
     if not pipeline.config.auto_zero:
         assert await pipeline.write("FLOOR_CAPTURE", start) == Response.SLVERR
         return
-    new = []  # of each frame, whether it has the new floor
+    new: list[Any] = []  # of each frame, whether it has the new floor
 
-    async def follow():
+    async def follow() -> None:
         pending = False
         while True:
             await RisingEdge(dut.clk)
@@ -571,7 +573,7 @@ async def floor_captured(dut):
 
 
 @TEST
-async def floor_written(dut):
+async def floor_written(dut: Any) -> None:
     """Over the bus, read back; used from the next frame on; depth that leaves its range is clipped. In the end none."""
     pipeline = await started(dut)
     if not pipeline.config.auto_zero:
@@ -601,7 +603,7 @@ async def floor_written(dut):
 
 
 @TEST
-async def dark_pixels_are_held(dut):
+async def dark_pixels_are_held(dut: Any) -> None:
     """Anywhere in a row, and the whole of one; each is counted."""
     pipeline = await started(dut)
     if not pipeline.config.flat_field:
@@ -623,7 +625,7 @@ async def dark_pixels_are_held(dut):
 
 
 @TEST
-async def depth_frames_are_dropped(dut):
+async def depth_frames_are_dropped(dut: Any) -> None:
     """With drop_frames a sink that stands still costs frames and no time; the next one after it is whole."""
     pipeline = await started(dut)
     flat = video([pixel(135, 135, 135)] * pipeline.pixels, pipeline.columns)
@@ -654,7 +656,7 @@ async def depth_frames_are_dropped(dut):
 
 @TEST
 @cocotb.parametrize(accepts=["none", "random"])
-async def contact(dut, accepts):
+async def contact(dut: Any, accepts: str) -> None:
     """Raised by the deciding beat, cleared by the next frame's first, held by its bit."""
     pipeline = await started(dut, accepts=accepts)
     pressed, flat = pipeline.pressed(), video([pixel(135, 135, 135)] * pipeline.pixels, pipeline.columns)
@@ -701,7 +703,7 @@ async def contact(dut, accepts):
 
 
 @TEST
-async def records_at_the_limits(dut):
+async def records_at_the_limits(dut: Any) -> None:
     """Both thresholds at a depth of the frame and one below it, the least area at that of the frame and one above."""
     pipeline = await started(dut)
     pressed = pipeline.pressed()
@@ -740,13 +742,13 @@ async def records_at_the_limits(dut):
 
 
 @TEST
-async def busy_while_a_frame_is_in_flight(dut):
+async def busy_while_a_frame_is_in_flight(dut: Any) -> None:
     """From its first pixel to its last depth, whatever the source pauses; and not before or after."""
     pipeline = await started(dut)
     source, out = pipeline.into, pipeline.out
     polls = []  # clock before, clock after, busy
 
-    async def poll():
+    async def poll() -> None:
         while True:
             before = source.clock_count
             busy = STATUS.unpack(await pipeline.read("STATUS"))["busy"]
@@ -793,14 +795,14 @@ async def busy_while_a_frame_is_in_flight(dut):
 
 
 @TEST
-async def the_register_port_waits(dut):
+async def the_register_port_waits(dut: Any) -> None:
     """Address and word of a write in either order, each taken once; answers stay until they are taken; bytes without a
     strobe keep what they hold."""
     pipeline = await started(dut)
     pins = {name: getattr(dut, f"s_axil_{name}") for name in ("awready", "wready", "arready", "bvalid", "rvalid")}
     dut.s_axil_bready.value = dut.s_axil_rready.value = 0
 
-    async def stays(clocks=3, **wanted):
+    async def stays(clocks: int = 3, **wanted: Any) -> None:
         for _ in range(clocks):
             await RisingEdge(dut.clk)
             got = {name: int(pin.value) for name, pin in pins.items()}
@@ -836,7 +838,7 @@ async def the_register_port_waits(dut):
     await pipeline.check()
 
 
-def places(pipeline, fault):
+def places(pipeline: Any, fault: str) -> list[Any]:
     """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
     size, pixels = pipeline.columns, pipeline.pixels
     inner = pipeline.rows // 2 * size
@@ -846,7 +848,7 @@ def places(pipeline, fault):
 
 @TEST
 @cocotb.parametrize(fault=FAULTS, accepts=["none", "random"])
-async def malformed(dut, fault, accepts):
+async def malformed(dut: Any, fault: str, accepts: str) -> None:
     """A, B, A back to back, B broken: B never leaves nor raises contact, both A come out the same."""
     timeout = 60 if fault == "timed_out" else 0
     pipeline = await started(dut, accepts=accepts, timeout=timeout)
@@ -878,7 +880,7 @@ async def malformed(dut, fault, accepts):
 
 @TEST
 @cocotb.parametrize(fault=FAULTS)
-async def faults_side_by_side(dut, fault):
+async def faults_side_by_side(dut: Any, fault: str) -> None:
     """A broken frame between whole and broken ones: each is counted by itself, and the whole ones are right."""
     timeout = 60 if fault == "timed_out" else 0
     pipeline = await started(dut, timeout=timeout)
@@ -895,7 +897,7 @@ async def faults_side_by_side(dut, fault):
 
 @TEST
 @cocotb.parametrize(accepts=["none", "random"])
-async def every_fault_in_a_row(dut, accepts):
+async def every_fault_in_a_row(dut: Any, accepts: str) -> None:
     """Broken frames between good ones and right after one another, all in flight together."""
     pipeline = await started(dut, accepts=accepts)
     faults = [fault for fault in FAULTS if fault != "timed_out"]
@@ -910,7 +912,7 @@ async def every_fault_in_a_row(dut, accepts):
 
 
 @TEST
-async def starts_one_after_another(dut):
+async def starts_one_after_another(dut: Any) -> None:
     """Each start of frame breaks the frame before it; the last of them is kept, its latency its own."""
     pipeline = await started(dut)
     for count in (1, 2, 3, 5):
@@ -921,7 +923,7 @@ async def starts_one_after_another(dut):
 
 
 @TEST
-async def words_before_the_first_frame(dut):
+async def words_before_the_first_frame(dut: Any) -> None:
     """Dropped and counted as one; the frame after them is right."""
     pipeline = await started(dut)
     await pipeline.send([word._replace(user=0) for word in pipeline.frame()[:37]], pipeline.frame())
@@ -930,7 +932,7 @@ async def words_before_the_first_frame(dut):
 
 
 @TEST
-async def silence(dut):
+async def silence(dut: Any) -> None:
     """Without the time-out register a frame is waited for; with it, for as many clocks as it says."""
     pipeline = await started(dut)
     frame = pipeline.frame()
@@ -947,7 +949,7 @@ async def silence(dut):
 
 @TEST
 @cocotb.parametrize(offers=["none", "random"], accepts=["none", "alternate", "random"])
-async def random_streams(dut, offers, accepts):
+async def random_streams(dut: Any, offers: str, accepts: str) -> None:
     """Good and broken frames, stray words and pauses at random."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
     rng = pipeline.random
@@ -971,7 +973,7 @@ async def random_streams(dut, offers, accepts):
 
 
 @TEST
-async def gradient_table(dut):
+async def gradient_table(dut: Any) -> None:
     """Written and read between frames; with its commit the next frame has the codes of the new table."""
     pipeline = await started(dut)
     power_up = Pipeline.table
@@ -996,7 +998,7 @@ async def gradient_table(dut):
 
 
 @TEST
-async def gradient_table_committed_at_the_first_pixel(dut):
+async def gradient_table_committed_at_the_first_pixel(dut: Any) -> None:
     """The frame whose first pixel is taken around the commit has the codes of one table; the clock says of which."""
     pipeline = await started(dut)
     colour = pixel(200, 40, 90)
@@ -1036,7 +1038,7 @@ async def gradient_table_committed_at_the_first_pixel(dut):
 
 @TEST
 @cocotb.parametrize(offers=["none", "random"], accepts=["none", "random"])
-async def gradient_table_rewritten_while_frames_stream(dut, offers, accepts):
+async def gradient_table_rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> None:
     """Frames without a pause, the whole table written again and again: each frame has the codes of one table, the one
     whose commit was the last to take effect before its first pixel."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
@@ -1046,7 +1048,7 @@ async def gradient_table_rewritten_while_frames_stream(dut, offers, accepts):
     tables, of_frames = [power_up], []  # the tables in their order; of each frame, the number of its table
     committing, running = None, True
 
-    async def follow():
+    async def follow() -> None:
         nonlocal committing
         while True:
             await RisingEdge(dut.clk)
@@ -1056,7 +1058,7 @@ async def gradient_table_rewritten_while_frames_stream(dut, offers, accepts):
             if dut.u_registers.frame_start.value:
                 of_frames.append(len(tables) - 1)
 
-    async def feed():
+    async def feed() -> None:
         while running:
             await pipeline.send(pipeline.frame(), pipeline.frame())
 
@@ -1082,7 +1084,7 @@ async def gradient_table_rewritten_while_frames_stream(dut, offers, accepts):
 
 
 @TEST
-async def many_frames(dut):
+async def many_frames(dut: Any) -> None:
     """Ties of every rounding and clips of all that can: any slopes, small ones and steep ones."""
     pipeline = await started(dut)
     power_up = Pipeline.table
@@ -1099,7 +1101,7 @@ async def many_frames(dut):
 
 @TEST
 @cocotb.parametrize(accepts=["none", "random"])
-async def saturation(dut, accepts):
+async def saturation(dut: Any, accepts: str) -> None:
     """A pyramid deeper than full scale: clipped where the model clips, counted, flagged; never wrapped."""
     pipeline = await started(dut, accepts=accepts)
     steep = pipeline.pressed(slope=1.0)
@@ -1121,7 +1123,7 @@ async def saturation(dut, accepts):
     clocks=[1, 2, 16] if REGRESS else [2],
     phase=["mid_frame", "filling", "waiting", "output", "stalled", "full", "idle"],
 )
-async def resets(dut, clocks, phase):
+async def resets(dut: Any, clocks: Any, phase: str) -> None:
     """Registers are as after power-up, but for tables; the next frame is right.
 
     tests/test_faults.py resets in every clock of these phases.
@@ -1166,12 +1168,12 @@ async def resets(dut, clocks, phase):
 
 @TEST
 @cocotb.parametrize(accepts=["none", "random"])
-async def registers_written_all_the_time(dut, accepts):
+async def registers_written_all_the_time(dut: Any, accepts: str) -> None:
     """They disturb no code and no latency."""
     pipeline = await started(dut, offers="random", accepts=accepts)
     running, refused = True, 0
 
-    async def writes():
+    async def writes() -> None:
         nonlocal refused
         rng = pipeline.random
         while running:
@@ -1198,14 +1200,14 @@ async def registers_written_all_the_time(dut, accepts):
 
 
 @TEST
-async def registers_written_phase_by_phase(dut):
+async def registers_written_phase_by_phase(dut: Any) -> None:
     """Each of them while nothing moves, while a frame comes, fills up, is waited for, leaves and is stalled."""
     pipeline = await started(dut)
     columns, first = pipeline.columns, Pipeline.table[0]
 
-    async def write_all():
-        names = ("STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT", "OFF_THRESHOLD", "MINIMUM_AREA")
-        names += ("DEBOUNCE", "DARK_LEVEL", "CAPTURE", "FLOOR_CAPTURE")
+    async def write_all() -> None:
+        names = ["STATUS", "CONTROL", "THRESHOLD", "TIMEOUT", "TABLE_COMMIT", "OFF_THRESHOLD", "MINIMUM_AREA"]
+        names += ["DEBOUNCE", "DARK_LEVEL", "CAPTURE", "FLOOR_CAPTURE"]
         answers = [await pipeline.write(name, 0) for name in names]
         assert answers == [Response.OKAY] * len(answers)
         assert await pipeline.write_bin(0, first) == Response.OKAY
@@ -1232,7 +1234,7 @@ async def registers_written_phase_by_phase(dut):
 
 @TEST
 @cocotb.parametrize(accepts=["none", "random"])
-async def registers_written_in_every_phase(dut, accepts):
+async def registers_written_in_every_phase(dut: Any, accepts: str) -> None:
     """Each register at each pixel of a frame, while frames come without a gap: no code and no latency changes."""
     pipeline = await started(dut, accepts=accepts)
     rng, running = pipeline.random, True
@@ -1260,7 +1262,7 @@ async def registers_written_in_every_phase(dut, accepts):
     refused = {"GRID", "CAPTURE", "FLOOR_CAPTURE"}
     missing = {name: set(range(pipeline.pixels)) for name in values}
 
-    async def feed():
+    async def feed() -> None:
         while running:
             await pipeline.send(frame, frame)
 
@@ -1275,7 +1277,7 @@ async def registers_written_in_every_phase(dut, accepts):
             await RisingEdge(dut.clk)
             continue
         missing[name].discard(phase)
-        answer = await pipeline.write(name, values[name]())
+        answer = await pipeline.write(name, values[name]())  # type: ignore[no-untyped-call]
         assert answer == (Response.SLVERR if name in refused else Response.OKAY), f"{name} at pixel {phase}: {answer}"
     running = False
     await feeding

@@ -12,6 +12,7 @@ import random
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -71,11 +72,11 @@ def registers_of(module: str) -> set[str]:
     return names | {name.strip() for group in joined for name in group.split(",")}
 
 
-def places(dut) -> list[Place]:
+def places(dut: Any) -> list[Place]:
     """Every register and every word of memory; ROMs and what only simulation has are left out."""
     found: list[Place] = []
 
-    def visit(scope, module: str, owner: str) -> None:
+    def visit(scope: Any, module: str, owner: str) -> None:
         registers = registers_of(module)
         for child in scope:
             name = child._name
@@ -103,7 +104,7 @@ def places(dut) -> list[Place]:
 class Device:
     """The pins, clock by clock."""
 
-    def __init__(self, dut, rng):
+    def __init__(self, dut: Any, rng: Any) -> None:
         self.dut, self.random = dut, rng
         self.config = configuration()
         rgb = np.random.default_rng(1).integers(0, 256, (FRAMES, self.config.rows, self.config.columns, 3), np.uint8)
@@ -116,7 +117,7 @@ class Device:
         self.pixels = self.config.rows * self.config.columns
         self.latency = last_pixel_to_first_depth(self.config)
 
-    async def reset(self):
+    async def reset(self) -> None:
         dut = self.dut
         for pin in ("s_axis_tvalid", "s_axil_awvalid", "s_axil_wvalid", "s_axil_arvalid", "s_axil_bready"):
             getattr(dut, pin).value = 0
@@ -198,7 +199,7 @@ class Device:
 
 
 @cocotb.test()
-async def upsets(dut):
+async def upsets(dut: Any) -> None:
     rng = random.Random(cocotb.RANDOM_SEED)
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     device = Device(dut, rng)
@@ -208,7 +209,7 @@ async def upsets(dut):
         by_module.setdefault(place.module + " memory" * place.memory, []).append(place)
     dut._log.info("%s", {module: len(found) for module, found in by_module.items()})
     assert len(by_module) > 20, "the registers were not found"
-    results = []
+    results: list[Any] = []
     first = FLIPPED_IN * device.pixels
     for name, found in sorted(by_module.items()):
         wanted = len(results) + int(os.environ["UPSETS"])

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,7 +37,7 @@ PROFILES = {
     "long": bench.turns(150, 200),
     "random": bench.chance(0.4),
 }
-LONGEST = {"none": 0, "one_in_4": 1, "alternate": 1, "long": 200, "random": 40}
+LONGEST: dict[str, Any] = {"none": 0, "one_in_4": 1, "alternate": 1, "long": 200, "random": 40}
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def batches(
 class Attack:
     """Plays streams on one device."""
 
-    def __init__(self, simulator: str, config: Configuration, folder: Path, seed: int):
+    def __init__(self, simulator: str, config: Configuration, folder: Path, seed: int) -> None:
         self.simulator, self.config, self.folder, self.seed = simulator, config, folder, seed
         self.rows, self.columns = config.rows, config.columns
         self.pixels = config.rows * config.columns
@@ -112,7 +113,7 @@ class Attack:
         """Clocks in which everything has left."""
         return first_depth_latency(self.config) + 4 * self.pixels
 
-    def play(self, stream: Stream, **arguments) -> tuple[bench.Played, Guarded]:
+    def play(self, stream: Stream, **arguments: Any) -> tuple[bench.Played, Guarded]:
         """Play a stream; the model's frames are noted, so that the clocks of their pixels are known."""
         words = [item for item in stream if not isinstance(item, Command)]
         guarded = frame_guard(words, self.rows, self.columns, arguments.get("registers", {}).get("TIMEOUT", 0))
@@ -133,7 +134,7 @@ class Attack:
                 entries.append(note | item.user * bench.USER | item.last * bench.LAST | item.data)
         return self.bench(entries, clocks=20 * (len(words) + self.drain()), **arguments), guarded
 
-    def bench(self, entries: Sequence[int], **arguments) -> bench.Played:
+    def bench(self, entries: Sequence[int], **arguments: Any) -> bench.Played:
         return bench.play(
             self.simulator, self.config, self.calibration, entries, self.folder, seed=self.seed, **arguments
         )
@@ -290,7 +291,9 @@ def resets(device: Attack, chosen: Sequence[Reset]) -> Outcome:
         assert len(late) == codes.size, f"{len(late)} codes left after {reset}"
         assert (late == codes.reshape(-1)).all(), f"codes after {reset}"
         begin = end
-    segment, taken, depths = -1, [], []
+    segment = -1
+    taken: list[Any] = []
+    depths: list[Any] = []
     for letter, numbers in (*played.events, ("r", (0, 0))):
         if letter == "r":
             if segment % 2 == 0:

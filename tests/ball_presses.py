@@ -4,6 +4,7 @@
 import csv
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def places() -> list[tuple[str, float, float, float, float, float]]:
 @cache
 def pictures() -> dict[str, np.ndarray]:
     """Pictures of `places` by name, and the background."""
-    drawings = {name: drawn([tuple(press)], 2 + index) for index, (name, _, *press) in enumerate(places())}
+    drawings = {name: drawn([tuple(press)], 2 + index) for index, (name, _, *press) in enumerate(places())}  # type: ignore[list-item]
     return {"background.png": drawn([], 1), **drawings}
 
 
@@ -82,7 +83,7 @@ def write_folder(folder: Path) -> Path:
     return folder
 
 
-def read(folder: Path, pitch_mm: float | None = None, **choices) -> GridPresses:
+def read(folder: Path, pitch_mm: float | None = None, **choices: Any) -> GridPresses:
     """Presses of a folder on the grid."""
     given = gather(folder)
     return to_grid(given, camera_pitch_mm(given, pitch_mm), **choices)

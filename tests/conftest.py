@@ -9,6 +9,7 @@ import shutil
 import time
 import zlib
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -29,7 +30,7 @@ settings.register_profile("no deadline", deadline=None)  # a busy machine is no 
 settings.load_profile("no deadline")
 
 
-def pytest_configure(config):
+def pytest_configure(config: Any) -> None:
     config.addinivalue_line(
         "markers",
         "structures(names, both=[..], verilator=[..], icarus=[..], regress=[..], regress_verilator=[..]): parameter "
@@ -44,7 +45,7 @@ def pytest_configure(config):
     )
 
 
-def pytest_generate_tests(metafunc):
+def pytest_generate_tests(metafunc: Any) -> None:
     """Run every test that takes a simulator on each simulator, except for the limits of its `structures` mark."""
     parametrized = [mark.args[0] for mark in metafunc.definition.iter_markers("parametrize")]
     if "simulator" not in metafunc.fixturenames or "simulator" in parametrized:
@@ -62,7 +63,7 @@ def pytest_generate_tests(metafunc):
     metafunc.parametrize(("simulator", *mark.args[0].split()), cases, indirect=["simulator"])
 
 
-def chosen_structures(groups):
+def chosen_structures(groups: Any) -> dict[Any, Any]:
     """Return the structures of a mark by simulator, each with its marks."""
     both, verilator, icarus = (groups.get(name, []) for name in ("both", "verilator", "icarus"))
     regress, regress_verilator = (groups.get(name, []) for name in ("regress", "regress_verilator"))
@@ -76,21 +77,22 @@ def chosen_structures(groups):
     }
 
 
-def begins_at_random(item):
+def begins_at_random(item: Any) -> Any:
     """Return whether a test also runs from several random power-up states; see `run_tb`."""
     callspec = getattr(item, "callspec", None)
     first = callspec is not None and all(index == 0 for index in callspec.indices.values())
     device = item.originalname != "test_a_second_client"  # of a device that has begun so already
-    return first and device and "run_tb" in item.fixturenames and callspec.params["simulator"] == "verilator"
+    return first and device and "run_tb" in item.fixturenames and callspec.params["simulator"] == "verilator"  # type: ignore[union-attr]
 
 
-def pytest_collection_modifyitems(config, items):
+def pytest_collection_modifyitems(config: Any, items: Any) -> None:
     """Leave out what only `make regress` runs."""
     for item in items:
         if "run_tb" in getattr(item, "fixturenames", ()) and item.callspec.params["simulator"] == "icarus":
             item.add_marker("seeds")
     only_power_ups = os.environ.get("ONLY") == "power_ups"
-    chosen, others = [], []
+    chosen: list[Any] = []
+    others: list[Any] = []
     for item in items:
         in_regress_only = item.get_closest_marker("regress") and not REGRESS
         other_part = only_power_ups and not begins_at_random(item)
@@ -99,30 +101,30 @@ def pytest_collection_modifyitems(config, items):
     items[:] = chosen
 
 
-def _label(value):
+def _label(value: Any) -> Any:
     return "-".join(f"{key}={choice}" for key, choice in value.items()) if isinstance(value, dict) else str(value)
 
 
 @pytest.fixture
-def simulator(request):
+def simulator(request: pytest.FixtureRequest) -> Any:
     return request.param
 
 
-def shortest(results, clocks):
+def shortest(results: Any, clocks: int) -> str:
     """A filter for the tests that took the least simulated time, up to so many clocks in all; one of them at least."""
     cases = []
     for case in ElementTree.parse(results).getroot().iter("testcase"):
         properties = {entry.get("name"): entry.get("value") for entry in case.iter("property")}
-        cases.append((float(properties["sim_time_duration"]) / CLOCK_NS, case.get("name")))
+        cases.append((float(properties["sim_time_duration"]) / CLOCK_NS, case.get("name")))  # type: ignore[arg-type]
     cases.sort()
     total = itertools.accumulate(duration for duration, _ in cases)
     chosen = [
         name for index, (so_far, (_, name)) in enumerate(zip(total, cases, strict=True)) if so_far < clocks or not index
     ]
-    return f"({'|'.join(map(re.escape, chosen))})$"
+    return f"({'|'.join(map(re.escape, chosen))})$"  # type: ignore[arg-type]
 
 
-def first_failure(run_folder, failed, count, log):
+def first_failure(run_folder: Any, failed: Any, count: int, log: Path) -> Any:
     """Return the message and the traceback of the first test that failed in a run, and where its log is."""
     summary = f"{failed} of {count} tests failed: {log}"
     for case in ElementTree.parse(run_folder / "results.xml").getroot().iter("testcase"):
@@ -133,14 +135,22 @@ def first_failure(run_folder, failed, count, log):
 
 
 @pytest.fixture
-def run_tb(simulator, request):
+def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
     """Build `toplevel` from `sources` (names in hdl/) and run its testbench.
 
     `roms`, called with the folder, writes the files that $readmemh reads there. The first structure of a core with a
     reset is also run from several random power-up states, on Verilator, with the shortest of its tests.
     """
 
-    def run(toplevel, sources, parameters=None, test_module=None, roms=None, environment=None, files=()):
+    def run(
+        toplevel: Any,
+        sources: Any,
+        parameters: Any = None,
+        test_module: Any = None,
+        roms: Any = None,
+        environment: Any = None,
+        files: Any = (),
+    ) -> None:
         name = re.sub(r"[^\w-]+", "_", request.node.name).strip("_")
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
@@ -161,7 +171,7 @@ def run_tb(simulator, request):
             log=folder / "build.log",
         )
 
-        def play(log, environment, **arguments):
+        def play(log: Path, environment: Any, **arguments: Any) -> None:
             count, failed = simulation.run(
                 toplevel,
                 test_module or repository.testbench(toplevel),

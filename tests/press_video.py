@@ -11,6 +11,7 @@ writes press.avi (320 x 240, lossless, 300 frames by default), background.png an
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -23,7 +24,7 @@ DRAWN = 24  # different frames, which repeat
 DEEPEST_MM, CIRCLE_MM = 1.4, 3.0
 
 
-def press_frames(drawn=DRAWN):
+def press_frames(drawn: Any = DRAWN) -> Any:
     """Frames of one turn, uint8 (drawn, 240, 320, 3), RGB."""
     frames = []
     for index in range(drawn):
@@ -34,14 +35,14 @@ def press_frames(drawn=DRAWN):
     return np.stack(frames)
 
 
-def write_sensor(folder):
+def write_sensor(folder: Path) -> None:
     """Write background.png and sensor.npz of the sample."""
     sample = td.sample("ball")
     Image.fromarray(sample.reference).save(folder / "background.png")
     sample.sensor.save(folder / "sensor.npz")
 
 
-def write_video(path, frames, count):
+def write_video(path: Path, frames: Any, count: int) -> None:
     """Write so many frames without loss, repeated from the first where there are fewer."""
     import cv2
 

@@ -4,9 +4,10 @@
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 
-def record(**figures) -> None:
+def record(**figures: Any) -> None:
     """A line in the file that RECORDS names, if it does."""
     if "RECORDS" in os.environ:
         with Path(os.environ["RECORDS"]).open("a") as file:

@@ -4,6 +4,8 @@
 import io
 import zipfile
 from dataclasses import fields
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,13 +29,13 @@ GOOD = {**OLD, **CAMERA}
 QUADRATIC = {"coefficients": np.zeros((2, 3, 6)), "largest_slope": 0.7}
 
 
-def saved(folder, **changed):
+def saved(folder: Path, **changed: Any) -> Any:
     path = folder / "mine.npz"
     np.savez(path, **{key: value for key, value in {**GOOD, **changed}.items() if value is not None})
     return path
 
 
-def refused(path) -> str:
+def refused(path: Any) -> str:
     with pytest.raises(InputError) as caught:
         load(str(path))
     message = str(caught.value)
@@ -45,7 +47,7 @@ def refused(path) -> str:
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
-def test_built_in_calibrations_fit_the_default_configuration(name):
+def test_built_in_calibrations_fit_the_default_configuration(name: str) -> None:
     calibration = load(name)
     config = Configuration()
     assert calibration.name == name
@@ -55,23 +57,23 @@ def test_built_in_calibrations_fit_the_default_configuration(name):
     assert calibration.pixel_pitch_mm > 0
 
 
-def test_synthetic_inverts_the_colour_model_at_bin_centres():
+def test_synthetic_inverts_the_colour_model_at_bin_centres() -> None:
     calibration = synthetic(6)
     slope = calibration.gradient
-    colour = REST + GAIN * slope @ LIGHTS.T
+    colour = REST + GAIN * slope @ LIGHTS.T  # type: ignore[operator]
     centre = np.stack(np.meshgrid(*[np.arange(64) * 4 + 1.5] * 3, indexing="ij"), axis=-1)
-    inside = (np.abs(slope) < 0.98).all(axis=-1)
+    inside = (np.abs(slope) < 0.98).all(axis=-1)  # type: ignore[arg-type]
     residual = (colour - centre)[inside]
     # What a slope cannot explain is the brightness common to the three lights.
     np.testing.assert_allclose(residual, residual.mean(axis=-1, keepdims=True).repeat(3, axis=-1), atol=1e-9)
 
 
-def test_the_rest_colour_of_the_synthetic_sensor_reads_exactly_flat():
+def test_the_rest_colour_of_the_synthetic_sensor_reads_exactly_flat() -> None:
     rest = int(REST) >> 4
-    assert not synthetic().gradient[rest, rest, rest].any()
+    assert not synthetic().gradient[rest, rest, rest].any()  # type: ignore[index]
 
 
-def test_a_rounded_slope_never_saturates():
+def test_a_rounded_slope_never_saturates() -> None:
     for largest in (0.2, 0.5, 0.96, 0.999, 1.0, 1.7):
         limit = Sensor("x", np.full((2, 2, 2, 2), largest), 1.0).gradient_limit
         step = limit / 256
@@ -79,11 +81,11 @@ def test_a_rounded_slope_never_saturates():
         assert limit / 2 <= largest * (1 + 2**-8)
 
 
-def test_an_all_zero_table_has_a_gradient_limit():
-    assert Sensor("x", GOOD["gradient"], 1.0).gradient_limit == 1.0
+def test_an_all_zero_table_has_a_gradient_limit() -> None:
+    assert Sensor("x", GOOD["gradient"], 1.0).gradient_limit == 1.0  # type: ignore[arg-type]
 
 
-def test_the_fitted_calibration_is_small():
+def test_the_fitted_calibration_is_small() -> None:
     assert (FOLDER / "gelsight-mini.npz").stat().st_size < 100 * 1024
 
 
@@ -92,18 +94,18 @@ def test_the_fitted_calibration_is_small():
 
 @pytest.mark.parametrize("bits", range(1, 7))
 @pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64])
-def test_a_file_is_read_as_written(tmp_path, bits, dtype):
+def test_a_file_is_read_as_written(tmp_path: Path, bits: int, dtype: Any) -> None:
     gradient = np.random.default_rng(bits).normal(size=(1 << bits,) * 3 + (2,)).astype(dtype)
     calibration = load(str(saved(tmp_path, gradient=gradient, maker=np.array("ours"))))
     assert calibration.bits_per_channel == bits
-    assert calibration.gradient.dtype == np.float64
+    assert calibration.gradient.dtype == np.float64  # type: ignore[union-attr]
     assert calibration.pixel_pitch_mm == 0.05
     np.testing.assert_array_equal(calibration.gradient, gradient)
 
 
 @pytest.mark.parametrize("table", [True, False])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_quadratics_are_read_as_written(tmp_path, table, dtype):
+def test_quadratics_are_read_as_written(tmp_path: Path, table: Any, dtype: Any) -> None:
     coefficients = np.random.default_rng(1).normal(size=(2, 3, 6)).astype(dtype)
     changed = {"coefficients": coefficients, "largest_slope": 1.5, "model": "quadratic"}
     calibration = load(str(saved(tmp_path, **changed, **({} if table else {"gradient": None}))))
@@ -113,37 +115,37 @@ def test_quadratics_are_read_as_written(tmp_path, table, dtype):
     assert (calibration.gradient is not None) == table
 
 
-def test_a_file_says_nothing_of_its_model_and_has_the_one_it_holds(tmp_path):
+def test_a_file_says_nothing_of_its_model_and_has_the_one_it_holds(tmp_path: Path) -> None:
     assert load(str(saved(tmp_path))).model == "lut"
     assert load(str(saved(tmp_path, **QUADRATIC))).model == "lut"
     assert load(str(saved(tmp_path, **QUADRATIC, gradient=None))).model == "quadratic"
 
 
-def test_a_missing_table_is_named_where_it_is_needed(tmp_path):
+def test_a_missing_table_is_named_where_it_is_needed(tmp_path: Path) -> None:
     calibration = load(str(saved(tmp_path, **QUADRATIC, gradient=None)))
     with pytest.raises(InputError, match="no `gradient` in it: the table is needed here"):
         _ = calibration.table
 
 
-def test_an_unknown_name_is_answered_with_the_known_ones():
+def test_an_unknown_name_is_answered_with_the_known_ones() -> None:
     message = refused("gelsihgt")
     assert "gelsihgt" in message
     assert all(name in message for name in BUILT_IN)
 
 
-def test_a_missing_file_is_named(tmp_path):
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
     assert f"{tmp_path}/absent.npz: no such file" in refused(tmp_path / "absent.npz")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.99])
-def test_a_truncated_file_is_named(tmp_path, share):
+def test_a_truncated_file_is_named(tmp_path: Path, share: float) -> None:
     path = saved(tmp_path)
     whole = path.read_bytes()
     path.write_bytes(whole[: int(share * len(whole))])
     assert f"{path}: not a readable .npz" in refused(path)
 
 
-def test_a_file_damaged_inside_is_named(tmp_path):
+def test_a_file_damaged_inside_is_named(tmp_path: Path) -> None:
     path = tmp_path / "mine.npz"
     np.savez_compressed(path, gradient=np.random.default_rng(1).normal(size=(4, 4, 4, 2)), pixel_pitch_mm=1.0)
     data = bytearray(path.read_bytes())
@@ -153,14 +155,14 @@ def test_a_file_damaged_inside_is_named(tmp_path):
 
 
 @pytest.mark.parametrize("content", [b"not a calibration", b"PK\x03\x04 not one either"])
-def test_a_file_of_another_kind_is_named(tmp_path, content):
+def test_a_file_of_another_kind_is_named(tmp_path: Path, content: Any) -> None:
     path = tmp_path / "mine.npz"
     path.write_bytes(content)
     assert f"{path}: not a readable .npz" in refused(path)
 
 
-def test_an_array_in_place_of_an_npz_is_named(tmp_path):
-    np.save(tmp_path / "table.npy", GOOD["gradient"])
+def test_an_array_in_place_of_an_npz_is_named(tmp_path: Any) -> None:
+    np.save(tmp_path / "table.npy", GOOD["gradient"])  # type: ignore[arg-type]
     assert "table.npy: not a readable .npz" in refused(tmp_path / "table.npy")
 
 
@@ -196,7 +198,7 @@ def test_an_array_in_place_of_an_npz_is_named(tmp_path):
         ({"pixel_pitch_mm": "0.1"}, "<U3"),
     ],
 )
-def test_wrong_contents_are_named(tmp_path, changed, said):
+def test_wrong_contents_are_named(tmp_path: Path, changed: Any, said: Any) -> None:
     path = saved(tmp_path, **changed)
     message = refused(path)
     assert str(path) in message
@@ -205,13 +207,13 @@ def test_wrong_contents_are_named(tmp_path, changed, said):
 
 @pytest.mark.parametrize("order", "<>")
 @pytest.mark.parametrize("key", ["pixel_format", "model"])
-def test_characters_that_do_not_exist_are_refused(tmp_path, key, order):
+def test_characters_that_do_not_exist_are_refused(tmp_path: Path, key: str, order: Any) -> None:
     text = np.frombuffer(np.array([0x72, 0x110000], f"{order}u4").tobytes(), f"{order}U2")
     assert f"{key}.npy holds characters that do not exist" in refused(saved(tmp_path, **{key: text}))
 
 
 @pytest.mark.parametrize("key", CAMERA_KEYS)
-def test_a_file_without_a_part_of_its_camera_is_named(tmp_path, key):
+def test_a_file_without_a_part_of_its_camera_is_named(tmp_path: Path, key: str) -> None:
     assert f"no `{key}` in it" in refused(saved(tmp_path, **{key: None}))
 
 
@@ -232,11 +234,11 @@ def test_a_file_without_a_part_of_its_camera_is_named(tmp_path, key):
         ({"lighting": np.zeros((2, 2, 3))}, "`lighting` is float64 (2, 2, 3)"),
     ],
 )
-def test_a_wrong_camera_is_named(tmp_path, changed, said):
+def test_a_wrong_camera_is_named(tmp_path: Path, changed: Any, said: Any) -> None:
     assert said in refused(saved(tmp_path, **changed))
 
 
-def test_an_old_file_needs_the_size_of_its_camera(tmp_path):
+def test_an_old_file_needs_the_size_of_its_camera(tmp_path: Path) -> None:
     path = saved(tmp_path, **dict.fromkeys(CAMERA), **QUADRATIC)
     assert "give camera_size=(rows, columns)" in refused(path)
     with pytest.warns(InputWarning, match="a calibration of version 0.1: taken for RGB pictures of 320 x 240 pixels"):
@@ -245,26 +247,26 @@ def test_an_old_file_needs_the_size_of_its_camera(tmp_path):
     assert sensor.fitted_slope == {"quadratic": 0.7}
 
 
-def test_a_camera_size_that_contradicts_the_file_is_refused(tmp_path):
+def test_a_camera_size_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"contradicts .* 320 x 240 pixels .*: omit camera_size"):
         load(saved(tmp_path), camera_size=(480, 640))
 
 
 @pytest.mark.parametrize("size", [(240,), 240, (0, 0), (240.0, 320.0), "320x240"])
-def test_a_camera_size_that_is_none_is_refused_without_a_warning(tmp_path, size):
+def test_a_camera_size_that_is_none_is_refused_without_a_warning(tmp_path: Any, size: Any) -> None:
     with pytest.raises(InputError, match="accepted are rows and columns"):
         load(saved(tmp_path, **dict.fromkeys(CAMERA), **QUADRATIC), camera_size=size)
 
 
-def test_names_and_sizes_that_mean_nothing_are_refused():
+def test_names_and_sizes_that_mean_nothing_are_refused() -> None:
     with pytest.raises(InputError, match="takes pictures of any size: omit camera_size"):
         load("synthetic", camera_size=(240, 320))
     for name in (None, 3):
         with pytest.raises(InputError, match="accepted is a name or a path"):
-            load(name)
+            load(name)  # type: ignore[arg-type]
 
 
-def test_what_is_saved_is_read_again(tmp_path):
+def test_what_is_saved_is_read_again(tmp_path: Path) -> None:
     sensor = load("gelsight-mini")
     sensor.save(tmp_path / "copy.npz")
     again = load(tmp_path / "copy.npz")
@@ -275,12 +277,12 @@ def test_what_is_saved_is_read_again(tmp_path):
             assert np.array_equal(old, new) if isinstance(old, np.ndarray) else old == new, part.name
 
 
-def test_a_calibration_without_a_camera_is_not_saved(tmp_path):
+def test_a_calibration_without_a_camera_is_not_saved(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no camera in it"):
         synthetic().save(tmp_path / "copy.npz")
 
 
-def test_a_path_that_cannot_be_written_is_named(tmp_path):
+def test_a_path_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be written"):
         load("gelsight-mini").save(tmp_path / "file" / "copy.npz")
@@ -291,13 +293,13 @@ def test_a_path_that_cannot_be_written_is_named(tmp_path):
 # Files that are made to harm.
 
 
-def npy(shape, dtype="<f8", data=b"") -> bytes:
+def npy(shape: Any, dtype: str = "<f8", data: Any = b"") -> bytes:
     store = io.BytesIO()
     np.lib.format.write_array_header_1_0(store, {"descr": dtype, "fortran_order": False, "shape": shape})
     return store.getvalue() + data
 
 
-def archive(path, method=zipfile.ZIP_DEFLATED, **members: bytes):
+def archive(path: Any, method: Any = zipfile.ZIP_DEFLATED, **members: bytes) -> Any:
     with zipfile.ZipFile(path, "w", method, compresslevel=1) as store:
         for name, content in {"gradient": npy((2, 2, 2, 2), data=bytes(128)), **members}.items():
             store.writestr(f"{name}.npy", content)
@@ -305,7 +307,7 @@ def archive(path, method=zipfile.ZIP_DEFLATED, **members: bytes):
 
 
 @pytest.mark.parametrize("member", ["gradient", "pixel_pitch_mm"])
-def test_an_archive_that_unpacks_to_much_is_refused_before(tmp_path, member):
+def test_an_archive_that_unpacks_to_much_is_refused_before(tmp_path: Any, member: Any) -> None:
     count = 1 << 21  # 16 MB
     path = archive(tmp_path / "c.npz", **{member: npy((count,), data=bytes(8 * count))})
     assert path.stat().st_size < 1 << 20
@@ -313,32 +315,32 @@ def test_an_archive_that_unpacks_to_much_is_refused_before(tmp_path, member):
 
 
 @pytest.mark.parametrize("shape", [(1 << 40,), (-1, 2, 2, 2), (1 << 62, 4, 4, 2), (64, 64, 64, 64)])
-def test_a_member_that_claims_too_much_is_refused(tmp_path, shape):
+def test_a_member_that_claims_too_much_is_refused(tmp_path: Path, shape: Any) -> None:
     assert "gradient.npy is float64" in refused(archive(tmp_path / "c.npz", gradient=npy(shape)))
 
 
-def test_pickled_objects_are_refused(tmp_path):
+def test_pickled_objects_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "c.npz"
     np.savez(path, gradient=np.array([print], dtype=object), pixel_pitch_mm=0.1)
     assert "Object arrays cannot be loaded" in refused(path)
 
 
-def test_a_packing_that_numpy_does_not_write_is_refused(tmp_path):
+def test_a_packing_that_numpy_does_not_write_is_refused(tmp_path: Any) -> None:
     assert "packed in a way" in refused(
         archive(tmp_path / "c.npz", zipfile.ZIP_LZMA, pixel_pitch_mm=npy((), data=bytes(8)))
     )
 
 
-def test_an_npy_in_place_of_an_npz_is_named(tmp_path):
+def test_an_npy_in_place_of_an_npz_is_named(tmp_path: Path) -> None:
     path = tmp_path / "c.npz"
     path.write_bytes(npy((2, 2, 2, 2), data=bytes(128)))
     assert "not a readable .npz" in refused(path)
 
 
 @pytest.mark.parametrize("pitch", [1e-300, 1e300])
-def test_a_pitch_of_no_camera_is_named(tmp_path, pitch):
+def test_a_pitch_of_no_camera_is_named(tmp_path: Path, pitch: float) -> None:
     assert "accepted are 1e-06 to 1000" in refused(saved(tmp_path, pixel_pitch_mm=pitch))
 
 
-def test_a_path_too_long_for_the_system_is_named():
+def test_a_path_too_long_for_the_system_is_named() -> None:
     assert "too long" in refused("x" * 5000)

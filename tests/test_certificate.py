@@ -2,6 +2,8 @@
 """The certificate: its norms are those of the whole linear map, its frames attain them in model and RTL."""
 
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from tactile_depth.gradient.divergence import divergence
 from tactile_depth.sensor import Camera, Sensor, load
 from tactile_depth.tactile_depth import solve
 
-WHOLE = [
+WHOLE: list[dict[str, Any]] = [
     {"columns": 16},
     {"columns": 16, "neumann": True, "coefficient_width": 10, "data_width": 12},
     {"columns": 16, "rows": 9, "solver": "tridiagonal"},
@@ -30,15 +32,15 @@ each_whole = pytest.mark.parametrize("choices", WHOLE, ids=lambda c: "-".join(ma
 class Words(Monitor):
     """Every word of every node: (lone samples, words)."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
-        self.words = {}
+        self.words: dict[Any, Any] = {}
 
-    def linear(self, node, response):
+    def linear(self, node: Any, response: Any) -> None:
         self.words.setdefault(node, []).append(response.reshape(len(response), -1))
 
 
-def whole_map(config):
+def whole_map(config: Configuration) -> tuple[Any, ...]:
     """Responses of every word to each pixel of the divergence, and of the depth, by running the solver on floats."""
     shape = (config.rows, config.columns)
     count = config.rows * config.columns
@@ -47,7 +49,7 @@ def whole_map(config):
     return {node: np.concatenate(words, axis=1) for node, words in monitor.words.items()}, depth
 
 
-def over_slopes(words, config):
+def over_slopes(words: Any, config: Configuration) -> Any:
     """Norm of each word over slopes up to the limit, in its codes."""
     maps = np.moveaxis(words.reshape(config.rows, config.columns, -1), -1, 0)
     norms = [np.abs(slope_response(word, config.neumann)).sum() for word in maps]
@@ -55,7 +57,7 @@ def over_slopes(words, config):
 
 
 @each_whole
-def test_slopes_are_the_norms_of_the_whole_map(choices):
+def test_slopes_are_the_norms_of_the_whole_map(choices: Any) -> None:
     config = Configuration(**choices)
     words, _ = whole_map(config)
     nodes = certify(config)
@@ -69,7 +71,7 @@ def test_slopes_are_the_norms_of_the_whole_map(choices):
 
 
 @pytest.mark.parametrize("choices", [choices for choices in WHOLE if not choices.get("neumann")], ids=str)
-def test_depths_are_the_norms_of_the_whole_map(choices):
+def test_depths_are_the_norms_of_the_whole_map(choices: Any) -> None:
     """By the inverse of the map to depth. The certificate may say a little more: see below."""
     config = Configuration(**choices)
     words, depth = whole_map(config)
@@ -86,7 +88,7 @@ def test_depths_are_the_norms_of_the_whole_map(choices):
 
 @pytest.mark.parametrize("neumann", [False, True])
 @pytest.mark.parametrize(("rows", "columns"), [(16, 16), (11, 16), (32, 16)])
-def test_the_deepest_point_is_where_it_is_looked_for(rows, columns, neumann):
+def test_the_deepest_point_is_where_it_is_looked_for(rows: int, columns: int, neumann: bool) -> None:
     lone = np.eye(rows * columns).reshape(-1, rows, columns)
     depths = [np.abs(slope_response(z, neumann)).sum() for z in reference.solve(lone, neumann)]
     assert deepest(rows, columns, neumann) == pytest.approx(max(depths), rel=1e-12)
@@ -94,7 +96,7 @@ def test_the_deepest_point_is_where_it_is_looked_for(rows, columns, neumann):
 
 @pytest.mark.parametrize("neumann", [False, True])
 @pytest.mark.parametrize("rows", [8, 21, 32])
-def test_the_bound_of_a_difference_holds_and_is_close(rows, neumann):
+def test_the_bound_of_a_difference_holds_and_is_close(rows: int, neumann: bool) -> None:
     """The configuration computes it without the whole survey: ideal coefficients, the variation of weights as 2."""
     config = Configuration(columns=32, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=24)
     found = {node.name: node for node in certify(config)}["forward_elimination.difference"].slopes
@@ -102,7 +104,7 @@ def test_the_bound_of_a_difference_holds_and_is_close(rows, neumann):
     assert found * (1 - 1e-4) <= by_slopes <= 1.3 * found
 
 
-def laplacian(z, neumann):
+def laplacian(z: np.ndarray, neumann: bool) -> Any:
     """Five-point; the neighbour outside the frame is the mirrored negative, or (Neumann) the pixel itself."""
     f = np.zeros_like(z)
     for axis in (-1, -2):
@@ -113,7 +115,7 @@ def laplacian(z, neumann):
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 @pytest.mark.parametrize("depth_range_px", [0.25, 1.0, 4.0])
-def test_depths_at_their_bounds_saturate_no_node(solver, depth_range_px):
+def test_depths_at_their_bounds_saturate_no_node(solver: str, depth_range_px: Any) -> None:
     """Of each node the depths that drive it furthest, from limit to limit: only the widest slope limit lets them in."""
     config = Configuration(columns=16, solver=solver, depth_range_px=depth_range_px, gradient_limit=64.0)
     words, depth = whole_map(config)
@@ -130,7 +132,7 @@ def test_depths_at_their_bounds_saturate_no_node(solver, depth_range_px):
     assert np.abs(codes).max() * config.depth_lsb_px == pytest.approx(depth_range_px, rel=0.01)
 
 
-def slopes_of_field(z):
+def slopes_of_field(z: Any) -> Any:
     """Slopes (..., 2) whose divergence is the Laplacian of z, zero half a pixel outside.
 
     The divergence takes the slope outside as 0, so one at the edge is carried along the whole row.
@@ -140,14 +142,15 @@ def slopes_of_field(z):
 
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
-def test_depths_at_their_bounds_through_rtl(tmp_path, solver):
+def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
     """A calibration with a colour for every pixel of every pattern lets a camera show them."""
     size, bits = 16, 4
     patterns_held = 2 ** (3 * bits) // size**2
     config = Configuration(columns=size, solver=solver, gradient_limit=32.0)
     words, depth = whole_map(config)
     from_depth = np.linalg.inv(depth)
-    meant, patterns = [], []
+    meant = []
+    patterns: list[Any] = []
     for name in [name for name in words if not name.startswith(("row_forward", "column_forward"))]:
         response = from_depth @ words[name]
         pattern = np.sign(response[:, np.abs(response).sum(axis=0).argmax()]).reshape(size, size)
@@ -155,24 +158,24 @@ def test_depths_at_their_bounds_through_rtl(tmp_path, solver):
         if np.abs(response).max() and not any((pattern == other).all() for other in patterns):
             meant.append(name)
             patterns.append(pattern)
-    patterns = np.stack(patterns[:patterns_held])
+    field = np.stack(patterns[:patterns_held])
     gradient = np.zeros((patterns_held * size**2, 2))
-    slopes = slopes_of_field(config.depth_range_px * patterns)
-    gradient[: patterns.size] = slopes.reshape(-1, 2)
+    slopes = slopes_of_field(config.depth_range_px * field)
+    gradient[: field.size] = slopes.reshape(-1, 2)
     table = Sensor("patterns", gradient.reshape((1 << bits,) * 3 + (2,)), 0.1, camera=Camera(size, size))
     table.save(tmp_path / "c.npz")
-    index = np.arange(patterns.size).reshape(patterns.shape)
+    index = np.arange(field.size).reshape(field.shape)
     colours = np.stack([index >> 2 * bits, index >> bits & 15, index & 15], axis=-1) << (8 - bits)
-    np.save(tmp_path / "patterns.npy", colours.astype(np.uint8))
-    given = [f"FRAMES={tmp_path / 'patterns.npy'}", f"CALIBRATION={tmp_path / 'c.npz'}", f"OUT={tmp_path / 'out'}"]
+    np.save(tmp_path / "field.npy", colours.astype(np.uint8))
+    given = [f"FRAMES={tmp_path / 'field.npy'}", f"CALIBRATION={tmp_path / 'c.npz'}", f"OUT={tmp_path / 'out'}"]
     assert sim.run(sim.parse([f"N={size}", f"SOLVER={solver}", "SIM=icarus", *given])) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     assert report["saturations"] == {}
     assert report["registers"]["saturations"] == 0
     reached = np.load(tmp_path / "out" / "depth.npy") * config.depth_lsb_px
-    np.testing.assert_allclose(reached, config.depth_range_px * patterns, rtol=1e-3)
+    np.testing.assert_allclose(reached, config.depth_range_px * field, rtol=1e-3)
 
-    peaks = command.Peaks({name: node_format(name, config).width for name in words}, len(patterns))
+    peaks = command.Peaks({name: node_format(name, config).width for name in words}, len(field))
     command.tactile_depth(colours.astype(np.uint8), load(str(tmp_path / "c.npz")), config, peaks)
     nodes = {node.name: node for node in certify(config)}
     for frame, name in enumerate(meant[:patterns_held]):
@@ -182,7 +185,7 @@ def test_depths_at_their_bounds_through_rtl(tmp_path, solver):
 
 
 @pytest.mark.parametrize("depth_range_px", [1.0, 2.0])
-def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_px):
+def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_px: Any) -> None:
     """Steep and shallow at once: what comes into the elimination is then larger than any mode of the depth."""
     config = Configuration(columns=32, solver="tridiagonal", depth_range_px=depth_range_px)
     node = {node.name: node for node in certify(config)}["row_forward.phase.re"]
@@ -194,10 +197,10 @@ def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_p
     assert not monitor.saturations
 
 
-def test_a_format_too_narrow_for_the_range_is_refused_with_its_node():
+def test_a_format_too_narrow_for_the_range_is_refused_with_its_node() -> None:
     class Narrow(Configuration):
         @property
-        def column_inverse(self):
+        def column_inverse(self) -> Any:
             form = super().column_inverse
             return Format(form.width, form.fraction + 1)
 
@@ -207,7 +210,7 @@ def test_a_format_too_narrow_for_the_range_is_refused_with_its_node():
 
     class Shallow(Configuration):
         @property
-        def elimination(self):  # as for modes of the depth alone
+        def elimination(self) -> Any:  # as for modes of the depth alone
             return Format.holding(2 * self._bounds.depth_modes / DEPTH_HEADROOM, self.arithmetic_width)
 
     Shallow(columns=32, solver="tridiagonal")
@@ -220,26 +223,26 @@ def test_a_format_too_narrow_for_the_range_is_refused_with_its_node():
 @pytest.mark.parametrize("depth_range_px", [None, 0.3, 3.0])
 @pytest.mark.parametrize(("columns", "data_width", "coefficient_width"), [(16, 12, 10), (32, 24, 18), (32, 32, 24)])
 def test_no_derived_format_saturates_within_the_range(
-    solver, neumann, depth_range_px, columns, data_width, coefficient_width
-):
+    solver: str, neumann: bool, depth_range_px: Any, columns: int, data_width: int, coefficient_width: int
+) -> None:
     config = Configuration(columns, 0, solver, neumann, data_width, coefficient_width, depth_range_px)
     assert {node.name for node in certify(config) if node.depths_headroom_bits < 0} == set()
 
 
-def test_every_node_has_its_format():
+def test_every_node_has_its_format() -> None:
     """Widths as the model saturates to: a full-scale frame clips at them."""
     for choices in WHOLE:
         config = Configuration(**choices)
 
         class Limits(Monitor):
-            def rounded(self, node, values, config=config):
+            def rounded(self, node: Any, values: Any, config: Configuration = config) -> None:
                 assert node_format(node, config).width in (config.data_width, config.arithmetic_width)
                 self.clipped_to = node_format(node, config)
 
         solve(np.ones((config.rows, config.columns), np.int64), config, Limits())
 
 
-def run(tmp_path, *arguments, rtl=True):
+def run(tmp_path: Any, *arguments: Any, rtl: bool = True) -> Any:
     out = tmp_path / "out"
     assert command.run(sim.parse([*arguments, f"OUT={out}"]), rtl) == 0
     return json.loads((out / "certificate.json").read_text())
@@ -263,7 +266,9 @@ def run(tmp_path, *arguments, rtl=True):
         ),
     ],
 )
-def test_rtl_and_model_saturate_where_the_certificate_says(tmp_path, capsys, given, depth_range):
+def test_rtl_and_model_saturate_where_the_certificate_says(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any, depth_range: int
+) -> None:
     document = run(tmp_path, *given.split(), "SIM=icarus", f"DEPTH_RANGE={depth_range}")
     assert document["rtl"]
     assert document["faults"] == []
@@ -276,14 +281,14 @@ def test_rtl_and_model_saturate_where_the_certificate_says(tmp_path, capsys, giv
 
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
-def test_the_worst_depth_range_and_its_price(tmp_path, capsys, solver):
+def test_the_worst_depth_range_and_its_price(tmp_path: Path, capsys: pytest.CaptureFixture[str], solver: str) -> None:
     run(tmp_path, "N=32", f"SOLVER={solver}", "DEPTH_RANGE=worst", rtl=False)
     said = capsys.readouterr().out
     assert "no slopes at all saturate a node" in said
     assert "bits of resolution" in said
 
 
-def test_a_certificate_that_is_wrong_is_found_out(tmp_path):
+def test_a_certificate_that_is_wrong_is_found_out(tmp_path: Path) -> None:
     config = Configuration(columns=16)
     nodes = certify(config)
     calibration = load("synthetic")
@@ -303,7 +308,9 @@ def test_a_certificate_that_is_wrong_is_found_out(tmp_path):
 @pytest.mark.parametrize(
     ("given", "named"), [("N=100", "N=100"), ("DEPTH_RANGE=deep", "DEPTH_RANGE=deep"), ("RTL=2", "RTL=2")]
 )
-def test_bad_input(monkeypatch, capsys, tmp_path, given, named):
+def test_bad_input(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, given: Any, named: str
+) -> None:
     monkeypatch.setattr("sys.argv", ["certify", given, f"OUT={tmp_path / 'out'}"])
     with pytest.raises(SystemExit) as stop:
         command.main()

@@ -5,6 +5,8 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +22,7 @@ GRID = ["--grid", "32x24"]
 
 
 @pytest.fixture(scope="module")
-def inputs(tmp_path_factory):
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Pictures of the sample, its background and its calibration, as files."""
     folder = tmp_path_factory.mktemp("inputs")
     sample = td.sample("ball")
@@ -31,16 +33,16 @@ def inputs(tmp_path_factory):
 
 
 @pytest.fixture
-def arguments(inputs):
+def arguments(inputs: Any) -> list[Any]:
     return ["--reference", f"{inputs}/background.png", "--calibration", f"{inputs}/sensor.npz", *GRID]
 
 
-def expected(inputs, **choices):
+def expected(inputs: Any, **choices: Any) -> Any:
     pipeline = td.Pipeline(td.load(inputs / "sensor.npz"), inputs / "background.png", grid=(24, 32), **choices)
     return pipeline(inputs / "press.png")
 
 
-def read_ply(path):
+def read_ply(path: Path) -> tuple[Any, ...]:
     """Vertices and faces of a binary mesh, read by what its header says."""
     header, _, body = path.read_bytes().partition(b"end_header\n")
     counts = {line.split()[1]: int(line.split()[2]) for line in header.decode().splitlines() if "element" in line}
@@ -54,7 +56,7 @@ def read_ply(path):
 # What it writes.
 
 
-def test_the_files_hold_the_height_of_the_pipeline(tmp_path, inputs, arguments):
+def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, arguments: Any) -> None:
     assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 0
     height = expected(inputs).height_mm
     depth_mm = np.load(tmp_path / "depth_mm.npy")
@@ -62,7 +64,7 @@ def test_the_files_hold_the_height_of_the_pipeline(tmp_path, inputs, arguments):
     np.testing.assert_array_equal(depth_mm, height.astype(np.float32))
     with Image.open(tmp_path / "depth_um.png") as picture:
         assert picture.mode == "I;16"
-        assert picture.text["Description"].endswith("in micrometres")
+        assert picture.text["Description"].endswith("in micrometres")  # type: ignore[attr-defined]
         np.testing.assert_array_equal(np.array(picture), np.maximum(np.rint(1000 * height), 0))
     vertices, faces = read_ply(tmp_path / "depth.ply")
     np.testing.assert_array_equal(vertices[:, 2].reshape(24, 32), depth_mm)
@@ -75,7 +77,9 @@ def test_the_files_hold_the_height_of_the_pipeline(tmp_path, inputs, arguments):
     assert files == {"depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"}
 
 
-def test_the_report_describes_the_result(tmp_path, inputs, arguments, capsys):
+def test_the_report_describes_the_result(
+    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 0
     report, result = json.loads((tmp_path / "report.json").read_text()), expected(inputs)
     assert report["grid"] == {"rows": 24, "columns": 32}
@@ -107,7 +111,7 @@ def test_the_report_describes_the_result(tmp_path, inputs, arguments, capsys):
     ],
     ids=lambda value: value[0] if isinstance(value, list) else "",
 )
-def test_options_reach_the_pipeline(tmp_path, inputs, arguments, options, choices):
+def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, arguments: Any, options: Any, choices: Any) -> None:
     assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments, *options]) == 0
     result = expected(inputs, **choices)
     np.testing.assert_array_equal(np.load(tmp_path / "depth_mm.npy"), result.height_mm.astype(np.float32))
@@ -116,7 +120,7 @@ def test_options_reach_the_pipeline(tmp_path, inputs, arguments, options, choice
     assert report["zero_offset"] == choices.get("zero_offset", True)
 
 
-def test_several_pictures_share_one_array(tmp_path, inputs, arguments):
+def test_several_pictures_share_one_array(tmp_path: Path, inputs: Any, arguments: Any) -> None:
     pictures = [f"{inputs}/press.png", f"{inputs}/background.png"]
     assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
     height = np.load(tmp_path / "depth_mm.npy")
@@ -128,7 +132,9 @@ def test_several_pictures_share_one_array(tmp_path, inputs, arguments):
     assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
 
 
-def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path, inputs, arguments):
+def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(
+    tmp_path: Path, inputs: Any, arguments: Any
+) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     pictures = [f"{inputs}/press.png"] * 2
     assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
@@ -138,13 +144,17 @@ def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path, 
     }  # fmt: skip
 
 
-def test_the_results_lie_in_the_current_folder_by_default(tmp_path, inputs, arguments, monkeypatch):
+def test_the_results_lie_in_the_current_folder_by_default(
+    tmp_path: Path, inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["depth", f"{inputs}/press.png", *arguments]) == 0
     assert (tmp_path / "press-depth" / "depth_mm.npy").is_file()
 
 
-def test_nothing_is_written_when_one_picture_is_bad(tmp_path, inputs, arguments, capsys):
+def test_nothing_is_written_when_one_picture_is_bad(
+    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     narrow = tmp_path / "narrow.png"
     Image.new("RGB", (100, 240)).save(narrow)
     out = tmp_path / "out"
@@ -157,16 +167,18 @@ def test_nothing_is_written_when_one_picture_is_bad(tmp_path, inputs, arguments,
 
 
 @pytest.fixture(scope="module")
-def mini(tmp_path_factory):
+def mini(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """A picture without contact of the sensor gelsight-mini, as its calibration knows it, and three others."""
     folder = tmp_path_factory.mktemp("mini")
-    picture = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+    picture = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
     Image.fromarray(picture).save(folder / "background.png")
     Image.fromarray(np.rot90(picture, 2)).save(folder / "rotated.png")
     return folder
 
 
-def test_the_calibration_is_found_by_the_reference_and_named(tmp_path, mini, capsys):
+def test_the_calibration_is_found_by_the_reference_and_named(
+    tmp_path: Path, mini: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     picture = f"{mini}/background.png"
     assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr()
@@ -180,14 +192,18 @@ def test_the_calibration_is_found_by_the_reference_and_named(tmp_path, mini, cap
     assert 0.05 < report["calibration_error"]["relative"] < 0.08
 
 
-def test_a_reference_of_no_known_sensor_needs_a_calibration(tmp_path, mini, capsys):
+def test_a_reference_of_no_known_sensor_needs_a_calibration(
+    tmp_path: Path, mini: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     picture = f"{mini}/rotated.png"
     assert main(["depth", picture, "--reference", picture, "--out", f"{tmp_path}/out"]) == 2
     assert "name the calibration of the sensor that took it" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
-def test_a_named_calibration_with_another_reference_is_used_with_a_warning(tmp_path, mini, capsys):
+def test_a_named_calibration_with_another_reference_is_used_with_a_warning(
+    tmp_path: Path, mini: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     picture = f"{mini}/rotated.png"
     named = ["--calibration", "gelsight-mini"]
     assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path), *GRID, *named]) == 0
@@ -199,7 +215,7 @@ def test_a_named_calibration_with_another_reference_is_used_with_a_warning(tmp_p
 
 
 @needs_real_data
-def test_a_real_press(tmp_path, capsys):
+def test_a_real_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     data = FOLDER / "gelslam"
     picture, reference = data / "9.500mm" / "12.png", data / "background.png"
     assert main(["depth", str(picture), "--reference", str(reference), "--out", str(tmp_path)]) == 0
@@ -230,7 +246,14 @@ def test_a_real_press(tmp_path, capsys):
         (["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--out", "{press}"], "cannot be writ"),
     ],
 )
-def test_bad_input_is_one_line(tmp_path, inputs, monkeypatch, capsys, command, said):
+def test_bad_input_is_one_line(
+    tmp_path: Path,
+    inputs: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    command: Any,
+    said: Any,
+) -> None:
     monkeypatch.chdir(tmp_path)
     names = {"press": f"{inputs}/press.png", "ref": f"{inputs}/background.png", "npz": f"{inputs}/sensor.npz"}
     assert main([word.format(**names) for word in command]) == 2
@@ -240,8 +263,10 @@ def test_bad_input_is_one_line(tmp_path, inputs, monkeypatch, capsys, command, s
     assert not list(tmp_path.iterdir())
 
 
-def test_an_interruption_ends_with_130(inputs, arguments, monkeypatch, capsys):
-    def interrupt(*_):
+def test_an_interruption_ends_with_130(
+    inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(*_: Any) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", interrupt)
@@ -249,8 +274,10 @@ def test_an_interruption_ends_with_130(inputs, arguments, monkeypatch, capsys):
     assert capsys.readouterr().err == "tactile-depth: interrupted\n"
 
 
-def test_an_error_of_the_program_ends_with_3(inputs, arguments, monkeypatch, capsys):
-    def fail(*_):
+def test_an_error_of_the_program_ends_with_3(
+    inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: Any) -> None:
         raise ZeroDivisionError
 
     monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", fail)
@@ -258,7 +285,7 @@ def test_an_error_of_the_program_ends_with_3(inputs, arguments, monkeypatch, cap
     assert "an error of this program" in capsys.readouterr().err
 
 
-def test_it_runs_as_a_module():
+def test_it_runs_as_a_module() -> None:
     ended = subprocess.run([sys.executable, "-m", "tactile_depth.cli", "--help"], capture_output=True, text=True)
     assert ended.returncode == 0
     assert ended.stdout.startswith("usage: tactile-depth")
@@ -267,7 +294,7 @@ def test_it_runs_as_a_module():
 # Mesh and drawing.
 
 
-def test_triangles_face_up():
+def test_triangles_face_up() -> None:
     index = triangles(3, 4)
     y, x = np.divmod(np.arange(12), 4)
     points = np.stack([x, -y, np.zeros(12)], axis=-1).astype(float)
@@ -276,17 +303,17 @@ def test_triangles_face_up():
     assert sorted({*index.ravel().tolist()}) == list(range(12))
 
 
-def test_colours_run_from_dark_blue_to_yellow():
+def test_colours_run_from_dark_blue_to_yellow() -> None:
     np.testing.assert_array_equal(colours(np.array([-1.0, 0.0, 2.0, 3.0]), 0, 2)[[0, 1, 2, 3], 0], [68, 68, 253, 253])
     for limit, step in ((0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70, 50), (0.021, 0.02)):
         assert round_number(limit) == pytest.approx(step)
 
 
-def test_doubtful_pixels_are_marked_in_the_overview(inputs):
+def test_doubtful_pixels_are_marked_in_the_overview(inputs: Any) -> None:
     result = expected(inputs)
     image = np.array(Image.open(inputs / "press.png"))
 
-    def marked(result, colour):
+    def marked(result: Any, colour: Any) -> Any:
         return (np.array(draw_overview(image, result, "")) == colour).all(axis=-1)[:400].sum()
 
     dark = np.zeros_like(result.dark)

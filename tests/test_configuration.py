@@ -2,6 +2,8 @@
 """The configuration: formats just hold what the bounds allow, bad choices are refused, no number drifts."""
 
 import re
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,29 +31,29 @@ from tactile_depth.transform.transpose import transpose
 class Nodes(Monitor):
     """Keeps what passes the nodes of a model fed with floats."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
-        self.values = {}
+        self.values: dict[Any, Any] = {}
 
-    def linear(self, node, response):
+    def linear(self, node: Any, response: Any) -> None:
         self.values[node] = response
 
 
-def responses(size):
+def responses(size: Any) -> Any:
     """Of a row's transforms to each sample: nodes forward (N, nodes), inverse (N, nodes), modes (N, N)."""
-    wide = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    wide: dict[str, Any] = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
     forward, inverse = Nodes(), Nodes()
     modes = dst_forward(np.eye(size)[:, makhoul(size)], monitor=forward, **wide)
     dst_inverse(modes, monitor=inverse, **wide)
     return *(np.hstack(list(nodes.values.values())) for nodes in (forward, inverse)), modes
 
 
-def step(response):
+def step(response: Any) -> Any:
     """Response to a slope: it enters the divergence here with +, in the next word with -."""
     return -np.diff(response, axis=0, append=0)
 
 
-def slope_patterns(size):
+def slope_patterns(size: int) -> Any:
     """Signs of slopes (2, N, N, 2) that attain the bounds of the row and of the column transform."""
     forward, _, modes = responses(size)
     worst = np.argmax(np.abs(step(forward)).sum(axis=0) + 2 * np.abs(forward).sum(axis=0))
@@ -68,7 +70,7 @@ def slope_patterns(size):
     return np.stack((row, np.sign(column)))
 
 
-def depth_patterns(size):
+def depth_patterns(size: int) -> Any:
     """Signs of depth fields (3, N, N) that attain the bounds of the inverse column and row transforms."""
     _, inverse, modes = responses(size)
     m = modes[:, np.argmax(np.abs(modes).sum(axis=0))]
@@ -76,9 +78,9 @@ def depth_patterns(size):
     return np.sign(np.stack((np.outer(c, m), np.outer(m, m), np.resize(c, (size, size)))))
 
 
-def ideal(frames):
+def ideal(frames: Any) -> Any:
     """What nodes see when the transforms work on floats: modes of both directions, then back again."""
-    wide = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
+    wide: dict[str, Any] = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
     nodes = Nodes()
     rows = dst_forward(row_reorder(frames, True), monitor=nodes, node="row_forward", **wide)
     modes = dst_forward(transpose(rows, False, True), monitor=nodes, node="column_forward", **wide)
@@ -88,11 +90,11 @@ def ideal(frames):
     return nodes
 
 
-def largest(nodes, core):
+def largest(nodes: Any, core: str) -> Any:
     return max(np.abs(seen).max() for node, seen in nodes.values.items() if node.startswith(core))
 
 
-def laplacian(z):
+def laplacian(z: np.ndarray) -> Any:
     """Five-point, zero half a pixel outside the frame: the neighbour out there is the mirrored negative."""
     f = np.zeros_like(z)
     for axis in (-1, -2):
@@ -101,7 +103,7 @@ def laplacian(z):
     return f
 
 
-def saturations(z, config):
+def saturations(z: np.ndarray, config: Configuration) -> Any:
     """Of depth fields in pixels, by node, in the bit-accurate solver."""
     monitor = Monitor()
     f = np.rint(laplacian(z) / config.divergence.lsb).astype(np.int64)
@@ -125,21 +127,21 @@ each_choice = pytest.mark.parametrize("choices", CHOICES, ids=lambda c: "-".join
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_slopes_attain_their_bounds(size):
+def test_slopes_attain_their_bounds(size: Any) -> None:
     nodes = ideal(divergence(slope_patterns(size)))
     assert largest(nodes, "row_forward") == pytest.approx(bounds(size).row_forward, rel=1e-9)
     assert largest(nodes, "column_forward") == pytest.approx(bounds(size).column_forward, rel=1e-9)
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_depths_attain_their_bounds(size):
+def test_depths_attain_their_bounds(size: int) -> None:
     nodes = ideal(depth_patterns(size))
     assert largest(nodes, "column_inverse") == pytest.approx(bounds(size).column_inverse, rel=1e-9)
     assert largest(nodes, "row_inverse") == pytest.approx(bounds(size).row_inverse, rel=1e-9)
 
 
 @each_choice
-def test_slopes_at_their_bounds_saturate_no_forward_node(choices):
+def test_slopes_at_their_bounds_saturate_no_forward_node(choices: Any) -> None:
     """Depth may leave its range on them, so what lies behind the divide is not meant."""
     config = Configuration(**choices)
     slopes = slope_patterns(config.columns).astype(np.int64) * (2 ** (config.gradient.width - 1) - 1)
@@ -159,40 +161,40 @@ def test_slopes_at_their_bounds_saturate_no_forward_node(choices):
     ],
     ids=lambda c: "-".join(map(str, c.values())),
 )
-def test_depths_at_their_bounds_saturate_no_node(choices):
+def test_depths_at_their_bounds_saturate_no_node(choices: Any) -> None:
     """From limit to limit within a pixel: only the widest slope limit lets such a field in."""
     config = Configuration(gradient_limit=64.0, **choices)
     assert not saturations(config.depth_range_px * depth_patterns(config.columns), config)
 
 
-def bump(config, share):
+def bump(config: Any, share: Any) -> Any:
     """The lowest mode, with a peak of this share of the depth range."""
     wave = np.sin(np.pi * (2 * np.arange(config.columns) + 1) / (2 * config.columns))
     return share * config.depth_range_px * np.outer(wave, wave) / wave.max() ** 2
 
 
 @each_choice
-def test_a_field_as_deep_as_the_range_saturates_nothing(choices):
+def test_a_field_as_deep_as_the_range_saturates_nothing(choices: Any) -> None:
     config = Configuration(**choices)
     assert not saturations(bump(config, 1.0), config)
     assert not saturations(-bump(config, 0.99 * DEPTH_HEADROOM), config)
 
 
 @each_choice
-def test_a_field_deeper_than_the_code_saturates_the_output_alone(choices):
+def test_a_field_deeper_than_the_code_saturates_the_output_alone(choices: Any) -> None:
     config = Configuration(**choices)
     assert set(saturations(bump(config, 1.05 * DEPTH_HEADROOM), config)) == {"row_inverse.output"}
 
 
 @each_choice
 @pytest.mark.parametrize("sign", [1, -1])
-def test_a_field_of_over_twice_the_range_saturates(choices, sign):
+def test_a_field_of_over_twice_the_range_saturates(choices: Any, sign: Any) -> None:
     config = Configuration(**choices)
     assert saturations(sign * bump(config, 2.2), config)["row_inverse.output"] > 0
 
 
 @given(st.floats(1e-3, 1e6), st.integers(10, 36))
-def test_a_format_is_the_finest_that_holds_its_bound(bound, width):
+def test_a_format_is_the_finest_that_holds_its_bound(bound: float, width: int) -> None:
     form = Format.holding(bound, width)
     assert bound <= form.limit - form.lsb
     assert form.limit / 2 < bound * (1 + 2.0 ** (2 - width)) * (1 + 1e-12)
@@ -225,22 +227,22 @@ def test_a_format_is_the_finest_that_holds_its_bound(bound, width):
     ],
     ids=str,
 )
-def test_what_cannot_be_built_is_refused_in_one_line(choices, message):
+def test_what_cannot_be_built_is_refused_in_one_line(choices: Any, message: str) -> None:
     with pytest.raises(InputError, match=message) as caught:
         Configuration(**choices)
     assert "\n" not in str(caught.value)
 
 
-def test_the_width_that_an_error_asks_for_is_accepted():
+def test_the_width_that_an_error_asks_for_is_accepted() -> None:
     with pytest.raises(InputError) as caught:
         Configuration(columns=32, data_width=12, depth_range_px=200.0)
-    wanted = int(re.search(r"try data_width=(\d+)", str(caught.value))[1])
+    wanted = int(re.search(r"try data_width=(\d+)", str(caught.value))[1])  # type: ignore[index]
     assert Configuration(columns=32, data_width=wanted, depth_range_px=200.0).data_width == wanted
 
 
-def defaults(path):
+def defaults(path: Any) -> dict[Any, Any]:
     """Parameters of the module in a file, by name."""
-    head = re.search(r"#\((.*?)\n\)", (ROOT / path).read_text(), re.DOTALL)[1]
+    head = re.search(r"#\((.*?)\n\)", (ROOT / path).read_text(), re.DOTALL)[1]  # type: ignore[index]
     found = re.findall(r"^\s*parameter int (\w+)\s*=\s*(-?\d+)", head, re.MULTILINE)
     return {name: int(value) for name, value in found}
 
@@ -260,5 +262,5 @@ BOTH = {**FLAT[0], **FLAT[1], **ZERO, **top_parameters(TRIDIAGONAL), **top_param
         ("hdl/poisson/tridiagonal_solver.sv", tridiagonal_solver.solver_parameters(TRIDIAGONAL)),
     ],
 )
-def test_default_parameters_are_those_of_the_default_configuration(path, derived):
+def test_default_parameters_are_those_of_the_default_configuration(path: Path, derived: Any) -> None:
     assert defaults(path) == derived

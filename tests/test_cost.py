@@ -3,6 +3,8 @@
 
 import json
 from collections import Counter
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -24,7 +26,7 @@ CASES = [
 ]
 
 
-def elaborated(config, folder):
+def elaborated(config: Configuration, folder: Path) -> Any:
     """Cells of the whole pipeline, by name."""
     write_roms(folder, synthetic(config.bits_per_channel), config)
     names = []
@@ -42,7 +44,7 @@ def elaborated(config, folder):
     return module["cells"]
 
 
-def operand_width(bits):
+def operand_width(bits: Any) -> int:
     """Without the copies of its sign by which an operand was widened to the product."""
     while len(bits) > 1 and bits[-1] == bits[-2]:
         bits = bits[:-1]
@@ -50,9 +52,11 @@ def operand_width(bits):
 
 
 @pytest.mark.parametrize("choices", CASES, ids=str)
-def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path, choices):
+def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: Any) -> None:
     config = Configuration(**choices)
-    multipliers, memories, others = Counter(), Counter(), set()
+    multipliers: Counter[Any] = Counter()
+    memories: Counter[Any] = Counter()
+    others = set()
     for name, cell in elaborated(config, tmp_path).items():
         if cell["type"] == "$mul":
             wires = cell["connections"]
@@ -70,7 +74,7 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path, choices):
 
 
 @pytest.mark.parametrize("size", [32, 64, 128, 256, 512])
-def test_formulas_of_the_readme(size):
+def test_formulas_of_the_readme(size: int) -> None:
     stages = twiddle_stages(size)
     for neumann in (False, True):
         spectral = cost(Configuration(columns=size, neumann=neumann))
@@ -98,5 +102,5 @@ def test_formulas_of_the_readme(size):
         (54, 18, 3),
     ],
 )
-def test_wide_products_take_several_multipliers(a, b, tiles):
+def test_wide_products_take_several_multipliers(a: Any, b: Any, tiles: Any) -> None:
     assert Multiplier(a, b).tiles == tiles

@@ -2,6 +2,8 @@
 """Parameters that a core cannot be built with stop it before it runs, by its own word."""
 
 import subprocess
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -53,7 +55,7 @@ INVALID = {
 CASES = [(core, change) for core, changes in INVALID.items() for change in changes]
 
 
-def refused(core, change, folder) -> str:
+def refused(core: Any, change: Any, folder: Path) -> str:
     """What Icarus says: it does not elaborate, or the simulation ends with $fatal at time 0."""
     changes = [f"-P{core}.{parameter}" for parameter in change.split()]
     sources = [str(path) for path in repository.sources()]
@@ -67,7 +69,7 @@ def refused(core, change, folder) -> str:
 
 
 @pytest.mark.parametrize(("core", "change"), CASES)
-def test_an_invalid_parameter_is_refused(tmp_path, core, change):
+def test_an_invalid_parameter_is_refused(tmp_path: Path, core: str, change: Any) -> None:
     simulator.check("icarus")
     assert "FATAL" in (said := refused(core, change, tmp_path)) or "error" in said.lower()
 
@@ -79,7 +81,7 @@ VALID = [
 
 
 @pytest.mark.parametrize("case", VALID)
-def test_a_valid_parameter_is_not(tmp_path, case):
+def test_a_valid_parameter_is_not(tmp_path: Path, case: Any) -> None:
     simulator.check("icarus")
     core, change = case.split(maxsplit=1)
     assert not refused(core, change, tmp_path)

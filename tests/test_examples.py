@@ -2,8 +2,10 @@
 """The notebook of real presses runs from its first cell to its last, and shows what it showed when it was committed."""
 
 import json
+from typing import Any
 
 import matplotlib
+import pytest
 
 from commands.common.repository import ROOT
 from tests.real_data import FOLDER, needs_real_data
@@ -12,11 +14,11 @@ NOTEBOOK = ROOT / "examples" / "real_presses.ipynb"
 
 
 @needs_real_data
-def test_the_notebook_of_real_presses(monkeypatch, capsys):
+def test_the_notebook_of_real_presses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("TACTILE_DATA", str(FOLDER))
     matplotlib.use("Agg")
-    scope = {}
+    scope: dict[Any, Any] = {}
     for cell in json.loads(NOTEBOOK.read_text())["cells"]:
         if cell["cell_type"] != "code":
             continue

@@ -15,6 +15,8 @@ Icarus is a hundred times slower than Verilator, so `make test` takes a sample a
 import random
 import time
 from itertools import groupby
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,7 +27,7 @@ from tests.conftest import SEED
 from tests.records import record
 
 TIMEOUT = 100
-GRIDS = {
+GRIDS: dict[str, Any] = {
     "tridiagonal-8x16-neumann": {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True},
     "spectral-16": {"columns": 16},
     "spectral-16-neumann": {"columns": 16, "neumann": True},
@@ -42,11 +44,11 @@ SINKS = ("none", *(name for name in PROFILES if name != "none"), "full")
 
 
 @pytest.fixture
-def device(simulator, tmp_path):
+def device(simulator: str, tmp_path: Path) -> Any:
     return lambda config: Attack(simulator, config, tmp_path, SEED)
 
 
-def chosen(simulator, grid, stalled, silent):
+def chosen(simulator: str, grid: Any, stalled: bool, silent: bool) -> Any:
     """Cases in an order of their own for each device."""
     rng = random.Random(f"{SEED} {simulator} {grid.removesuffix('-neumann')} {silent}")
     config = Configuration(**GRIDS[grid])
@@ -59,7 +61,7 @@ def chosen(simulator, grid, stalled, silent):
     return out[:: SMALLEST_STRIDE[simulator] if grid == SMALLEST else 1 if REGRESS else STRIDE[simulator]]
 
 
-def note(what, simulator, grid, out: Outcome, began):
+def note(what: Any, simulator: str, grid: Any, out: Outcome, began: Any) -> None:
     record(
         part="faults",
         grid=grid,
@@ -73,14 +75,14 @@ def note(what, simulator, grid, out: Outcome, began):
 @pytest.mark.structures("grid", both=EVERY[:1], verilator=EVERY[1:2], regress=EVERY[1:], regress_verilator=EVERY[2:])
 @pytest.mark.parametrize("silent", [False, True], ids=["register-off", "register-on"])
 @pytest.mark.parametrize("stalled", [False, True], ids=["flowing", "stalled"])
-def test_every_break_at_every_position(device, simulator, grid, stalled, silent):
+def test_every_break_at_every_position(device: Any, simulator: str, grid: Any, stalled: Any, silent: Any) -> None:
     some, began = chosen(simulator, grid, stalled, silent), time.monotonic()
     out = attack(device(Configuration(**GRIDS[grid])), some, stalled=stalled, timeout=TIMEOUT if silent else 0)
     note(("stalled" if stalled else "flowing") + (", time-out on" if silent else ""), simulator, grid, out, began)
 
 
 @pytest.mark.structures("grid", both=EVERY[:1], verilator=EVERY[1:2], regress=EVERY[1:], regress_verilator=EVERY[2:])
-def test_resets_in_every_phase(device, simulator, grid):
+def test_resets_in_every_phase(device: Any, simulator: str, grid: Any) -> None:
     config, began = Configuration(**GRIDS[grid]), time.monotonic()
     every = phases(config)
     full = REGRESS and simulator == "verilator"
@@ -96,7 +98,7 @@ def test_resets_in_every_phase(device, simulator, grid):
 
 @pytest.mark.parametrize("simulator", ["verilator"], indirect=True)
 @pytest.mark.parametrize("solver", ["tridiagonal", pytest.param("spectral", marks=pytest.mark.regress)])
-def test_a_sample_at_128(device, simulator, solver):
+def test_a_sample_at_128(device: Any, simulator: Any, solver: Any) -> None:
     """Whole frames of 16,384 pixels: each kind of break at a place drawn for it, and resets."""
     config, rng = Configuration(columns=128, solver=solver), random.Random(SEED)
     for stalled, silent in ((False, False), (True, False), (False, True)):
@@ -107,5 +109,5 @@ def test_a_sample_at_128(device, simulator, solver):
         out = attack(device(config), some, stalled=stalled, timeout=TIMEOUT if silent else 0)
         note("sample", simulator, f"{solver}-128", out, began)
     began = time.monotonic()
-    some = [Reset(rng.choice(phases(config)), clocks, rng.choice(SINKS)) for clocks in CLOCKS]
-    note("resets", simulator, f"{solver}-128", resets(device(config), some), began)
+    drawn = [Reset(rng.choice(phases(config)), clocks, rng.choice(SINKS)) for clocks in CLOCKS]
+    note("resets", simulator, f"{solver}-128", resets(device(config), drawn), began)

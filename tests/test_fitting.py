@@ -3,6 +3,8 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,39 +53,39 @@ from tests.ball_presses import (
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return write_folder(tmp_path_factory.mktemp("ball") / "presses")
 
 
 @pytest.fixture(scope="module")
-def presses(folder):
+def presses(folder: Path) -> Any:
     return read(folder)
 
 
 @pytest.fixture(scope="module")
-def fitted(presses):
+def fitted(presses: Any) -> Any:
     return held_out_presses(presses)[0]
 
 
 @pytest.fixture(scope="module")
-def sensor(folder):
+def sensor(folder: Path) -> Any:
     return td.fit(folder, exposure_us=8000)
 
 
 @pytest.fixture(scope="module")
-def real():
+def real() -> Any:
     return real_folder()
 
 
 @pytest.fixture(scope="module")
-def real_presses(real):
+def real_presses(real: Any) -> Any:
     return read(real)
 
 
 # The fit, where the truth is known.
 
 
-def test_the_quadratics_of_the_lights_are_recovered(presses, fitted):
+def test_the_quadratics_of_the_lights_are_recovered(presses: Any, fitted: Any) -> None:
     coefficients, _ = fit_quadratic(fitted, presses.grid_pitch_mm)
     terms = quadratic_terms(GRID, GRID, presses.grid_pitch_mm)
     by_colour = np.einsum("ant,rct->rcan", coefficients, terms)
@@ -97,7 +99,9 @@ def test_the_quadratics_of_the_lights_are_recovered(presses, fitted):
 @pytest.mark.parametrize(
     ("model", "r2", "bias", "spread"), [("quadratic", 0.985, 0.03, 0.03), ("lut", 0.93, 0.05, 0.08)]
 )
-def test_presses_held_out_come_out_as_the_balls_are(presses, model, r2, bias, spread):
+def test_presses_held_out_come_out_as_the_balls_are(
+    presses: Any, model: Any, r2: Any, bias: Any, spread: float
+) -> None:
     evaluation = fit_presses(presses).evaluation
     error = evaluation.height_error(model)
     assert error.presses == len(evaluation.presses) >= 4
@@ -106,7 +110,7 @@ def test_presses_held_out_come_out_as_the_balls_are(presses, model, r2, bias, sp
     assert error.spread < spread
 
 
-def test_a_press_held_out_in_turn_is_measured_by_a_fit_to_the_others(presses):
+def test_a_press_held_out_in_turn_is_measured_by_a_fit_to_the_others(presses: Any) -> None:
     evaluation = fit_presses(presses, ("quadratic",), each_in_turn=True).evaluation
     measured = [view for view in presses.views if view.is_whole]
     assert evaluation.presses == tuple(view.press.name for view in measured)
@@ -118,11 +122,11 @@ def test_a_press_held_out_in_turn_is_measured_by_a_fit_to_the_others(presses):
     assert evaluation.height_error("quadratic").spread < 0.03
 
 
-def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fitted):
+def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fitted: Any) -> None:
     gradient, is_filled = fit_table(fitted, 4)
     assert gradient.shape == (16, 16, 16, 2)
     truth, codes = (
-        np.concatenate([value(view)[view.press.distance(GRID) < FITTED_SHARE] for view in fitted])
+        np.concatenate([value(view)[view.press.distance(GRID) < FITTED_SHARE] for view in fitted])  # type: ignore[no-untyped-call]
         for value in (lambda view: view.press.slopes(GRID), lambda view: view.codes >> 4)
     )
     index = np.ravel_multi_index(tuple(codes.T), (16, 16, 16))
@@ -133,12 +137,12 @@ def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fitted):
     np.testing.assert_allclose(gradient[at], truth[index == busiest].mean(axis=0), atol=0.03)
 
 
-def test_a_gel_at_rest_reads_flat_through_the_table(fitted):
+def test_a_gel_at_rest_reads_flat_through_the_table(fitted: Any) -> None:
     gradient, _ = fit_table(fitted, 5)
     assert np.abs(gradient[15:17, 15:17, 15:17]).max() < 0.06  # a step of the codes is 0.09 of slope
 
 
-def test_a_press_moves_to_where_its_ball_is():
+def test_a_press_moves_to_where_its_ball_is() -> None:
     ball = GridPress("ball", 30.4, 33.7, 14.0, 26.0)
     near = recentred(GridPress("ball", 29.8, 34.3, 14.0, 26.0), ball.slopes(64))
     assert math.hypot(near.x - ball.x, near.y - ball.y) < 0.05
@@ -149,7 +153,7 @@ def test_a_press_moves_to_where_its_ball_is():
 # The sensor that comes of it.
 
 
-def test_a_sensor_knows_what_it_was_fitted_to(sensor, presses):
+def test_a_sensor_knows_what_it_was_fitted_to(sensor: Any, presses: Any) -> None:
     held_out = held_out_presses(presses)
     steepest = max(view.press.largest_slope for view in held_out[0])
     assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)
@@ -163,7 +167,7 @@ def test_a_sensor_knows_what_it_was_fitted_to(sensor, presses):
     assert sensor.name == "presses"
 
 
-def test_a_sensor_is_the_same_from_a_file(sensor, tmp_path):
+def test_a_sensor_is_the_same_from_a_file(sensor: Any, tmp_path: Path) -> None:
     path = tmp_path / "mine.npz"
     sensor.save(path)
     again = td.load(path)
@@ -173,7 +177,7 @@ def test_a_sensor_is_the_same_from_a_file(sensor, tmp_path):
         assert getattr(again, field) == getattr(sensor, field), field
 
 
-def test_a_picture_becomes_the_height_of_its_ball(sensor):
+def test_a_picture_becomes_the_height_of_its_ball(sensor: Any) -> None:
     name, diameter, x, y, contact, ball = places()[8]
     pipeline = td.Pipeline(sensor, pictures()["background.png"])
     result = pipeline(pictures()[name])
@@ -184,7 +188,7 @@ def test_a_picture_becomes_the_height_of_its_ball(sensor):
     assert height == pytest.approx(diameter / 2 - math.sqrt(ball**2 - contact**2) * PITCH, rel=0.1)
 
 
-def test_presses_in_memory_give_the_same_sensor(sensor):
+def test_presses_in_memory_give_the_same_sensor(sensor: Any) -> None:
     given = [
         td.BallPress(pictures()[name], diameter, (x, y, contact), name) for name, diameter, x, y, contact, _ in places()
     ]
@@ -194,7 +198,7 @@ def test_presses_in_memory_give_the_same_sensor(sensor):
     assert again.name == "mine"
 
 
-def test_what_is_left_out_is_warned_of(folder):
+def test_what_is_left_out_is_warned_of(folder: Path) -> None:
     given = [td.BallPress(folder / row["frame"], row["diameter_mm"]) for row in table_rows()]
     background = pictures()["background.png"]
     given[3] = td.BallPress(background, 8.0, name="empty")
@@ -214,12 +218,12 @@ def test_what_is_left_out_is_warned_of(folder):
         ({"pitch_mm": 0.12}, "pitch_mm=0.12 contradicts presses"),
     ],
 )
-def test_bad_arguments_are_named(folder, choices, said):
+def test_bad_arguments_are_named(folder: Path, choices: Any, said: Any) -> None:
     with pytest.raises(InputError, match=said):
         td.fit(folder, **choices)
 
 
-def test_presses_without_depth_are_refused(presses):
+def test_presses_without_depth_are_refused(presses: Any) -> None:
     flat = [replace(view, press=replace(view.press, ball_radius=1e5)) for view in presses.views]
     with pytest.raises(InputError, match="the steepest press has a slope of"):
         fit_presses(replace(presses, views=tuple(flat)))
@@ -228,7 +232,7 @@ def test_presses_without_depth_are_refused(presses):
 # evaluate.
 
 
-def test_an_evaluation_on_the_held_out_presses_is_that_of_the_fit(sensor, presses):
+def test_an_evaluation_on_the_held_out_presses_is_that_of_the_fit(sensor: Any, presses: Any) -> None:
     fit = fit_presses(presses)
     names = set(fit.evaluation.presses)
     given = [
@@ -242,7 +246,7 @@ def test_an_evaluation_on_the_held_out_presses_is_that_of_the_fit(sensor, presse
     assert evaluation.better_model == sensor.model
 
 
-def test_presses_that_the_square_cuts_are_left_out_with_a_note(sensor, folder, presses):
+def test_presses_that_the_square_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:
     evaluation = td.evaluate(sensor, folder)
     cut = [view.press.name for view in presses.views if not view.is_whole]
     assert cut
@@ -251,7 +255,7 @@ def test_presses_that_the_square_cuts_are_left_out_with_a_note(sensor, folder, p
     assert "cuts the contact: left out" in evaluation.notes[0]
 
 
-def test_the_table_of_an_evaluation_holds_every_press(sensor, folder):
+def test_the_table_of_an_evaluation_holds_every_press(sensor: Any, folder: Path) -> None:
     evaluation = td.evaluate(sensor, folder)
     text = str(evaluation)
     assert all(name in text for name in evaluation.presses)
@@ -261,7 +265,7 @@ def test_the_table_of_an_evaluation_holds_every_press(sensor, folder):
     assert spread.endswith(f"{error.spread:.3f}")
 
 
-def test_larger_pictures_of_the_same_camera_give_nearly_the_same(sensor, folder, tmp_path):
+def test_larger_pictures_of_the_same_camera_give_nearly_the_same(sensor: Any, folder: Path, tmp_path: Path) -> None:
     """Twice as large, on a grid twice as fine."""
     twice = tmp_path / "twice"
     twice.mkdir()
@@ -276,7 +280,7 @@ def test_larger_pictures_of_the_same_camera_give_nearly_the_same(sensor, folder,
     assert large.mean == pytest.approx(small.mean, abs=0.02)  # measured: 0.014
 
 
-def test_an_evaluation_refuses_what_is_not_of_the_sensor(sensor, folder, tmp_path):
+def test_an_evaluation_refuses_what_is_not_of_the_sensor(sensor: Any, folder: Path, tmp_path: Path) -> None:
     background = pictures()["background.png"]
     narrow = [td.BallPress(pictures()["00.png"][:, :100], 6.0, (50, 50, 17))]
     with pytest.raises(InputError, match=r"100 x 112 pixels .* calibrated for pictures of 160 x 112"):
@@ -293,7 +297,9 @@ def test_an_evaluation_refuses_what_is_not_of_the_sensor(sensor, folder, tmp_pat
 
 
 @pytest.mark.parametrize(("model", "r2", "spread"), [("lut", 0.93, 0.10), ("quadratic", 0.96, 0.07)])
-def test_real_presses_held_out_keep_their_height_through_the_bit_accurate_models(real_presses, model, r2, spread):
+def test_real_presses_held_out_keep_their_height_through_the_bit_accurate_models(
+    real_presses: Any, model: Any, r2: Any, spread: float
+) -> None:
     sensor, (_, held_out) = td.load("gelsight-mini"), held_out_presses(real_presses)
     names = tuple(view.press.name for view in held_out)
     evaluation = td.Evaluation(names, {model: scores_of(sensor, real_presses, held_out, model)})
@@ -307,7 +313,7 @@ def test_real_presses_held_out_keep_their_height_through_the_bit_accurate_models
 
 
 @pytest.mark.regress  # 22 fits, most of a minute
-def test_every_whole_real_press_held_out_in_turn(real_presses):
+def test_every_whole_real_press_held_out_in_turn(real_presses: Any) -> None:
     evaluation = fit_presses(real_presses, each_in_turn=True).evaluation
     errors = {model: evaluation.height_error(model) for model in MODELS}
     assert len(evaluation.presses) == 22
@@ -318,7 +324,7 @@ def test_every_whole_real_press_held_out_in_turn(real_presses):
     assert errors["lut"].spread <= 0.10
 
 
-def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real):
+def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real: Any) -> None:
     """The table's radii are whole pixels; half a pixel in 26 is 4 % of the height of a cap."""
     evaluation = fit_presses(read(real, find_circles=True)).evaluation
     errors = {model: evaluation.height_error(model) for model in MODELS}
@@ -330,8 +336,9 @@ def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real
     assert errors["lut"].spread <= 0.10
 
 
-def test_the_shipped_calibration_is_what_the_fit_gives(real_presses):
-    made, shipped = fit_presses(real_presses).sensor, td.load("gelsight-mini")
+def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> None:
+    made: Any = fit_presses(real_presses).sensor
+    shipped: Any = td.load("gelsight-mini")
     # Sums may be rounded differently on another machine: one unit of the stored fraction, a thousandth of the largest.
     np.testing.assert_allclose(made.gradient, shipped.gradient, atol=2**-FRACTION_BITS)
     np.testing.assert_allclose(made.coefficients, shipped.coefficients, atol=1e-3)
@@ -347,7 +354,7 @@ def test_the_shipped_calibration_is_what_the_fit_gives(real_presses):
 
 
 @pytest.mark.parametrize("model", ["lut", "quadratic"])
-def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(real_presses, model):
+def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(real_presses: Any, model: Any) -> None:
     """Lights up to 11 % weaker and 9 % stronger across the gel; Neumann, bit-accurate. Of the reference, of the floor,
     of one behind the other; heights come back with that of the reference."""
     presses, size, rest = real_presses, real_presses.size, real_presses.background_on_grid
@@ -357,13 +364,13 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
     y, x = np.indices((size, size)) / (size - 1) - 0.5
     drift = np.stack([1 + 0.1 * x - 0.05 * y, 1 - 0.08 * y + 0.2 * x * y, 0.92 + 0.06 * x], axis=-1)
 
-    def drifted(frame):
+    def drifted(frame: Any) -> Any:
         return np.clip(np.rint(frame * drift), 0, 255).astype(np.uint8)
 
-    def depth_codes(frame, gains):
+    def depth_codes(frame: Any, gains: np.ndarray) -> Any:
         return solve(divergence(slope_codes(frame, sensor, config, gains=gains), config.neumann), config)
 
-    def depth_mm(frame, gains, floor=None):
+    def depth_mm(frame: Any, gains: np.ndarray, floor: np.ndarray | None = None) -> Any:
         codes = depth_codes(frame, gains)
         if floor is not None:
             codes = auto_zero(codes, floor, config)
@@ -379,7 +386,7 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
     assert depth_mm(drifted(rest), before, alone).std() < 0.01  # measured: 0.0057, 0.0084 mm
     assert depth_mm(drifted(rest), captured, both).std() < 0.002  # measured: 0.0011, 0.0016 mm
 
-    def caps(gains, floor=None):
+    def caps(gains: np.ndarray, floor: np.ndarray | None = None) -> Any:
         depths = (depth_mm(drifted(view.frame), gains, floor) / presses.grid_pitch_mm for view in held_out)
         return np.array([view.press.recovered(depth) for view, depth in zip(held_out, depths, strict=True)])
 
@@ -391,7 +398,7 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
     assert off < (0.03 if model == "quadratic" else 0.15)
 
 
-def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real):
+def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real: Any) -> None:
     """In a window of 128 camera pixels, its centre 14 from the edge against in the middle; Neumann, bit-accurate."""
     window, from_edge = 128, 14
     config = Configuration(columns=window, solver="tridiagonal", neumann=True, gradient_limit=2.0)
@@ -399,7 +406,7 @@ def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real):
     calibration = td.load("gelsight-mini")
     lit = uniform_filter(read_picture(real / "background.png").astype(float), (15, 15, 1), mode="nearest")
 
-    def height(slopes, circle, left, top):
+    def height(slopes: np.ndarray, circle: Any, left: Any, top: Any) -> Any:
         codes = np.rint(slopes[top : top + window, left : left + window] / config.gradient_lsb)
         z = solve(divergence(np.clip(codes, -limit, limit).astype(np.int64), True), config)[::-1]
         rows, columns = np.indices(z.shape)
@@ -408,12 +415,12 @@ def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real):
 
     kept = []
     for press in read_presses(real)[0]:
-        circle, frame = press.circle, read_picture(press.image)
-        x, y = round(circle[0]), round(circle[1])
+        circle, frame = press.circle, read_picture(press.image)  # type: ignore[arg-type]
+        x, y = round(circle[0]), round(circle[1])  # type: ignore[index]
         fits = (
             0 <= y - window // 2 <= frame.shape[0] - window and window // 2 <= x <= frame.shape[1] - window + from_edge
         )
-        if not fits or circle[2] <= from_edge:  # not cut
+        if not fits or circle[2] <= from_edge:  # type: ignore[index]  # not cut
             continue
         slopes = quadratic_slopes(frame / lit - 1, calibration, calibration.pixel_pitch_mm)
         middle, edge = (height(slopes, circle, left, y - window // 2) for left in (x - window // 2, x - from_edge))

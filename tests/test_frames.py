@@ -3,13 +3,15 @@
 
 import struct
 import zlib
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
-from skimage import io
+from skimage import io  # type: ignore[attr-defined]
 
 from tactile_depth.errors import InputError
 from tactile_depth.frames import EXIF_ORIENTATION, LARGEST_CAMERA, load_frames, read_picture
@@ -18,16 +20,16 @@ from tactile_depth.scenes import SCENES, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import synthetic
 
 
-def noise(*shape, seed=1):
+def noise(*shape: Any, seed: int = 1) -> Any:
     return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
 
 
-def picture(path, image):
+def picture(path: Path, image: np.ndarray) -> Any:
     io.imsave(path, image, check_contrast=False)
     return path
 
 
-def refused(source, size=(16, 16), reference=None) -> str:
+def refused(source: Any, size: Any = (16, 16), reference: Any = None) -> str:
     with pytest.raises(InputError) as caught:
         load_frames(str(source), size, None if reference is None else str(reference))
     message = str(caught.value)
@@ -42,7 +44,7 @@ grids = st.tuples(st.integers(1, 16), st.integers(1, 16))
 
 
 @given(cameras, grids)
-def test_weights_cover_the_centred_crop_evenly(camera, grid):
+def test_weights_cover_the_centred_crop_evenly(camera: Any, grid: Any) -> None:
     plan = resampling(camera, grid)
     for weights, length in ((plan.rows, camera[0]), (plan.columns, camera[1])):
         np.testing.assert_array_equal(weights, np.rint(weights))
@@ -55,21 +57,21 @@ def test_weights_cover_the_centred_crop_evenly(camera, grid):
 
 
 @given(cameras, grids, st.integers(0, 255))
-def test_a_constant_stays_that_constant(camera, grid, value):
+def test_a_constant_stays_that_constant(camera: Any, grid: Any, value: Any) -> None:
     average = resampling(camera, grid).average(np.full((*camera, 3), value, np.uint8))
     np.testing.assert_array_equal(average, value)
 
 
 @settings(max_examples=50)
 @given(st.integers(1, 16), st.integers(0, 40), st.integers(0, 2**32 - 1))
-def test_averages_preserve_the_mean_of_what_they_cover(count, more, seed):
+def test_averages_preserve_the_mean_of_what_they_cover(count: int, more: Any, seed: int) -> None:
     camera = (count + more, count + more)
     image = noise(*camera, 3, seed=seed)
     average = resampling(camera, (count, count)).average(image)
     np.testing.assert_allclose(average.mean(axis=(0, 1)), image.mean(axis=(0, 1)), rtol=1e-12)
 
 
-def test_averages_of_a_ratio_that_is_not_whole():
+def test_averages_of_a_ratio_that_is_not_whole() -> None:
     image = np.zeros((1, 3, 3), np.uint8)
     image[0, :, 0] = 10, 20, 60
     plan = resampling((3, 3), (2, 2))
@@ -77,14 +79,14 @@ def test_averages_of_a_ratio_that_is_not_whole():
     np.testing.assert_allclose(found, [[(10 + 20 / 2) / 1.5, (20 / 2 + 60) / 1.5]] * 2)
 
 
-def test_many_images_are_averaged_as_one_by_one():
+def test_many_images_are_averaged_as_one_by_one() -> None:
     images = noise(2, 3, 24, 20, 3)
     plan = resampling((24, 20), (11, 9))
     want = [[plan.average(image) for image in row] for row in images]
     np.testing.assert_array_equal(plan.average(images), want)
 
 
-def test_averages_are_the_exact_quotients():
+def test_averages_are_the_exact_quotients() -> None:
     """Sums of whole numbers have no rounding: each average is the fraction that is nearest in double precision."""
     image = noise(24, 20, 1)
     plan = resampling((24, 20), (11, 9))
@@ -93,7 +95,7 @@ def test_averages_are_the_exact_quotients():
     np.testing.assert_array_equal(plan.average(image)[..., 0], want)
 
 
-def test_the_gelsight_camera_keeps_its_middle_square():
+def test_the_gelsight_camera_keeps_its_middle_square() -> None:
     plan = resampling((240, 320), (128, 128))
     assert plan.origin == (0, 40)
     assert plan.scale == 1.875
@@ -101,7 +103,7 @@ def test_the_gelsight_camera_keeps_its_middle_square():
     assert not plan.columns[:, 280:].any()
 
 
-def test_a_frame_as_wide_as_the_grid_is_not_blurred(tmp_path):
+def test_a_frame_as_wide_as_the_grid_is_not_blurred(tmp_path: Path) -> None:
     frames = noise(2, 19, 16, 3)
     np.save(tmp_path / "f.npy", frames)
     loaded = load_frames(str(tmp_path / "f.npy"), (16, 16))
@@ -109,7 +111,7 @@ def test_a_frame_as_wide_as_the_grid_is_not_blurred(tmp_path):
     assert loaded.pixel_scale == 1
 
 
-def test_averages_are_rounded_to_even_once(tmp_path):
+def test_averages_are_rounded_to_even_once(tmp_path: Path) -> None:
     frames = np.zeros((1, 32, 32, 3), np.uint8)
     frames[0, ::2, ::2] = 2  # mean 0.5
     frames[0, 1::2, :, 1] = 2  # mean 1.5 in green
@@ -122,7 +124,7 @@ def test_averages_are_rounded_to_even_once(tmp_path):
 # Reference.
 
 
-def test_the_reference_comes_to_the_grid_as_the_frames_do(tmp_path):
+def test_the_reference_comes_to_the_grid_as_the_frames_do(tmp_path: Path) -> None:
     image, reference = noise(2, 24, 30, 3)
     loaded = load_frames(str(picture(tmp_path / "i.png", image)), (16, 16), str(picture(tmp_path / "r.png", reference)))
     as_frame = load_frames(str(tmp_path / "r.png"), (16, 16))
@@ -135,7 +137,7 @@ def test_the_reference_comes_to_the_grid_as_the_frames_do(tmp_path):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_scene_is_rendered_at_the_size_of_the_grid(name):
+def test_a_scene_is_rendered_at_the_size_of_the_grid(name: str) -> None:
     frames = load_frames(name, (32, 32), seed=7)
     np.testing.assert_array_equal(frames.pixels, render(name, 32, seed=7).frames)
     assert len(frames.labels) == len(frames.pixels)
@@ -143,7 +145,7 @@ def test_a_scene_is_rendered_at_the_size_of_the_grid(name):
     assert frames.pixel_scale * synthetic().pixel_pitch_mm == pytest.approx(scene_pixel_pitch_mm(32))
 
 
-def test_a_folder_is_read_in_natural_order(tmp_path):
+def test_a_folder_is_read_in_natural_order(tmp_path: Path) -> None:
     order = ["2.png", "12.png", "frame2.png", "frame10.png"]
     for value, name in reversed(list(enumerate(order))):
         picture(tmp_path / name, np.full((20, 20, 3), value, np.uint8))
@@ -154,13 +156,13 @@ def test_a_folder_is_read_in_natural_order(tmp_path):
     assert frames.pixel_scale == 1.25
 
 
-def test_transparency_is_dropped(tmp_path):
+def test_transparency_is_dropped(tmp_path: Path) -> None:
     image = noise(16, 16, 4)
     frames = load_frames(str(picture(tmp_path / "a.png", image)), (16, 16))
     np.testing.assert_array_equal(frames.pixels[0], image[:, :, :3])
 
 
-def test_a_grid_need_not_be_square(tmp_path):
+def test_a_grid_need_not_be_square(tmp_path: Path) -> None:
     frames = noise(1, 40, 20, 3)
     np.save(tmp_path / "f.npy", frames)
     np.testing.assert_array_equal(load_frames(str(tmp_path / "f.npy"), (30, 20)).pixels, frames[:, 5:35])
@@ -170,7 +172,7 @@ def test_a_grid_need_not_be_square(tmp_path):
 
 
 @pytest.mark.parametrize("source", ["bal", "absent.png", "absent.npy", "no/such/folder"])
-def test_an_unknown_source_is_answered_with_what_is_accepted(source):
+def test_an_unknown_source_is_answered_with_what_is_accepted(source: Any) -> None:
     message = refused(source)
     assert source in message
     assert all(name in message for name in SCENES)
@@ -188,7 +190,7 @@ def test_an_unknown_source_is_answered_with_what_is_accepted(source):
     ],
     ids=lambda array: f"{array.dtype}{array.shape}",
 )
-def test_an_npy_of_wrong_shape_or_type_is_named(tmp_path, array):
+def test_an_npy_of_wrong_shape_or_type_is_named(tmp_path: Path, array: Any) -> None:
     np.save(tmp_path / "f.npy", array)
     message = refused(tmp_path / "f.npy")
     assert "f.npy" in message
@@ -196,14 +198,14 @@ def test_an_npy_of_wrong_shape_or_type_is_named(tmp_path, array):
 
 
 @pytest.mark.parametrize("share", [0, 0.01, 0.5, 0.99])
-def test_a_truncated_npy_is_named(tmp_path, share):
+def test_a_truncated_npy_is_named(tmp_path: Path, share: float) -> None:
     path = tmp_path / "f.npy"
     np.save(path, noise(2, 16, 16, 3))
     path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
     assert f"{path}: not a readable .npy" in refused(path)
 
 
-def test_an_npz_in_place_of_an_npy_is_named(tmp_path):
+def test_an_npz_in_place_of_an_npy_is_named(tmp_path: Path) -> None:
     np.savez(tmp_path / "f.npz", frames=noise(2, 16, 16, 3))
     (tmp_path / "f.npz").rename(tmp_path / "f.npy")
     assert "f.npy: not a readable .npy" in refused(tmp_path / "f.npy")
@@ -211,7 +213,7 @@ def test_an_npz_in_place_of_an_npy_is_named(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:The legacy")  # plugins that imageio tries on an empty file
 @pytest.mark.parametrize("share", [0, 0.01, 0.5, 0.9])
-def test_a_truncated_png_is_named(tmp_path, share):
+def test_a_truncated_png_is_named(tmp_path: Path, share: float) -> None:
     path = picture(tmp_path / "p.png", noise(40, 40, 3))
     path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
     assert f"{path}: not a readable picture" in refused(path)
@@ -221,7 +223,7 @@ def chunk(kind: bytes, body: bytes) -> bytes:
     return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
 
-def png(height, width, bits, colour, row: bytes, before: bytes = b"") -> bytes:
+def png(height: Any, width: int, bits: int, colour: Any, row: bytes, before: bytes = b"") -> bytes:
     """A PNG of equal rows, each unfiltered."""
     head = struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)
     body = chunk(b"IDAT", zlib.compress((b"\0" + row) * height, 1))
@@ -238,7 +240,7 @@ def png(height, width, bits, colour, row: bytes, before: bytes = b"") -> bytes:
         (1, 0, "1 bits"),
     ],
 )
-def test_a_picture_that_is_not_8_bit_colour_is_named(tmp_path, bits, colour, named):
+def test_a_picture_that_is_not_8_bit_colour_is_named(tmp_path: Path, bits: int, colour: str, named: str) -> None:
     path = tmp_path / "p.png"
     path.write_bytes(png(20, 20, bits, colour, bytes(20 * 8)))
     message = refused(path)
@@ -247,13 +249,13 @@ def test_a_picture_that_is_not_8_bit_colour_is_named(tmp_path, bits, colour, nam
 
 
 @pytest.mark.parametrize("suffix", ["gif", "bmp", "tif"])
-def test_a_picture_of_another_kind_is_named(tmp_path, suffix):
+def test_a_picture_of_another_kind_is_named(tmp_path: Path, suffix: Any) -> None:
     path = tmp_path / f"p.{suffix}"
     Image.fromarray(noise(20, 20, 3)).save(path)
     assert f"{path}: not a readable picture (it does not begin as a PNG or a JPEG does)" in refused(path)
 
 
-def test_a_jpeg_is_read(tmp_path):
+def test_a_jpeg_is_read(tmp_path: Path) -> None:
     path = tmp_path / "p.jpg"
     image = Image.new("RGB", (24, 16), (90, 120, 150))
     image.save(path, quality=95)
@@ -261,7 +263,7 @@ def test_a_jpeg_is_read(tmp_path):
     assert load_frames(str(tmp_path), (16, 16)).labels == ("p.jpg",)
 
 
-def test_a_jpeg_that_viewers_rotate_is_refused(tmp_path):
+def test_a_jpeg_that_viewers_rotate_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "p.jpg"
     exif = Image.Exif()
     exif[EXIF_ORIENTATION] = 6
@@ -269,32 +271,32 @@ def test_a_jpeg_that_viewers_rotate_is_refused(tmp_path):
     assert "asks viewers to rotate it" in refused(path)
 
 
-def test_a_jpeg_without_colour_is_named(tmp_path):
+def test_a_jpeg_without_colour_is_named(tmp_path: Path) -> None:
     path = tmp_path / "p.jpg"
     Image.new("L", (24, 16)).save(path)
     assert "a JPEG of mode L" in refused(path)
 
 
-def test_a_jpeg_too_large_is_refused_by_its_header(tmp_path):
+def test_a_jpeg_too_large_is_refused_by_its_header(tmp_path: Path) -> None:
     path = tmp_path / "p.jpg"
     Image.new("RGB", (LARGEST_CAMERA + 1, 16)).save(path)
     assert f"{LARGEST_CAMERA + 1}" in refused(path)
 
 
-def test_a_palette_is_looked_up(tmp_path):
+def test_a_palette_is_looked_up(tmp_path: Path) -> None:
     path = tmp_path / "p.png"
     path.write_bytes(png(16, 16, 8, 3, bytes([1]) * 16, chunk(b"PLTE", bytes([9, 9, 9, 10, 20, 30]))))
     assert (load_frames(str(path), (16, 16)).pixels == (10, 20, 30)).all()
 
 
-def test_an_animation_is_named(tmp_path):
+def test_an_animation_is_named(tmp_path: Path) -> None:
     images = [Image.fromarray(noise(20, 20, 3, seed=seed)) for seed in (1, 2)]
     images[0].save(tmp_path / "p.png", save_all=True, append_images=images[1:])
     assert "an animation" in refused(tmp_path / "p.png")
 
 
 @pytest.mark.parametrize(("height", "width"), [(16, 1_000_000), (9_000, 9_000)])
-def test_a_small_file_that_claims_to_be_large_is_refused_unread(tmp_path, height, width):
+def test_a_small_file_that_claims_to_be_large_is_refused_unread(tmp_path: Path, height: Any, width: Any) -> None:
     path = tmp_path / "p.png"
     path.write_bytes(png(height, width, 8, 2, b""))
     assert f"frames of {height} x {width}: accepted are up to {LARGEST_CAMERA}" in refused(path)
@@ -303,7 +305,7 @@ def test_a_small_file_that_claims_to_be_large_is_refused_unread(tmp_path, height
 @pytest.mark.parametrize(
     "shape", [(1 << 40, 16, 16, 3), (1, 4000, 4000, 3), (-1, 16, 16, 3), (1 << 32, 1 << 32, 16, 3)]
 )
-def test_an_npy_whose_header_claims_too_much_is_refused_unread(tmp_path, shape):
+def test_an_npy_whose_header_claims_too_much_is_refused_unread(tmp_path: Path, shape: Any) -> None:
     path = tmp_path / "f.npy"
     with path.open("wb") as file:
         np.lib.format.write_array_header_1_0(file, {"descr": "|u1", "fortran_order": False, "shape": shape})
@@ -311,19 +313,19 @@ def test_an_npy_whose_header_claims_too_much_is_refused_unread(tmp_path, shape):
     assert str(path) in refused(path)
 
 
-def test_an_npy_of_pickled_objects_is_refused(tmp_path):
+def test_an_npy_of_pickled_objects_is_refused(tmp_path: Path) -> None:
     np.save(tmp_path / "f.npy", np.array([[[[print]]]], dtype=object), allow_pickle=True)
     assert "object" in refused(tmp_path / "f.npy")
 
 
-def test_a_name_with_a_digit_that_is_no_number_is_read(tmp_path):
+def test_a_name_with_a_digit_that_is_no_number_is_read(tmp_path: Path) -> None:
     for name in ("\u00b2.png", "1.png", "\u0663.png"):
         picture(tmp_path / name, noise(16, 16, 3))
     assert len(load_frames(str(tmp_path), (16, 16)).labels) == 3
 
 
 @pytest.mark.parametrize("reference", [False, True])
-def test_a_name_too_long_for_the_system_is_named(tmp_path, reference):
+def test_a_name_too_long_for_the_system_is_named(tmp_path: Path, reference: Any) -> None:
     name = "x" * 5000
     frame = picture(tmp_path / "1.png", noise(20, 20, 3))
     message = refused(frame, reference=name) if reference else refused(name)
@@ -331,18 +333,18 @@ def test_a_name_too_long_for_the_system_is_named(tmp_path, reference):
     assert len(message) < 1200
 
 
-def test_a_name_with_a_line_break_is_told_in_one_line():
+def test_a_name_with_a_line_break_is_told_in_one_line() -> None:
     assert "a?b" in refused("a\nb")
 
 
 @pytest.mark.parametrize("shape", [(15, 40), (40, 15), (8, 8)])
-def test_frames_smaller_than_the_grid_are_named(tmp_path, shape):
+def test_frames_smaller_than_the_grid_are_named(tmp_path: Path, shape: Any) -> None:
     message = refused(picture(tmp_path / "p.png", noise(*shape, 3)))
     assert f"{shape[0]} x {shape[1]}" in message
     assert "16 x 16" in message
 
 
-def test_mixed_sizes_are_named(tmp_path):
+def test_mixed_sizes_are_named(tmp_path: Path) -> None:
     picture(tmp_path / "1.png", noise(20, 20, 3))
     picture(tmp_path / "2.png", noise(20, 22, 3))
     message = refused(tmp_path)
@@ -350,7 +352,7 @@ def test_mixed_sizes_are_named(tmp_path):
     assert "1.png is 20 x 20" in message
 
 
-def test_a_reference_of_another_size_is_named(tmp_path):
+def test_a_reference_of_another_size_is_named(tmp_path: Path) -> None:
     frame = picture(tmp_path / "1.png", noise(20, 20, 3))
     reference = picture(tmp_path / "r.png", noise(20, 22, 3))
     message = refused(frame, reference=reference)
@@ -358,22 +360,22 @@ def test_a_reference_of_another_size_is_named(tmp_path):
     assert "20 x 20" in message
 
 
-def test_a_missing_reference_is_named(tmp_path):
+def test_a_missing_reference_is_named(tmp_path: Any) -> None:
     frame = picture(tmp_path / "1.png", noise(20, 20, 3))
     assert "absent.png: no such file" in refused(frame, reference=tmp_path / "absent.png")
 
 
-def test_an_empty_folder_is_named(tmp_path):
+def test_an_empty_folder_is_named(tmp_path: Path) -> None:
     assert f"{tmp_path}: a folder without any PNG" in refused(tmp_path)
 
 
-def test_a_reference_with_a_scene_is_refused(tmp_path):
+def test_a_reference_with_a_scene_is_refused(tmp_path: Path) -> None:
     message = refused("ball", reference="r.png")
     assert "r.png" in message
     assert "ball" in message
 
 
-def test_a_scene_fills_the_middle_square_of_a_grid():
+def test_a_scene_fills_the_middle_square_of_a_grid() -> None:
     square = load_frames("ball", (32, 32), seed=3)
     frames = load_frames("ball", (32, 50), seed=3)
     assert frames.pixels.shape == (1, 32, 50, 3)

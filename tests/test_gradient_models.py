@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The models of flat-fielding and of the quadratic gradient against what they stand for, in double precision."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -55,7 +57,7 @@ MODELS = [{}, {"flat_field": True}, {"flat_field": True, "gradient_model": "quad
 
 
 @pytest.mark.parametrize("choices", MODELS, ids=str)
-def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices):
+def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices: Any) -> None:
     config = Configuration(columns=32, **choices)
     frames = lit(config, 1, 3)
     calibration = synthetic().scaled(4.0, frames[0] if choices else None)
@@ -67,7 +69,7 @@ def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices):
 
 
 @pytest.mark.parametrize("choices", MODELS, ids=str)
-def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision(choices):
+def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision(choices: Any) -> None:
     config = Configuration(columns=32, **choices)
     frames = lit(config, 2, 3)
     calibration = synthetic().scaled(4.0, frames[0] if choices else None)
@@ -76,7 +78,7 @@ def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision
     np.testing.assert_array_equal(reference.depth_of(frames, calibration, config, tables), want)
 
 
-def test_gains_of_pixels_stand_for_those_of_nodes():
+def test_gains_of_pixels_stand_for_those_of_nodes() -> None:
     config = Configuration(columns=32)
     frames = lit(config, 5, 2)
     gains = captured_gains(frames, config)
@@ -90,7 +92,7 @@ def test_gains_of_pixels_stand_for_those_of_nodes():
 # Flat-fielding.
 
 
-def test_a_capture_zeroes_the_depth_of_an_untouched_gel():
+def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
     """Neumann, whose floor nothing else fixes: lights that drift tilt and bend it, and a capture takes that away."""
     calibration = quadratics(3)
     config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit)
@@ -99,7 +101,7 @@ def test_a_capture_zeroes_the_depth_of_an_untouched_gel():
     y, x = np.indices((64, 64)) / 64
     drifted = np.clip(np.rint(before * (0.9 + 0.1 * np.stack([x, y, x * y], axis=-1))), 0, 255).astype(np.uint8)
 
-    def floor(frames, gains):
+    def floor(frames: Any, gains: Any) -> Any:
         slopes = quadratic_gradient(deviations(frames[:1], gains, config), words, config)
         return np.std(solve(divergence(slopes, True), config)) * config.depth_lsb_px
 
@@ -109,7 +111,7 @@ def test_a_capture_zeroes_the_depth_of_an_untouched_gel():
 
 
 @pytest.mark.parametrize("choices", SHAPES, ids=str)
-def test_at_power_up_codes_are_the_pixels(choices):
+def test_at_power_up_codes_are_the_pixels(choices: Any) -> None:
     config = Configuration(**choices)
     frames = np.random.default_rng(1).integers(0, 256, (2, config.rows, config.columns, 3)).astype(np.uint8)
     monitor = Monitor()
@@ -118,7 +120,7 @@ def test_at_power_up_codes_are_the_pixels(choices):
 
 
 @pytest.mark.parametrize("choices", SHAPES, ids=str)
-def test_gains_are_those_of_the_reference(choices):
+def test_gains_are_those_of_the_reference(choices: Any) -> None:
     config = Configuration(**choices)
     frames = lit(config, 2, 4)
     found = interpolated_gains(captured_gains(frames, config), config) / 2.0**27
@@ -126,7 +128,7 @@ def test_gains_are_those_of_the_reference(choices):
     assert np.abs(found / want - 1).max() < 2**-19  # half a unit each of the node and of the sum, at a gain of 1/255
 
 
-def test_the_reference_itself_reads_flat_where_it_is_smooth():
+def test_the_reference_itself_reads_flat_where_it_is_smooth() -> None:
     config = Configuration(columns=64)
     frame = np.full((1, 64, 64, 3), (50, 100, 250), np.uint8)
     gains = captured_gains(frame, config)
@@ -136,7 +138,7 @@ def test_the_reference_itself_reads_flat_where_it_is_smooth():
 
 @settings(max_examples=20)
 @given(SEED, st.sampled_from(SHAPES))
-def test_codes_and_deviations_are_the_ratio_rounded(seed, choices):
+def test_codes_and_deviations_are_the_ratio_rounded(seed: int, choices: Any) -> None:
     config = Configuration(**choices)
     still = lit(config, seed)
     gains = captured_gains(still, config)
@@ -151,14 +153,14 @@ def test_codes_and_deviations_are_the_ratio_rounded(seed, choices):
     assert np.abs(deviation - np.minimum(exact - 1, 2 - DEVIATION.lsb)).max() <= DEVIATION.lsb / 2
 
 
-def test_a_dark_reference_gives_the_largest_gain():
+def test_a_dark_reference_gives_the_largest_gain() -> None:
     config = Configuration(columns=16)
     assert captured_gains(np.zeros((1, 16, 16, 3), np.uint8), config).min() == 2**24 - 1
     assert captured_gains(np.full((2, 16, 16, 3), 8, np.uint8), config).min() == 2**24 - 1
     assert captured_gains(np.full((1, 16, 16, 3), 9, np.uint8), config).max() == round(2**27 / 9)
 
 
-def test_a_dark_pixel_takes_what_left_before_it():
+def test_a_dark_pixel_takes_what_left_before_it() -> None:
     config = Configuration(columns=16)
     gains = unit_gains(config)
     chance = np.random.default_rng(3)
@@ -177,7 +179,7 @@ def test_a_dark_pixel_takes_what_left_before_it():
                 np.testing.assert_array_equal(held[frame, row, column], before)
 
 
-def test_a_pixel_whose_reference_is_dark_is_held():
+def test_a_pixel_whose_reference_is_dark_is_held() -> None:
     config = Configuration(columns=16)
     still = np.full((1, 16, 16, 3), 100, np.uint8)
     still[:, 4:8, 4:8, 1] = 15  # whole blocks, in one colour
@@ -205,7 +207,7 @@ def raster(words: np.ndarray, rows: int, columns: int) -> np.ndarray:
 
 @settings(max_examples=10)
 @given(st.lists(st.integers(-(2**31), 2**31 - 1), min_size=6, max_size=6))
-def test_the_map_is_the_recurrence_along_the_raster(terms):
+def test_the_map_is_the_recurrence_along_the_raster(terms: Any) -> None:
     config = Configuration(columns=16, rows=9, solver="tridiagonal")
     words = np.broadcast_to(np.array(terms), (2, 3, 6))
     found = coefficient_map(words, config)[1, 2]
@@ -213,7 +215,7 @@ def test_the_map_is_the_recurrence_along_the_raster(terms):
 
 
 @pytest.mark.parametrize("choices", [*SHAPES, {"columns": 512}], ids=str)
-def test_words_give_the_calibrations_quadratics(choices):
+def test_words_give_the_calibrations_quadratics(choices: Any) -> None:
     config = Configuration(**choices)
     calibration = quadratics(4)
     pitch = 15 / config.columns
@@ -221,7 +223,7 @@ def test_words_give_the_calibrations_quadratics(choices):
     unit = config.gradient_lsb * 2.0**config.gradient.fraction
     found = coefficient_map(words, config) * COLOUR_COEFFICIENT.lsb * unit
     terms = reference.quadratic_terms(config.rows, config.columns, pitch)
-    want = np.einsum("ant,rct->anrc", calibration.coefficients, terms)
+    want = np.einsum("ant,rct->anrc", calibration.coefficients, terms)  # type: ignore[arg-type]
     # Half a unit of what is multiplied, and of three words of second differences, seen from an eighth of N^2 away.
     far = 3 / 2 * POLYNOMIAL.lsb * max(config.rows, config.columns) ** 2 / 8
     assert np.abs(found - want).max() <= (COLOUR_COEFFICIENT.lsb / 2 + far) * unit * 1.01
@@ -229,7 +231,7 @@ def test_words_give_the_calibrations_quadratics(choices):
 
 @settings(max_examples=20)
 @given(SEED, st.sampled_from(SHAPES))
-def test_slopes_are_near_double_precision(seed, choices):
+def test_slopes_are_near_double_precision(seed: int, choices: Any) -> None:
     calibration = quadratics(seed, largest=7.9)
     config = Configuration(**choices, gradient_limit=calibration.gradient_limit)
     pitch = 15 / config.columns
@@ -241,7 +243,7 @@ def test_slopes_are_near_double_precision(seed, choices):
     assert np.abs(found * config.gradient_lsb - want).max() < 3 * COLOUR_COEFFICIENT.lsb + config.gradient_lsb
 
 
-def test_slopes_saturate_and_are_counted():
+def test_slopes_saturate_and_are_counted() -> None:
     calibration = quadratics(5, largest=0.1)
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit)
     monitor = Monitor()
@@ -252,7 +254,7 @@ def test_slopes_saturate_and_are_counted():
     assert monitor.saturations["quadratic_gradient"] == np.count_nonzero((found == -limit) | (found == limit - 1))
 
 
-def test_coefficients_beyond_the_words_are_named():
+def test_coefficients_beyond_the_words_are_named() -> None:
     config = Configuration(columns=16)
     steep = Sensor("steep", None, 0.1, np.full((2, 3, 6), 9.0), 0.9, "quadratic")
     with pytest.raises(InputError, match=r"steep: `coefficients` reach .* accepted is less than 8"):

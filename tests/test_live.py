@@ -16,7 +16,10 @@ import sys
 import termios
 import threading
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +41,7 @@ needs_live = pytest.mark.skipif(bool(MISSING), reason=f"{', '.join(MISSING)} mis
 
 
 @pytest.fixture(scope="module")
-def inputs(tmp_path_factory):
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Drawn presses as a folder of pictures; background and calibration."""
     folder = tmp_path_factory.mktemp("inputs")
     write_sensor(folder)
@@ -49,16 +52,16 @@ def inputs(tmp_path_factory):
 
 
 @pytest.fixture
-def arguments(inputs):
+def arguments(inputs: Any) -> list[Any]:
     return ["--calibration", f"{inputs}/sensor.npz", "--grid", "32x24"]
 
 
 @pytest.fixture(scope="module")
-def images():
+def images() -> Any:
     return press_frames(FRAMES)
 
 
-def pipeline_of(inputs, reference="background.png"):
+def pipeline_of(inputs: Any, reference: Any = "background.png") -> Any:
     reference = inputs / reference if isinstance(reference, str) else reference
     return td.Pipeline(td.load(inputs / "sensor.npz"), reference, grid=(24, 32))
 
@@ -66,35 +69,38 @@ def pipeline_of(inputs, reference="background.png"):
 class Screen:
     """Stands for the display: keeps what it is shown."""
 
-    def __init__(self, *_):
-        self.indices, self.heights = [], []
+    last: Any
+
+    def __init__(self, *_: Any) -> None:
+        self.indices: list[Any] = []
+        self.heights: list[Any] = []
         Screen.last = self
 
-    def __enter__(self):
+    def __enter__(self) -> Any:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         pass
 
-    def show(self, index, picture, result):
+    def show(self, index: int, picture: np.ndarray, result: Any) -> None:
         self.indices.append(index)
         self.heights.append(result.height_mm)
 
 
 @pytest.fixture
-def screen(monkeypatch):
+def screen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the display and the check that it is installed."""
     monkeypatch.setattr(command, "Display", Screen)
     monkeypatch.setattr(command, "load_rerun", lambda: None)
 
 
 @pytest.fixture
-def press_keys(monkeypatch):
+def press_keys(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Press keys: a word of letters, one before each frame, "." for none."""
 
-    def press(letters):
+    def press(letters: Any) -> None:
         @contextmanager
-        def keys():
+        def keys() -> Iterator[Any]:
             left = iter(letters)
             yield lambda: next(left, "").replace(".", "")
 
@@ -103,7 +109,7 @@ def press_keys(monkeypatch):
     return press
 
 
-def counted(printed):
+def counted(printed: Any) -> Any:
     """The numbers of the last line, by name."""
     (line,) = [line for line in printed.splitlines() if line.startswith("frames:")]
     counts = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)[,;]", line)}
@@ -115,7 +121,9 @@ def counted(printed):
 # What is shown.
 
 
-def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(inputs, arguments, images, screen, capsys):
+def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(
+    inputs: Any, arguments: Any, images: Any, screen: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     reference = ["--reference", f"{inputs}/background.png"]
     assert main(["live", f"{inputs}/presses", *reference, *arguments]) == 0
     expected = pipeline_of(inputs)
@@ -125,7 +133,15 @@ def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(inputs, 
 
 
 @pytest.mark.parametrize("option", [[], ["--reference", "capture"]])
-def test_the_first_frames_become_the_reference(tmp_path, inputs, arguments, images, screen, capsys, option):
+def test_the_first_frames_become_the_reference(
+    tmp_path: Path,
+    inputs: Any,
+    arguments: Any,
+    images: Any,
+    screen: Any,
+    capsys: pytest.CaptureFixture[str],
+    option: Any,
+) -> None:
     rest = np.array(Image.open(inputs / "background.png"))
     np.save(tmp_path / "frames.npy", np.stack([rest] * 8 + [images[5]]))
     assert main(["live", f"{tmp_path}/frames.npy", *arguments, *option]) == 0
@@ -135,14 +151,18 @@ def test_the_first_frames_become_the_reference(tmp_path, inputs, arguments, imag
     assert counted(printed) == {"read": 9, "captured": 8, "shown": 1, "dropped": 0, "failed": 0}
 
 
-def test_the_calibration_is_found_by_the_captured_reference(tmp_path, screen, capsys):
-    rest = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+def test_the_calibration_is_found_by_the_captured_reference(
+    tmp_path: Path, screen: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rest = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
     np.save(tmp_path / "frames.npy", np.stack([rest] * 9))
     assert main(["live", f"{tmp_path}/frames.npy"]) == 0
     assert "calibration: gelsight-mini: the reference looks like it" in capsys.readouterr().out
 
 
-def test_it_stops_after_so_many_frames(inputs, arguments, screen, capsys):
+def test_it_stops_after_so_many_frames(
+    inputs: Any, arguments: Any, screen: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     reference = ["--reference", f"{inputs}/background.png"]
     assert main(["live", f"{inputs}/presses", *reference, *arguments, "--frames", "3"]) == 0
     assert Screen.last.indices == [0, 1, 2]
@@ -152,7 +172,7 @@ def test_it_stops_after_so_many_frames(inputs, arguments, screen, capsys):
 # Keys.
 
 
-def drifting(tmp_path, inputs, images):
+def drifting(tmp_path: Path, inputs: Any, images: np.ndarray) -> tuple[Any, ...]:
     """Frames without contact under weaker light, then one press; the drift is seen against the old background."""
     rest = np.array(Image.open(inputs / "background.png"))
     y, x = np.mgrid[-1:1:240j, -1:1:320j]
@@ -163,7 +183,16 @@ def drifting(tmp_path, inputs, images):
 
 
 @pytest.mark.parametrize("key", ["r", "z"])
-def test_keys_capture_from_the_frames_that_follow(tmp_path, inputs, arguments, images, screen, press_keys, capsys, key):
+def test_keys_capture_from_the_frames_that_follow(
+    tmp_path: Path,
+    inputs: Any,
+    arguments: Any,
+    images: np.ndarray,
+    screen: Any,
+    press_keys: Any,
+    capsys: pytest.CaptureFixture[str],
+    key: str,
+) -> None:
     rest, press = drifting(tmp_path, inputs, images)
     press_keys(key)
     reference = ["--reference", f"{inputs}/background.png"]
@@ -177,7 +206,7 @@ def test_keys_capture_from_the_frames_that_follow(tmp_path, inputs, arguments, i
     assert "captured the" in capsys.readouterr().out
 
 
-def test_q_quits(inputs, arguments, screen, press_keys, capsys):
+def test_q_quits(inputs: Any, arguments: Any, screen: Any, press_keys: Any, capsys: pytest.CaptureFixture[str]) -> None:
     press_keys("..q")
     reference = ["--reference", f"{inputs}/background.png"]
     assert main(["live", f"{inputs}/presses", *reference, *arguments]) == 0
@@ -187,7 +216,9 @@ def test_q_quits(inputs, arguments, screen, press_keys, capsys):
     assert "keys: r captures the reference" in printed
 
 
-def test_z_without_a_zero_offset_is_refused_and_nothing_ends(inputs, arguments, screen, press_keys, capsys):
+def test_z_without_a_zero_offset_is_refused_and_nothing_ends(
+    inputs: Any, arguments: Any, screen: Any, press_keys: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     press_keys("z")
     options = ["--reference", f"{inputs}/background.png", "--no-zero-offset"]
     assert main(["live", f"{inputs}/presses", *arguments, *options]) == 0
@@ -195,24 +226,24 @@ def test_z_without_a_zero_offset_is_refused_and_nothing_ends(inputs, arguments, 
     assert len(Screen.last.indices) == FRAMES
 
 
-def test_the_terminal_is_as_before(monkeypatch):
+def test_the_terminal_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keys come one by one while the block runs; afterwards lines and echo are back, also after an error."""
     ours, theirs = pty.openpty()
     with os.fdopen(theirs, "r") as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)
         before = termios.tcgetattr(stdin)
         with contextlib.suppress(KeyboardInterrupt), pressed_keys() as key:
-            assert key() == ""
+            assert key() == ""  # type: ignore[misc]
             os.write(ours, b"rz")
             assert select.select([stdin], [], [], 5)[0]
-            assert [key(), key(), key()] == ["r", "z", ""]
+            assert [key(), key(), key()] == ["r", "z", ""]  # type: ignore[misc]
             assert not termios.tcgetattr(stdin)[3] & (termios.ICANON | termios.ECHO)
             raise KeyboardInterrupt
         assert termios.tcgetattr(stdin) == before
     os.close(ours)
 
 
-def test_without_a_terminal_there_are_no_keys(monkeypatch, tmp_path):
+def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "empty").touch()
     with (tmp_path / "empty").open() as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)
@@ -223,7 +254,9 @@ def test_without_a_terminal_there_are_no_keys(monkeypatch, tmp_path):
 # Frames that are lost.
 
 
-def test_pictures_that_cannot_be_read_or_used_are_counted(tmp_path, inputs, arguments, images, screen, capsys):
+def test_pictures_that_cannot_be_read_or_used_are_counted(
+    tmp_path: Path, inputs: Any, arguments: Any, images: np.ndarray, screen: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     for index in range(4):
         Image.fromarray(images[index]).save(tmp_path / f"{index}.png")
     (tmp_path / "1.png").write_bytes(b"no picture")
@@ -237,7 +270,9 @@ def test_pictures_that_cannot_be_read_or_used_are_counted(tmp_path, inputs, argu
     assert "1.png: not a readable picture" in line
 
 
-def test_a_source_of_the_wrong_size_is_told_at_the_start(tmp_path, inputs, arguments, screen, capsys):
+def test_a_source_of_the_wrong_size_is_told_at_the_start(
+    tmp_path: Path, inputs: Any, arguments: Any, screen: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     Image.new("RGB", (100, 240)).save(tmp_path / "0.png")
     assert main(["live", str(tmp_path), "--reference", f"{inputs}/background.png", *arguments]) == 2
     (line,) = capsys.readouterr().err.splitlines()
@@ -245,21 +280,21 @@ def test_a_source_of_the_wrong_size_is_told_at_the_start(tmp_path, inputs, argum
 
 
 @pytest.fixture
-def camera(monkeypatch):
+def camera(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Make camera 0 out of items; it is asked for each as fast as it can be."""
 
-    def connect(items):
+    def connect(items: Any) -> Any:
         monkeypatch.setattr(sources, "_camera", lambda name: iter(items))
         return Source("0")
 
     return connect
 
 
-def numbered(count):
+def numbered(count: int) -> list[Any]:
     return [np.full((2, 2, 3), index, np.uint8) for index in range(count)]
 
 
-def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(camera):
+def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(camera: Any) -> None:
     with camera(numbered(50)) as source:
         source._thread.join()
         taken = [frame for frame in source.frames() if frame is not None]
@@ -270,7 +305,7 @@ def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(
     assert source.counts.read == 50
 
 
-def test_files_wait_for_a_slow_consumer(inputs):
+def test_files_wait_for_a_slow_consumer(inputs: Any) -> None:
     with Source(f"{inputs}/presses") as source:
         taken = []
         for frame in source.frames():
@@ -280,10 +315,10 @@ def test_files_wait_for_a_slow_consumer(inputs):
     assert source.counts.dropped == 0
 
 
-def test_a_silent_source_gives_none_meanwhile(camera):
+def test_a_silent_source_gives_none_meanwhile(camera: Any) -> None:
     released = threading.Event()
 
-    def items():
+    def items() -> Iterator[Any]:
         released.wait(10)
         yield from numbered(1)
 
@@ -299,46 +334,50 @@ class Camera:
 
     COLOR_BGR2RGB = None
 
-    def __init__(self, good=1):
+    def __init__(self, good: int = 1) -> None:
         self.good, self.reads, self.released = good, 0, False
 
-    def VideoCapture(self, name):
+    def VideoCapture(self, name: str) -> Any:
         self.name = name
         return self
 
-    def isOpened(self):
+    def isOpened(self) -> Any:
         return self.good > 0
 
-    def read(self):
+    def read(self) -> Any:
         self.reads += 1
         return (self.reads <= self.good), np.array([[[1, 2, 3]]], np.uint8)
 
-    def cvtColor(self, image, _):
+    def cvtColor(self, image: np.ndarray, _: Any) -> Any:
         return image[..., ::-1]
 
-    def release(self):
+    def release(self) -> None:
         self.released = True
 
 
-def test_a_camera_that_is_unplugged_ends_it(monkeypatch):
+def test_a_camera_that_is_unplugged_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     device = Camera()
     monkeypatch.setattr(sources, "load_opencv", lambda: device)
     monkeypatch.setattr(sources, "QUEUED", 100)
     with Source("3") as source, pytest.raises(Failure, match="camera 3 gives no frames any more"):
-        assert [frame.image.tolist() for frame in source.frames()] == [[[[3, 2, 1]]]]
-    assert device.name == 3
+        assert [frame.image.tolist() for frame in source.frames()] == [[[[3, 2, 1]]]]  # type: ignore[union-attr]
+    assert device.name == 3  # type: ignore[comparison-overlap]
     assert device.released
     assert source.counts.failed == sources.DEAD_AFTER
 
 
-def test_a_camera_that_is_not_there_is_a_failure(monkeypatch, capsys, screen):
+def test_a_camera_that_is_not_there_is_a_failure(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], screen: Any
+) -> None:
     monkeypatch.setattr(sources, "load_opencv", lambda: Camera(good=0))
     assert main(["live", "/dev/video9"]) == 3
     assert "camera /dev/video9 cannot be opened" in capsys.readouterr().err
 
 
-def test_an_interruption_still_says_where_the_frames_went(inputs, arguments, screen, monkeypatch, capsys):
-    def interrupt(self, index, *_):
+def test_an_interruption_still_says_where_the_frames_went(
+    inputs: Any, arguments: Any, screen: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(self: Any, index: Any, *_: Any) -> None:
         if index == 2:
             raise KeyboardInterrupt
 
@@ -362,7 +401,14 @@ def test_an_interruption_still_says_where_the_frames_went(inputs, arguments, scr
         (["few"], "few: 1 frames, the reference takes 8: give --reference BACKGROUND"),
     ],
 )
-def test_bad_input_is_one_line(inputs, screen, monkeypatch, capsys, options, said):
+def test_bad_input_is_one_line(
+    inputs: Any,
+    screen: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    options: Any,
+    said: Any,
+) -> None:
     monkeypatch.chdir(inputs)
     (inputs / "few").mkdir(exist_ok=True)
     Image.new("RGB", (320, 240)).save(inputs / "few" / "0.png")
@@ -386,7 +432,14 @@ def test_bad_input_is_one_line(inputs, screen, monkeypatch, capsys, options, sai
         ),
     ],
 )
-def test_a_missing_library_is_one_line(inputs, monkeypatch, capsys, module, source, said):
+def test_a_missing_library_is_one_line(
+    inputs: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    module: Any,
+    source: Any,
+    said: Any,
+) -> None:
     monkeypatch.chdir(inputs)
     monkeypatch.setitem(sys.modules, module, None)
     if module == "cv2":
@@ -399,23 +452,23 @@ def test_a_missing_library_is_one_line(inputs, monkeypatch, capsys, module, sour
 
 
 @pytest.fixture(scope="module")
-def video(inputs):
+def video(inputs: Any) -> Any:
     path = inputs / "press.avi"
     write_video(path, press_frames(FRAMES), 25)
     return path
 
 
-def decoded(video):
+def decoded(video: Any) -> list[Any]:
     """Frames of a video as OpenCV reads it, in RGB."""
     with Source(str(video)) as source:
         return [frame.image for frame in source.frames() if frame is not None]
 
 
-def read_back(path):
+def read_back(path: Path) -> Any:
     """What an .rrd holds: entity and component to the values by frame number, (None) for static ones."""
-    from rerun.chunk import RrdReader
+    from rerun.chunk import RrdReader  # type: ignore[import-not-found]
 
-    values = {}
+    values: dict[Any, Any] = {}
     for chunk in RrdReader(path).stream():
         batch = chunk.to_record_batch()
         columns = {field.name: batch.column(field.name) for field in batch.schema}
@@ -426,13 +479,15 @@ def read_back(path):
     return values
 
 
-def component(values, entity, ending):
+def component(values: Any, entity: Any, ending: Any) -> dict[Any, Any]:
     (key,) = [key for key in values if key.startswith(f"{entity}:") and key.endswith(ending)]
     return {frame: value for frame, value in values[key].items() if value is not None}
 
 
 @needs_live
-def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(tmp_path, inputs, arguments, video, capsys):
+def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(
+    tmp_path: Path, inputs: Any, arguments: Any, video: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     rrd = tmp_path / "run.rrd"
     options = ["--reference", f"{inputs}/background.png", "--headless", "--save", str(rrd)]
     assert main(["live", str(video), *options, *arguments]) == 0
@@ -455,7 +510,7 @@ def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(tmp_path, inp
 
 
 @needs_live
-def test_a_video_gives_the_frames_that_were_written_in_rgb(video, images):
+def test_a_video_gives_the_frames_that_were_written_in_rgb(video: Any, images: np.ndarray) -> None:
     """The codec loses nothing, so that a channel in another's place shows."""
     read = decoded(video)
     assert len(read) == 25
@@ -464,7 +519,7 @@ def test_a_video_gives_the_frames_that_were_written_in_rgb(video, images):
 
 
 @needs_live
-def test_a_video_that_is_cut_is_counted(tmp_path, inputs, video):
+def test_a_video_that_is_cut_is_counted(tmp_path: Path, inputs: Any, video: Any) -> None:
     """The index of an AVI is at its end; what is cut off is claimed by its head and cannot be read."""
     import cv2
 
@@ -483,14 +538,14 @@ def test_a_video_that_is_cut_is_counted(tmp_path, inputs, video):
 
 
 @needs_live
-def test_what_is_no_video_is_refused(tmp_path):
+def test_what_is_no_video_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text.mp4").write_text("text")
     with pytest.raises(InputError, match=r"text.mp4: not a readable video"):
         Source(str(tmp_path / "text.mp4"))
 
 
 @needs_live
-def test_ctrl_c_closes_the_recording(tmp_path, inputs, video):
+def test_ctrl_c_closes_the_recording(tmp_path: Path, inputs: Any, video: Any) -> None:
     rrd = tmp_path / "run.rrd"
     long = tmp_path / "long.avi"
     write_video(long, press_frames(FRAMES), 3000)
@@ -518,7 +573,9 @@ def test_ctrl_c_closes_the_recording(tmp_path, inputs, video):
 
 
 @needs_live
-def test_a_recording_that_cannot_be_written_is_named(tmp_path, inputs, video, arguments, capsys):
+def test_a_recording_that_cannot_be_written_is_named(
+    tmp_path: Path, inputs: Any, video: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "file").touch()
     options = ["--reference", f"{inputs}/background.png", "--headless", "--save", f"{tmp_path}/file/run.rrd"]
     assert main(["live", str(video), *options, *arguments]) == 2

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What holds of the models on any input: of those whose own tests state no property of this kind."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -51,7 +53,7 @@ SOLVED = {
 RELATIVE = 1e-4  # of the largest depth: 24-bit words and 18-bit coefficients on 16 columns
 
 
-def noise(seed, *shape, limit=1 << 12):
+def noise(seed: int, *shape: Any, limit: int = 1 << 12) -> Any:
     return np.random.default_rng(seed).integers(-limit, limit + 1, shape)
 
 
@@ -59,12 +61,12 @@ def noise(seed, *shape, limit=1 << 12):
 
 
 @given(SIZE)
-def test_orders_are_permutations(size):
+def test_orders_are_permutations(size: int) -> None:
     for order in (bit_reversed(size), makhoul(size), mirror(size)):
         assert sorted(order) == list(range(size))
 
 
-def test_a_shared_table_cannot_be_changed():
+def test_a_shared_table_cannot_be_changed() -> None:
     tables = (bit_reversed(16), makhoul(16), mirror(16), twiddle_factors(16, False, 18), phase_factors(16, True, 18))
     for table in tables:
         with pytest.raises(ValueError, match="read-only"):
@@ -72,20 +74,20 @@ def test_a_shared_table_cannot_be_changed():
 
 
 @given(SIZE, st.booleans())
-def test_eigenvalues_are_those_of_the_second_difference(size, neumann):
+def test_eigenvalues_are_those_of_the_second_difference(size: int, neumann: bool) -> None:
     middle = -2 * np.eye(size) + np.eye(size, k=1) + np.eye(size, k=-1)
     middle[0, 0] = middle[-1, -1] = -1 if neumann else -3
     np.testing.assert_allclose(np.sort(eigenvalues(size, neumann)), np.linalg.eigvalsh(middle), atol=1e-12)
 
 
 @given(SEED, SIZE, st.booleans())
-def test_a_reordered_row_comes_back(seed, size, to_burst):
+def test_a_reordered_row_comes_back(seed: int, size: int, to_burst: bool) -> None:
     rows = noise(seed, 3, size)
     np.testing.assert_array_equal(row_reorder(row_reorder(rows, to_burst), not to_burst), rows)
 
 
 @given(SEED, SIZE)
-def test_modes_are_mirrored_both_ways(seed, size):
+def test_modes_are_mirrored_both_ways(seed: int, size: int) -> None:
     modes = noise(seed, size)
     once, mirrored = mode_pairs(modes)
     np.testing.assert_array_equal(once, modes)
@@ -94,14 +96,14 @@ def test_modes_are_mirrored_both_ways(seed, size):
 
 
 @given(SEED, SIZE, st.booleans(), st.booleans())
-def test_transposing_back_gives_the_frame(seed, size, makhoul_in, makhoul_out):
+def test_transposing_back_gives_the_frame(seed: int, size: int, makhoul_in: Any, makhoul_out: Any) -> None:
     frames = noise(seed, 2, size, size)
     there = transpose(frames, makhoul_in, makhoul_out)
     np.testing.assert_array_equal(transpose(there, makhoul_out, makhoul_in), frames)
 
 
 @given(SEED, st.integers(1, 9))
-def test_a_stack_turned_twice_is_the_frame(seed, rows):
+def test_a_stack_turned_twice_is_the_frame(seed: int, rows: int) -> None:
     frame = noise(seed, rows, 8)
     np.testing.assert_array_equal(frame_stack(frame)[0], frame[-1])
     np.testing.assert_array_equal(frame_stack(frame_stack(frame)), frame)
@@ -112,7 +114,7 @@ def test_a_stack_turned_twice_is_the_frame(seed, rows):
 
 @settings(max_examples=30)
 @given(st.sampled_from([16, 32]), st.integers(8, 60), st.booleans(), st.integers(10, 24))
-def test_a_stored_coefficient_is_that_of_the_recurrence(columns, rows, neumann, width):
+def test_a_stored_coefficient_is_that_of_the_recurrence(columns: int, rows: int, neumann: bool, width: int) -> None:
     config = Configuration(
         columns=columns, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=width, depth_range_px=4
     )
@@ -123,14 +125,14 @@ def test_a_stored_coefficient_is_that_of_the_recurrence(columns, rows, neumann, 
         c = 1 / (diagonal - c)
 
 
-def down_and_up(f, config):
+def down_and_up(f: np.ndarray, config: Configuration) -> Any:
     d = forward_elimination(f, config)
     return frame_stack(back_substitution(frame_stack(d), config))
 
 
 @settings(max_examples=30)
 @given(SEED, st.booleans())
-def test_elimination_and_substitution_solve_the_tridiagonal_systems(seed, neumann):
+def test_elimination_and_substitution_solve_the_tridiagonal_systems(seed: int, neumann: bool) -> None:
     config = SOLVED[neumann]
     rows, columns = config.rows, config.columns
     # |z| is at most the sum of |f| over a column over the smallest pivot; stay well inside the word.
@@ -150,7 +152,7 @@ def test_elimination_and_substitution_solve_the_tridiagonal_systems(seed, neuman
 
 @settings(max_examples=30)
 @given(SEED)
-def test_the_singular_mode_has_no_mean(seed):
+def test_the_singular_mode_has_no_mean(seed: int) -> None:
     config = SOLVED[True]
     f = np.zeros((config.rows, config.columns), np.int64)
     f[:, 0] = noise(seed, config.rows, limit=1 << 12)
@@ -163,7 +165,7 @@ def test_the_singular_mode_has_no_mean(seed):
 
 @settings(max_examples=30)
 @given(SEED, st.booleans())
-def test_negation_goes_through_elimination_and_substitution(seed, neumann):
+def test_negation_goes_through_elimination_and_substitution(seed: int, neumann: bool) -> None:
     config = SOLVED[neumann]
     f = noise(seed, config.rows, config.columns)
     np.testing.assert_array_equal(forward_elimination(-f, config), -forward_elimination(f, config))
@@ -173,7 +175,7 @@ def test_negation_goes_through_elimination_and_substitution(seed, neumann):
 # The solvers.
 
 
-def divergence_like(seed, config):
+def divergence_like(seed: int, config: Configuration) -> tuple[Any, ...]:
     """Divergence that a depth within a quarter of the range has, and so one that sums to zero under Neumann."""
     limit = config.depth_limit_px / 4
     depth = np.random.default_rng(seed).uniform(-limit, limit, (config.rows, config.columns))
@@ -193,7 +195,7 @@ CONFIGURATIONS = [
 
 @settings(max_examples=20)
 @given(SEED, st.sampled_from(CONFIGURATIONS))
-def test_the_laplacian_of_a_depth_gives_it_back(seed, config):
+def test_the_laplacian_of_a_depth_gives_it_back(seed: int, config: Configuration) -> None:
     f, depth = divergence_like(seed, config)
     np.testing.assert_allclose(reference.solve(f, config.neumann), depth, atol=1e-9)
     codes = np.rint(f / config.gradient_lsb).astype(np.int64)
@@ -204,7 +206,7 @@ def test_the_laplacian_of_a_depth_gives_it_back(seed, config):
 
 @settings(max_examples=20)
 @given(SEED, st.sampled_from(CONFIGURATIONS))
-def test_solvers_agree_with_scipy_mode_by_mode(seed, config):
+def test_solvers_agree_with_scipy_mode_by_mode(seed: int, config: Configuration) -> None:
     f, _ = divergence_like(seed, config)
     codes = np.rint(f / config.gradient_lsb).astype(np.int64)
     found = solve(codes, config) * config.depth_lsb_px
@@ -216,7 +218,7 @@ def test_solvers_agree_with_scipy_mode_by_mode(seed, config):
 
 @settings(max_examples=20)
 @given(SEED, st.booleans())
-def test_the_tridiagonal_solver_negates_and_mirrors(seed, neumann):
+def test_the_tridiagonal_solver_negates_and_mirrors(seed: int, neumann: bool) -> None:
     config = SOLVED[neumann]
     f = np.rint(divergence_like(seed, config)[0] / 8 / config.gradient_lsb).astype(np.int64)
     z = tridiagonal_solver(f, config)
@@ -226,7 +228,7 @@ def test_the_tridiagonal_solver_negates_and_mirrors(seed, neumann):
 
 @settings(max_examples=20)
 @given(SEED, SEED, st.booleans())
-def test_sums_go_through_the_tridiagonal_solver(seed, other, neumann):
+def test_sums_go_through_the_tridiagonal_solver(seed: int, other: Any, neumann: bool) -> None:
     config = SOLVED[neumann]
     f, g = (np.rint(divergence_like(s, config)[0] / 8 / config.gradient_lsb).astype(np.int64) for s in (seed, other))
     error = tridiagonal_solver(f + g, config) - tridiagonal_solver(f, config) - tridiagonal_solver(g, config)
@@ -235,7 +237,7 @@ def test_sums_go_through_the_tridiagonal_solver(seed, other, neumann):
 
 @settings(max_examples=10)
 @given(SEED, st.sampled_from(sorted(COLUMNS)), st.booleans())
-def test_frames_of_a_sequence_do_not_mix(seed, solver, neumann):
+def test_frames_of_a_sequence_do_not_mix(seed: int, solver: str, neumann: bool) -> None:
     config = Configuration(columns=16, solver=solver, neumann=neumann)
     frames = np.random.default_rng(seed).integers(100, 156, (3, 16, 16, 3)).astype(np.uint8)
     whole = tactile_depth(frames, synthetic(), config)
@@ -243,7 +245,7 @@ def test_frames_of_a_sequence_do_not_mix(seed, solver, neumann):
 
 
 @given(st.sampled_from([16, 32, 64]), st.integers(8, 100), st.booleans())
-def test_latency_counts_pixels_and_nothing_else(columns, rows, neumann):
+def test_latency_counts_pixels_and_nothing_else(columns: int, rows: int, neumann: bool) -> None:
     tall = Configuration(columns=columns, rows=rows, solver="tridiagonal", neumann=neumann)
     square = Configuration(columns=columns, solver="tridiagonal", neumann=not neumann)
     after = latency.last_pixel_to_first_depth(tall)
@@ -257,7 +259,7 @@ def test_latency_counts_pixels_and_nothing_else(columns, rows, neumann):
 
 @settings(max_examples=25)
 @given(SEED, st.integers(1, 4), st.sampled_from([0.25, 1.0, 8.0]))
-def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed, bits, largest):
+def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed: int, bits: int, largest: int) -> None:
     chance = np.random.default_rng(seed)
     table = chance.uniform(-0.9 * largest, 0.9 * largest, (1 << bits, 1 << bits, 1 << bits, 2))
     calibration = Sensor("any", table, 0.1)
@@ -269,12 +271,14 @@ def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed, bits, l
 
 @settings(max_examples=25)
 @given(SEED, st.integers(1, 3), st.floats(1e-6, 1e3), st.sampled_from(["<f8", ">f8", "<f4", "<f2"]), st.booleans())
-def test_a_saved_calibration_is_loaded_as_it_was(tmp_path_factory, seed, bits, pitch, dtype, packed):
+def test_a_saved_calibration_is_loaded_as_it_was(
+    tmp_path_factory: pytest.TempPathFactory, seed: int, bits: int, pitch: Any, dtype: Any, packed: Any
+) -> None:
     table = np.random.default_rng(seed).uniform(-2, 2, (1 << bits, 1 << bits, 1 << bits, 2)).astype(dtype)
     path = tmp_path_factory.mktemp("calibration") / "mine.npz"
     camera = {"format_version": 2, "camera_size": (240, 320), "pixel_format": "rgb888", "black_level": 0.0}
     camera |= {"exposure_us": np.nan, "flat_field": False}
-    (np.savez_compressed if packed else np.savez)(path, gradient=table, pixel_pitch_mm=pitch, **camera)
+    (np.savez_compressed if packed else np.savez)(path, gradient=table, pixel_pitch_mm=pitch, **camera)  # type: ignore[arg-type]
     found = load(str(path))
     np.testing.assert_array_equal(found.gradient, table.astype(np.float64))
     assert found.pixel_pitch_mm == pitch
@@ -284,7 +288,7 @@ def test_a_saved_calibration_is_loaded_as_it_was(tmp_path_factory, seed, bits, p
 
 
 @given(st.lists(st.tuples(*[st.integers(-(1 << 26), (1 << 26) - 1)] * 3), min_size=1))
-def test_packed_fields_are_found_in_the_file(tmp_path_factory, rows):
+def test_packed_fields_are_found_in_the_file(tmp_path_factory: pytest.TempPathFactory, rows: Any) -> None:
     path = tmp_path_factory.mktemp("rom") / "words.hex"
     words = pack(np.array(rows).T, 27)
     write_words(path, words, 81)
@@ -299,7 +303,7 @@ def test_packed_fields_are_found_in_the_file(tmp_path_factory, rows):
 
 
 @given(st.sampled_from(MAP), st.integers(0, WORD))
-def test_fields_of_any_word_pack_to_its_listed_bits(register, word):
+def test_fields_of_any_word_pack_to_its_listed_bits(register: Any, word: Any) -> None:
     listed = sum(field.mask for field in register.fields)
     assert register.pack(**register.unpack(word)) == word & listed
 
@@ -311,7 +315,7 @@ WRITES = st.lists(st.tuples(ADDRESSES, WORDS, st.integers(0, 15), st.booleans())
 
 
 @given(WRITES)
-def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes):
+def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes: Any) -> None:
     registers = AxilRegisters(REGISTER_BUILD)
     for address, data, strobe, frame_start in writes:
         before, written = dict(registers.values), len(registers.table_writes)
@@ -334,7 +338,7 @@ def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes):
 
 
 @given(st.lists(st.integers(0, 255), max_size=20), st.integers(0, WORD))
-def test_counters_only_grow_and_stay_at_the_top(saturations, start):
+def test_counters_only_grow_and_stay_at_the_top(saturations: Any, start: Any) -> None:
     registers = AxilRegisters(REGISTER_BUILD)
     registers.values["SATURATIONS"] = start
     for count in saturations:
@@ -349,7 +353,7 @@ def test_counters_only_grow_and_stay_at_the_top(saturations, start):
 
 
 @given(st.lists(st.tuples(st.none() | WORDS, st.booleans()), max_size=60))
-def test_a_slice_neither_loses_nor_repeats_nor_reorders(clocks):
+def test_a_slice_neither_loses_nor_repeats_nor_reorders(clocks: Any) -> None:
     skid, taken, left = AxisSkid(), [], []
     for word, ready in clocks:
         if word is not None and skid.ready:
@@ -367,7 +371,7 @@ ANY_WORD = st.builds(Word, WORDS, st.integers(0, 1), st.integers(0, 1))
 
 
 @given(st.lists(st.none() | ANY_WORD, max_size=40), st.sampled_from([0, 1, 3]))
-def test_whatever_arrives_whole_frames_leave_and_the_next_good_one_is_right(stream, timeout):
+def test_whatever_arrives_whole_frames_leave_and_the_next_good_one_is_right(stream: Any, timeout: int) -> None:
     found = frame_guard([*stream, *GOOD], HEIGHT, WIDTH, timeout)
     words = [*stream, *GOOD]
     assert not found.open
@@ -382,7 +386,7 @@ def test_whatever_arrives_whole_frames_leave_and_the_next_good_one_is_right(stre
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(0, 5)), max_size=5))
-def test_good_frames_leave_whole_and_in_step(frames):
+def test_good_frames_leave_whole_and_in_step(frames: Any) -> None:
     inputs, wanted = [], []
     for index, (bad, gap) in enumerate(frames):
         for row in range(HEIGHT):
@@ -400,7 +404,7 @@ def test_good_frames_leave_whole_and_in_step(frames):
 
 
 @given(st.lists(st.tuples(st.booleans(), st.booleans(), st.booleans(), st.booleans()), max_size=60))
-def test_whatever_the_solver_does_rows_end_where_they_should(clocks):
+def test_whatever_the_solver_does_rows_end_where_they_should(clocks: Any) -> None:
     found = frame_output([Clock(start, first, 0, due, bad) for start, first, due, bad in clocks], HEIGHT, WIDTH)
     since = 0
     for _, last, user in found.beats:
@@ -410,7 +414,7 @@ def test_whatever_the_solver_does_rows_end_where_they_should(clocks):
 
 
 @given(st.lists(st.none() | WORDS, max_size=40), st.integers(1, 9))
-def test_a_tag_is_due_so_many_clocks_after_it_was_pushed(pushed, delay):
+def test_a_tag_is_due_so_many_clocks_after_it_was_pushed(pushed: Any, delay: Any) -> None:
     tags, seen = FrameTags(delay), []
     for tag in [*pushed, *[None] * delay]:
         seen.append(tags.due)
@@ -420,7 +424,7 @@ def test_a_tag_is_due_so_many_clocks_after_it_was_pushed(pushed, delay):
 
 
 @given(st.lists(st.lists(st.integers(-50, 50), min_size=1, max_size=6), min_size=1, max_size=6), st.integers(-60, 60))
-def test_contact_is_that_some_depth_of_the_frame_so_far_is_above(frames, threshold):
+def test_contact_is_that_some_depth_of_the_frame_so_far_is_above(frames: Any, threshold: Any) -> None:
     comparator, held, ever = ThresholdComparator(), ThresholdComparator(), False
     for frame in frames:
         for index, data in enumerate(frame):

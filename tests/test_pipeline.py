@@ -3,6 +3,8 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,25 +22,25 @@ SMALL = (24, 32)
 
 
 @pytest.fixture(scope="module")
-def ball():
+def ball() -> Any:
     return td.sample("ball")
 
 
 @pytest.fixture(scope="module")
-def pipeline(ball):
+def pipeline(ball: Any) -> Any:
     return td.Pipeline(ball.sensor, ball.reference)
 
 
 @pytest.fixture(scope="module")
-def small(ball):
+def small(ball: Any) -> Any:
     return td.Pipeline(ball.sensor, ball.reference, grid=SMALL)
 
 
-def on_grid(height_mm, grid):
+def on_grid(height_mm: Any, grid: Any) -> Any:
     return resampling(height_mm.shape, grid).average(height_mm[..., None])[..., 0]
 
 
-def test_defaults_suit_a_real_sensor(pipeline):
+def test_defaults_suit_a_real_sensor(pipeline: Any) -> None:
     config = pipeline.config
     assert pipeline.grid == (96, 128)
     assert (config.solver, config.neumann, config.gradient_model) == ("tridiagonal", True, "quadratic")
@@ -57,13 +59,13 @@ def test_defaults_suit_a_real_sensor(pipeline):
         (None, "tridiagonal", (128, 128)),
     ],
 )
-def test_the_default_grid_shows_the_whole_picture(ball, camera, solver, grid):
+def test_the_default_grid_shows_the_whole_picture(ball: Any, camera: Any, solver: str, grid: Any) -> None:
     sensor = replace(ball.sensor, camera=None if camera is None else td.Camera(*camera))
     assert default_grid(sensor, solver) == grid
 
 
 @pytest.mark.parametrize("name", ["ball", "cylinder", "cone"])
-def test_the_height_is_what_was_drawn(name):
+def test_the_height_is_what_was_drawn(name: str) -> None:
     """Within 4 % of the peak: the bound is that of the discretisation at 128 x 96, 2.5 camera pixels to one."""
     drawn = td.sample(name)
     result = td.Pipeline(drawn.sensor, drawn.reference)(drawn.image)
@@ -74,14 +76,14 @@ def test_the_height_is_what_was_drawn(name):
     assert not result.dark.any()
 
 
-def test_the_untouched_surface_has_height_zero(pipeline, ball):
+def test_the_untouched_surface_has_height_zero(pipeline: Any, ball: Any) -> None:
     result = pipeline(ball.image)
     assert result.height_mm[~result.mask].mean() == pytest.approx(0, abs=1e-12)
     assert result.depth_mm[~result.mask].mean() < -0.01  # its mean over the frame is zero
     np.testing.assert_allclose(result.height_mm - result.depth_mm, -result.depth_mm[~result.mask].mean())
 
 
-def test_depth_is_codes_times_unit_and_both_arithmetics_agree(ball, pipeline):
+def test_depth_is_codes_times_unit_and_both_arithmetics_agree(ball: Any, pipeline: Any) -> None:
     result = pipeline(ball.image)
     np.testing.assert_array_equal(result.depth_mm, result.codes * pipeline.depth_lsb_mm)
     exact = td.Pipeline(ball.sensor, ball.reference, arithmetic="float")(ball.image)
@@ -90,7 +92,7 @@ def test_depth_is_codes_times_unit_and_both_arithmetics_agree(ball, pipeline):
     assert np.abs(exact.codes * pipeline.depth_lsb_mm - exact.depth_mm).max() <= pipeline.depth_lsb_mm / 2
 
 
-def test_codes_are_those_of_the_model_in_picture_order(small, ball):
+def test_codes_are_those_of_the_model_in_picture_order(small: Any, ball: Any) -> None:
     frames = np.stack([ball.image, ball.reference])
     result = small(frames)
     on_grid = np.rint(frames.reshape(2, 24, 10, 32, 10, 3).mean(axis=(2, 4))).astype(np.uint8)
@@ -100,7 +102,7 @@ def test_codes_are_those_of_the_model_in_picture_order(small, ball):
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 @pytest.mark.parametrize("boundary", ["dirichlet", "neumann"])
-def test_every_solver_and_boundary_sees_the_contact_upright(ball, solver, boundary):
+def test_every_solver_and_boundary_sees_the_contact_upright(ball: Any, solver: str, boundary: str) -> None:
     result = td.Pipeline(ball.sensor, ball.reference, grid=(32, 32), solver=solver, boundary=boundary)(ball.image)
     row, column = np.unravel_index(result.height_mm.argmax(), (32, 32))
     drawn = np.unravel_index(ball.height_mm[:, 40:280].argmax(), (240, 240))
@@ -108,7 +110,7 @@ def test_every_solver_and_boundary_sees_the_contact_upright(ball, solver, bounda
     assert abs(column + 0.5 - drawn[1] / 7.5) < 1.5
 
 
-def test_a_batch_is_its_frames_one_by_one(ball, small):
+def test_a_batch_is_its_frames_one_by_one(ball: Any, small: Any) -> None:
     frames = np.stack([ball.image, ball.reference, ball.image])
     batch = small(frames)
     assert len(batch) == 3
@@ -125,7 +127,7 @@ def test_a_batch_is_its_frames_one_by_one(ball, small):
         _ = small(ball.image)[0]
 
 
-def test_paths_give_what_arrays_give(tmp_path, ball, small):
+def test_paths_give_what_arrays_give(tmp_path: Path, ball: Any, small: Any) -> None:
     folder = tmp_path / "frames"
     folder.mkdir()
     for name, image in (("2.png", ball.image), ("10.png", ball.reference)):
@@ -140,7 +142,7 @@ def test_paths_give_what_arrays_give(tmp_path, ball, small):
     np.testing.assert_array_equal(by_path(ball.image).codes, expected[0])
 
 
-def test_larger_pictures_of_the_camera_give_the_same_depth(ball, small):
+def test_larger_pictures_of_the_camera_give_the_same_depth(ball: Any, small: Any) -> None:
     twice = ball.image.repeat(2, axis=0).repeat(2, axis=1)
     np.testing.assert_array_equal(small(twice).codes, small(ball.image).codes)
 
@@ -148,7 +150,7 @@ def test_larger_pictures_of_the_camera_give_the_same_depth(ball, small):
 # Contact.
 
 
-def test_the_record_of_a_whole_frame_is_that_of_its_beats():
+def test_the_record_of_a_whole_frame_is_that_of_its_beats() -> None:
     rng = np.random.default_rng(1)
     settings = Settings(40, 20, 3, 2)
     for bottom_first in (False, True):
@@ -162,7 +164,7 @@ def test_the_record_of_a_whole_frame_is_that_of_its_beats():
             assert whole.whole_frame(frame, settings, time) == record
 
 
-def test_the_contact_in_millimetres(pipeline, ball):
+def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
     result = pipeline(ball.image)
     contact = result.contact
     touched = result.codes * pipeline.depth_lsb_mm > 0.1
@@ -177,7 +179,7 @@ def test_the_contact_in_millimetres(pipeline, ball):
 # Captures.
 
 
-def drifted(picture, seed):
+def drifted(picture: np.ndarray, seed: int) -> Any:
     """The picture under other lights, up to 10 % off over the gel, with noise."""
     rng = np.random.default_rng(seed)
     y, x = np.mgrid[-1:1:240j, -1:1:320j]
@@ -186,7 +188,7 @@ def drifted(picture, seed):
 
 
 @pytest.mark.parametrize("arithmetic", ["chip", "float"])
-def test_captures_take_drift_away(ball, arithmetic):
+def test_captures_take_drift_away(ball: Any, arithmetic: Any) -> None:
     pipeline = td.Pipeline(ball.sensor, ball.reference, arithmetic=arithmetic)
     fresh = pipeline(ball.image).height_mm
     untouched = np.stack([drifted(ball.reference, seed) for seed in range(4)])
@@ -198,14 +200,14 @@ def test_captures_take_drift_away(ball, arithmetic):
     assert np.abs(pipeline(seen).height_mm - fresh).max() < 0.02 * fresh.max()
 
 
-def test_a_capture_takes_a_power_of_two_of_pictures(small, ball):
+def test_a_capture_takes_a_power_of_two_of_pictures(small: Any, ball: Any) -> None:
     three = np.stack([ball.reference] * 3)
     for capture in (small.capture_reference, small.capture_zero):
         with pytest.raises(td.InputError, match="3 pictures: the hardware averages 1, 2, 4,"):
             capture(three)
 
 
-def test_a_capture_that_the_pipeline_has_not_is_refused(ball):
+def test_a_capture_that_the_pipeline_has_not_is_refused(ball: Any) -> None:
     as_sent = td.Pipeline(td.load("synthetic"), grid=(16, 16), zero_offset=False)
     rest = np.full((16, 16, 3), 128, np.uint8)
     with pytest.raises(td.InputError, match="takes colours as sent"):
@@ -217,7 +219,7 @@ def test_a_capture_that_the_pipeline_has_not_is_refused(ball):
 # Flags.
 
 
-def test_slopes_outside_the_calibrated_range_are_flagged(ball):
+def test_slopes_outside_the_calibrated_range_are_flagged(ball: Any) -> None:
     narrow = replace(ball.sensor, fitted_slope={"quadratic": 0.4})
     result = td.Pipeline(narrow, ball.reference)(ball.image)
     steep = np.hypot(*np.moveaxis(result.slopes, -1, 0)) > 0.4
@@ -226,7 +228,7 @@ def test_slopes_outside_the_calibrated_range_are_flagged(ball):
     assert not td.Pipeline(ball.sensor, ball.reference)(ball.image).outside.any()
 
 
-def test_dark_pixels_are_flagged_and_harm_no_others(ball):
+def test_dark_pixels_are_flagged_and_harm_no_others(ball: Any) -> None:
     reference = ball.reference.copy()
     reference[:40, :40] = 0
     for arithmetic in ("chip", "float"):
@@ -237,15 +239,15 @@ def test_dark_pixels_are_flagged_and_harm_no_others(ball):
         assert result.height_mm.max() == pytest.approx(1.36, abs=0.05)
 
 
-def test_a_reference_that_leaves_nothing_is_refused(ball):
+def test_a_reference_that_leaves_nothing_is_refused(ball: Any) -> None:
     for dark in (np.zeros_like(ball.reference), np.full_like(ball.reference, 4)):
         with pytest.raises(td.InputError, match="grey levels in a colour at 100 % of the pixels"):
             td.Pipeline(ball.sensor, dark)
 
 
-def test_the_error_of_the_calibration_comes_with_the_result():
+def test_the_error_of_the_calibration_comes_with_the_result() -> None:
     mini = td.load("gelsight-mini")
-    rest = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)
+    rest = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)  # type: ignore[operator]
     result = td.Pipeline(mini, rest)(rest)
     assert result.height_error == mini.height_errors["quadratic"]
     assert 0.05 < result.height_error.relative < 0.08
@@ -255,7 +257,7 @@ def test_the_error_of_the_calibration_comes_with_the_result():
 # For the RTL.
 
 
-def test_hardware_writes_what_the_pipeline_computes_with(tmp_path, small):
+def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: Any) -> None:
     index = small.hardware(tmp_path / "hw")
     described = json.loads(index.read_text())
     assert described["parameters"] == top_parameters(small.config)
@@ -267,7 +269,9 @@ def test_hardware_writes_what_the_pipeline_computes_with(tmp_path, small):
     assert {path.name: path.read_text() for path in (tmp_path / "hw").iterdir() if path != index} == tables
 
 
-def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(tmp_path, small, ball):
+def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(
+    tmp_path: Path, small: Any, ball: Any
+) -> None:
     small.hardware(tmp_path)
     (tmp_path / "notes.txt").write_text("mine")
     write_words(tmp_path / "other.hex", [1], 4)
@@ -278,7 +282,7 @@ def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(tmp
     assert "thomas.hex" not in tables
 
 
-def test_a_folder_that_cannot_be_written_is_named(tmp_path, small):
+def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(td.InputError, match=r"file/hw cannot be written"):
         small.hardware(tmp_path / "file" / "hw")
@@ -314,7 +318,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path, small):
         ({"reference": np.zeros((240, 320), np.uint8)}, r"reference are uint8 \(240, 320\)"),
     ],
 )
-def test_a_pipeline_that_cannot_be_is_refused(ball, choices, said):
+def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, said: Any) -> None:
     with pytest.raises(td.InputError, match=said):
         td.Pipeline(**{"sensor": ball.sensor, "reference": ball.reference, **choices})
 
@@ -331,17 +335,17 @@ def test_a_pipeline_that_cannot_be_is_refused(ball, choices, said):
         (None, "pictures are NoneType: accepted is a uint8 array or a path"),
     ],
 )
-def test_pictures_of_no_use_are_refused(small, picture, said):
+def test_pictures_of_no_use_are_refused(small: Any, picture: np.ndarray, said: Any) -> None:
     with pytest.raises(td.InputError, match=said):
         small(picture)
 
 
-def test_a_sample_of_no_contact_is_refused():
+def test_a_sample_of_no_contact_is_refused() -> None:
     with pytest.raises(td.InputError, match="name=cube is unknown: accepted are ball"):
         td.sample("cube")
 
 
-def test_names_of_the_package_exist():
+def test_names_of_the_package_exist() -> None:
     for name in td.__all__:
         assert getattr(td, name) is not None
     assert set(td.__all__) <= set(dir(td))

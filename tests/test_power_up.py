@@ -2,6 +2,8 @@
 """That Verilator's registers and memories really come up at random, and Icarus' unknown: the suite rests on it."""
 
 import json
+from pathlib import Path
+from typing import Any
 
 from commands.common import repository
 from commands.common import simulator as simulation
@@ -9,11 +11,11 @@ from commands.common import simulator as simulation
 SEEDS = range(1, 9)
 
 
-def test_what_is_not_reset(simulator, tmp_path):
+def test_what_is_not_reset(simulator: str, tmp_path: Path) -> None:
     files = [*repository.sources(["ram.sv"]), repository.ROOT / "tb" / "power_up.sv"]
     simulation.build(simulator, "power_up", files, {}, tmp_path, log=tmp_path / "build.log")
 
-    def seen(power_up):
+    def seen(power_up: Any) -> Any:
         count, failed = simulation.run(
             "power_up",
             "tb.tb_power_up",

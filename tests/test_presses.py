@@ -7,6 +7,7 @@ import math
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,16 +39,16 @@ BALL = GridPress("ball", 30.4, 33.7, 14.0, 26.0)
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return write_folder(tmp_path_factory.mktemp("ball") / "presses")
 
 
 @pytest.fixture
-def folder(made, tmp_path):
+def folder(made: Any, tmp_path: Path) -> Any:
     return Path(shutil.copytree(made, tmp_path / "presses"))
 
 
-def refused(action) -> str:
+def refused(action: Any) -> str:
     with pytest.raises(InputError) as caught:
         action()
     assert "\n" not in str(caught.value)
@@ -57,7 +58,7 @@ def refused(action) -> str:
 # Geometry.
 
 
-def test_the_recovered_height_is_that_of_the_cap():
+def test_the_recovered_height_is_that_of_the_cap() -> None:
     rows, columns = np.indices((64, 64))
     squared = (columns - BALL.x - 0.5) ** 2 + (rows - BALL.y - 0.5) ** 2
     depth = np.sqrt(np.maximum(26.0**2 - squared, 0))
@@ -65,7 +66,7 @@ def test_the_recovered_height_is_that_of_the_cap():
     assert BALL.recovered(0.5 * depth) == pytest.approx(0.5, abs=0.01)
 
 
-def test_the_largest_slope_is_that_at_the_edge_of_the_contact():
+def test_the_largest_slope_is_that_at_the_edge_of_the_contact() -> None:
     assert BALL.largest_slope == pytest.approx(math.tan(math.asin(14 / 26)))
     assert np.linalg.norm(BALL.slopes(64), axis=-1).max() == pytest.approx(BALL.largest_slope, rel=0.05)
 
@@ -74,7 +75,7 @@ def test_the_largest_slope_is_that_at_the_edge_of_the_contact():
 
 
 @pytest.mark.parametrize("index", range(0, 24, 3))
-def test_a_circle_is_found_in_the_picture(index):
+def test_a_circle_is_found_in_the_picture(index: int) -> None:
     name, _, x, y, contact, ball = places()[index]
     circle = find_circle(pictures()[name], pictures()["background.png"], 0.8 * ball)
     assert circle is not None
@@ -83,15 +84,15 @@ def test_a_circle_is_found_in_the_picture(index):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_no_circle_is_found_where_nothing_touches(seed):
+def test_no_circle_is_found_where_nothing_touches(seed: int) -> None:
     assert find_circle(drawn([], 100 + seed), drawn([], 1), 25) is None
 
 
-def test_circles_of_the_pictures_take_the_place_of_the_tables(folder):
+def test_circles_of_the_pictures_take_the_place_of_the_tables(folder: Path) -> None:
     """Of a table with radii two pixels too large; those found lie within the contact, where the gel is on the ball."""
     write_table(folder, [{**row, "contact_radius_px": row["contact_radius_px"] + 2} for row in table_rows()])
 
-    def error(find):
+    def error(find: Any) -> Any:
         presses = read(folder, find_circles=find)
         true = {row["frame"]: row["contact_radius_px"] for row in table_rows()}
         return np.median([view.press.contact_radius * presses.scale - true[view.press.name] for view in presses.views])
@@ -100,16 +101,16 @@ def test_circles_of_the_pictures_take_the_place_of_the_tables(folder):
     assert -1 < error(find=True) < 0  # measured: -0.84 pixels
 
 
-def test_circles_found_in_real_pictures_agree_with_the_table():
+def test_circles_found_in_real_pictures_agree_with_the_table() -> None:
     difference = np.abs(read(real_folder(), compare_circles=True).agreement)
     assert len(difference) == 45
     assert (np.median(difference, axis=0) <= (1, 2.5, 2.5)).all()  # measured: 0.5, 2.1, 1.8 pixels
 
 
-def without_scikit_image(monkeypatch):
+def without_scikit_image(monkeypatch: pytest.MonkeyPatch) -> None:
     load = builtins.__import__
 
-    def refuse(name, *rest):
+    def refuse(name: str, *rest: Any) -> Any:
         if name.startswith("skimage"):
             raise ModuleNotFoundError(name)
         return load(name, *rest)
@@ -118,12 +119,12 @@ def without_scikit_image(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", refuse)
 
 
-def test_given_circles_need_no_scikit_image(monkeypatch, made):
+def test_given_circles_need_no_scikit_image(monkeypatch: pytest.MonkeyPatch, made: Any) -> None:
     without_scikit_image(monkeypatch)
     assert len(read(made).views) == 24
 
 
-def test_missing_circles_without_scikit_image_say_how_to_get_it(monkeypatch, made):
+def test_missing_circles_without_scikit_image_say_how_to_get_it(monkeypatch: pytest.MonkeyPatch, made: Any) -> None:
     without_scikit_image(monkeypatch)
     assert "pip install '.[fit]' in the repository" in refused(lambda: read(made, find_circles=True))
     assert "pip install '.[fit]' in the repository" in refused(circles.require_circle_finder)
@@ -132,13 +133,14 @@ def test_missing_circles_without_scikit_image_say_how_to_get_it(monkeypatch, mad
 # Presses in memory.
 
 
-def in_memory(**changed) -> list[td.BallPress]:
+def in_memory(**changed: Any) -> list[td.BallPress]:
     return [
-        td.BallPress(pictures()[name], diameter, tuple(circle), **changed) for name, diameter, *circle, _ in places()
+        td.BallPress(pictures()[name], diameter, (x, y, radius), **changed)
+        for name, diameter, x, y, radius, _ in places()
     ]
 
 
-def test_presses_in_memory_are_those_of_the_folder(made):
+def test_presses_in_memory_are_those_of_the_folder(made: Any) -> None:
     background = pictures()["background.png"]
     given, there = to_grid(gather(in_memory(), background), PITCH), read(made)
     assert [view.press.name for view in given.views][:2] == ["press 1", "press 2"]
@@ -147,7 +149,7 @@ def test_presses_in_memory_are_those_of_the_folder(made):
         assert one.press.x == other.press.x
 
 
-def test_presses_in_memory_may_be_paths(made):
+def test_presses_in_memory_may_be_paths(made: Any) -> None:
     presses = [td.BallPress(made / "03.png", 8.0, (60, 50, 20))]
     assert gather(presses, made / "background.png").presses[0].name == f"{made}/03.png"
 
@@ -164,14 +166,14 @@ def test_presses_in_memory_may_be_paths(made):
         ({"circle": (1, 2, 30), "ball_radius_px": 30}, "a contact of 30 pixels does not lie on a ball of 30"),
     ],
 )
-def test_a_bad_press_is_refused(changed, said):
+def test_a_bad_press_is_refused(changed: Any, said: Any) -> None:
     assert said in refused(lambda: td.BallPress(**{"image": "a.png", "diameter_mm": 6, **changed}))
 
 
-def test_bad_arguments_are_named():
+def test_bad_arguments_are_named() -> None:
     background = pictures()["background.png"]
     assert "background is missing" in refused(lambda: gather(in_memory()))
-    assert "presses: accepted are" in refused(lambda: gather([background], background))
+    assert "presses: accepted are" in refused(lambda: gather([background], background))  # type: ignore[list-item]
     assert "the name a stands twice" in refused(lambda: gather(in_memory(name="a"), background))
     assert "background: float64" in refused(lambda: gather(in_memory(), background / 2))
     dark = gather(in_memory(), background // 20)
@@ -181,31 +183,31 @@ def test_bad_arguments_are_named():
 # The pixel pitch.
 
 
-def test_the_pitch_follows_from_the_balls():
+def test_the_pitch_follows_from_the_balls() -> None:
     given = gather([td.BallPress("a", 6.31, None, "a", 49.76), td.BallPress("b", 9.5, None, "b", 74.92)], drawn([], 1))
     assert camera_pitch_mm(given, None) == 0.0634
     assert camera_pitch_mm(given, 0.0635) == 0.0635
 
 
-def test_a_pitch_that_the_balls_contradict_is_named(made):
+def test_a_pitch_that_the_balls_contradict_is_named(made: Any) -> None:
     said = "pitch_mm=0.12 contradicts presses, whose ball radii give 0.1 mm/pixel. Omit pitch_mm or correct ball_rad"
     assert said in refused(lambda: camera_pitch_mm(gather(made), 0.12))
 
 
-def test_a_pitch_that_nothing_tells_is_asked_for():
+def test_a_pitch_that_nothing_tells_is_asked_for() -> None:
     assert "pitch_mm is needed" in refused(lambda: camera_pitch_mm(gather(in_memory(), drawn([], 1)), None))
 
 
 # Bad folders: what is bad is named in one line, the others are used.
 
 
-def used(folder, **choices) -> tuple[int, list[str]]:
+def used(folder: Path, **choices: Any) -> tuple[int, list[str]]:
     presses = read(folder, **choices)
     assert all(note.isprintable() and "\n" not in note for note in presses.notes)
     return len(presses.views), list(presses.notes)
 
 
-def test_jpeg_pictures_are_read(folder):
+def test_jpeg_pictures_are_read(folder: Path) -> None:
     for path in folder.glob("*.png"):
         Image.open(path).save(path.with_suffix(".jpg"), quality=95)
         path.unlink()
@@ -213,12 +215,12 @@ def test_jpeg_pictures_are_read(folder):
     assert used(folder) == (24, [])
 
 
-def test_a_frame_of_another_size_is_left_out(folder):
+def test_a_frame_of_another_size_is_left_out(folder: Path) -> None:
     Image.fromarray(drawn([], 1)[:-2]).save(folder / "03.png")
     assert used(folder) == (23, ["03.png: 110 x 160 pixels, but the background has 112 x 160: left out"])
 
 
-def test_a_frame_that_is_missing_or_damaged_is_left_out(folder):
+def test_a_frame_that_is_missing_or_damaged_is_left_out(folder: Path) -> None:
     (folder / "03.png").unlink()
     (folder / "04.png").write_bytes((folder / "04.png").read_bytes()[:500])
     count, notes = used(folder)
@@ -227,7 +229,7 @@ def test_a_frame_that_is_missing_or_damaged_is_left_out(folder):
     assert f"{folder}/04.png: not a readable picture" in notes[1]
 
 
-def test_a_press_without_a_circle_is_left_out(folder):
+def test_a_press_without_a_circle_is_left_out(folder: Path) -> None:
     Image.fromarray(drawn([], 99)).save(folder / "03.png")
     rows = table_rows()
     rows[3] |= {"centre_x_px": "", "centre_y_px": ""}
@@ -236,14 +238,14 @@ def test_a_press_without_a_circle_is_left_out(folder):
 
 
 @pytest.mark.parametrize("centre", [-40.0, 400.0, 5.0])  # the middle square begins at 24
-def test_a_press_outside_the_frame_is_left_out(folder, centre):
+def test_a_press_outside_the_frame_is_left_out(folder: Path, centre: Any) -> None:
     rows = table_rows()
     rows[3]["centre_x_px"] = centre
     write_table(folder, rows)
     assert used(folder) == (23, ["03.png: the press is outside the picture's middle square: left out"])
 
 
-def test_a_contact_wider_than_its_ball_is_left_out(folder):
+def test_a_contact_wider_than_its_ball_is_left_out(folder: Path) -> None:
     rows = table_rows()
     rows[3] |= {"diameter_mm": 3.9, "ball_radius_px": ""}
     write_table(folder, rows)
@@ -264,7 +266,7 @@ def test_a_contact_wider_than_its_ball_is_left_out(folder):
         ({"frame": "02.png"}, "02.png a second time"),
     ],
 )
-def test_a_bad_line_is_left_out(folder, changed, said):
+def test_a_bad_line_is_left_out(folder: Path, changed: Any, said: Any) -> None:
     rows = table_rows()
     rows[3] |= changed
     write_table(folder, rows)
@@ -274,19 +276,19 @@ def test_a_bad_line_is_left_out(folder, changed, said):
     assert said in note
 
 
-def test_unknown_columns_are_named_and_not_used(folder):
+def test_unknown_columns_are_named_and_not_used(folder: Path) -> None:
     write_table(folder, [{**row, "force_N": 3} for row in table_rows()], [*COLUMNS, "force_N"])
     count, (note,) = used(folder)
     assert count == 24
     assert f"{folder}/presses.csv: unknown columns force_N: not used" in note
 
 
-def test_too_few_presses_are_said(folder):
+def test_too_few_presses_are_said(folder: Path) -> None:
     write_table(folder, table_rows()[:5])
     assert "at least 6 and 2 are needed" in refused(lambda: fit_presses(read(folder)))
 
 
-def test_no_press_is_both_fitted_and_held_out(made):
+def test_no_press_is_both_fitted_and_held_out(made: Any) -> None:
     fitted, held_out = held_out_presses(read(made))
     names = [{view.press.name for view in views} for views in (fitted, held_out)]
     assert not names[0] & names[1]
@@ -294,12 +296,12 @@ def test_no_press_is_both_fitted_and_held_out(made):
     assert all(view.press.margin(GRID) >= 0 for view in held_out)
 
 
-def test_a_folder_without_background_is_named(folder):
+def test_a_folder_without_background_is_named(folder: Path) -> None:
     (folder / "background.png").unlink()
     assert f"{folder}/background.png: no such file" in refused(lambda: gather(folder))
 
 
-def test_a_folder_that_is_missing_says_what_one_holds(tmp_path):
+def test_a_folder_that_is_missing_says_what_one_holds(tmp_path: Path) -> None:
     assert "no presses.csv in it: give a folder with background.png" in refused(lambda: gather(tmp_path / "absent"))
 
 
@@ -314,12 +316,12 @@ def test_a_folder_that_is_missing_says_what_one_holds(tmp_path):
         b"frame,diameter_mm\n" + b"x" * (1 << 21),
     ],
 )
-def test_a_table_of_presses_that_is_none_is_named(tmp_path, table):
+def test_a_table_of_presses_that_is_none_is_named(tmp_path: Any, table: Any) -> None:
     (tmp_path / "presses.csv").write_bytes(table)
     with pytest.raises(InputError, match=re.escape(f"{tmp_path}/presses.csv: ")):
         read_presses(tmp_path)
 
 
-def test_a_picture_too_small_for_a_grid_is_named(folder):
+def test_a_picture_too_small_for_a_grid_is_named(folder: Path) -> None:
     Image.fromarray(drawn([], 1)[:12]).save(folder / "background.png")
     assert f"background: 12 x {CAMERA[1]} pixels" in refused(lambda: read(folder))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The double-precision reference against the equation it claims to solve."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -19,14 +21,14 @@ def second_difference(z: np.ndarray, axis: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", [(16, 16), (64, 64), (128, 128), (2, 48, 16)])
-def test_solve_inverts_the_five_point_laplacian(shape):
+def test_solve_inverts_the_five_point_laplacian(shape: Any) -> None:
     f = np.random.default_rng(1).normal(size=shape)
     z = solve(f)
     np.testing.assert_allclose(second_difference(z, -1) + second_difference(z, -2), f, atol=1e-11)
 
 
 @given(st.integers(2, 6), st.integers(1, 64), st.integers(1, 64))
-def test_every_mode_is_divided_by_its_eigenvalue(log2_size, k, m):
+def test_every_mode_is_divided_by_its_eigenvalue(log2_size: Any, k: Any, m: Any) -> None:
     size = 1 << log2_size
     k, m = min(k, size), min(m, size)
     n = 2 * np.arange(size) + 1
@@ -37,13 +39,13 @@ def test_every_mode_is_divided_by_its_eigenvalue(log2_size, k, m):
 
 @settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.floats(-3, 3))
-def test_solve_is_linear(seed, factor):
+def test_solve_is_linear(seed: int, factor: int) -> None:
     f, g = np.random.default_rng(seed).normal(size=(2, 32, 32))
     np.testing.assert_allclose(solve(factor * f + g), factor * solve(f) + solve(g), atol=1e-10)
 
 
 @pytest.mark.parametrize("bits", [1, 4, 6])
-def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits):
+def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits: int) -> None:
     bins = 1 << bits
     gradient = np.random.default_rng(2).normal(size=(bins, bins, bins, 2))
     frames = np.random.default_rng(3).integers(0, 256, (3, 5, 7, 3), dtype=np.uint8)
@@ -55,7 +57,7 @@ def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits):
         np.testing.assert_array_equal(found[place], gradient[red, green, blue])
 
 
-def test_depth_is_the_chain_and_frames_do_not_mix():
+def test_depth_is_the_chain_and_frames_do_not_mix() -> None:
     gradient = np.random.default_rng(4).normal(size=(4, 4, 4, 2))
     calibration = Sensor("random", gradient, 0.1)
     frames = np.random.default_rng(5).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8)
@@ -67,7 +69,7 @@ def test_depth_is_the_chain_and_frames_do_not_mix():
 # A dome of 12 pixels' peak and 31 pixels' radius whose centre lies `centre` pixels from the left edge, at N = 128:
 # height kept, of the true one, by boundary. What lies outside the frame is not seen.
 @pytest.mark.parametrize(("centre", "dirichlet"), [(64, 1.0), (30, 1.0), (20, 0.90), (14, 0.73), (8, 0.47), (4, 0.26)])
-def test_height_of_a_contact_that_the_edge_cuts(centre, dirichlet):
+def test_height_of_a_contact_that_the_edge_cuts(centre: Any, dirichlet: Any) -> None:
     whole = dome(128, 12.0)
     row, column = np.unravel_index(whole.argmax(), whole.shape)
     height = np.zeros_like(whole)

@@ -5,6 +5,7 @@ import importlib
 import math
 import sys
 from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,23 +18,23 @@ FOLDER = ROOT / "examples" / "ros2"
 
 
 @pytest.fixture
-def conversions(monkeypatch):
+def conversions(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.syspath_prepend(str(FOLDER))
     return importlib.import_module("tactile_depth_ros.conversions")
 
 
 @pytest.fixture(scope="module")
-def ball():
+def ball() -> Any:
     return td.sample("ball")
 
 
 @pytest.fixture(scope="module")
-def pipeline(ball):
+def pipeline(ball: Any) -> Any:
     return td.Pipeline(ball.sensor, ball.reference)
 
 
 @pytest.mark.parametrize("padding", [0, 5])
-def test_pictures_are_read_in_rgb_without_their_padding(conversions, padding):
+def test_pictures_are_read_in_rgb_without_their_padding(conversions: Any, padding: Any) -> None:
     image = np.random.default_rng(1).integers(0, 256, (4, 6, 3)).astype(np.uint8)
     for encoding, sent in (("rgb8", image), ("bgr8", image[..., ::-1])):
         rows = np.full((4, 18 + padding), 77, np.uint8)
@@ -52,12 +53,12 @@ def test_pictures_are_read_in_rgb_without_their_padding(conversions, padding):
         ((0, 6, 18, "rgb8", b""), "0 bytes"),
     ],
 )
-def test_a_message_that_is_no_picture_is_refused(conversions, fields, said):
+def test_a_message_that_is_no_picture_is_refused(conversions: Any, fields: Any, said: Any) -> None:
     with pytest.raises(td.InputError, match=said):
         conversions.picture(*fields)
 
 
-def test_heights_and_points_are_in_metres(conversions, pipeline, ball):
+def test_heights_and_points_are_in_metres(conversions: Any, pipeline: Any, ball: Any) -> None:
     result = pipeline(ball.image)
     depth = conversions.depth_image(result)
     assert (depth["height"], depth["width"], depth["step"], depth["encoding"]) == (96, 128, 512, "32FC1")
@@ -72,7 +73,7 @@ def test_heights_and_points_are_in_metres(conversions, pipeline, ball):
     assert cloud["is_dense"]
 
 
-def test_the_contact_is_in_si_units_in_the_documented_order(conversions, pipeline, ball):
+def test_the_contact_is_in_si_units_in_the_documented_order(conversions: Any, pipeline: Any, ball: Any) -> None:
     result = pipeline(ball.image)
     numbers = dict(zip(conversions.CONTACT_FIELDS, conversions.contact(result), strict=True))
     contact, pitch = result.contact, result.pixel_pitch_mm / 1000
@@ -104,28 +105,30 @@ class Node:
 
     parameters: dict = {}  # noqa: RUF012
 
-    def __init__(self, _):
-        self.published, self.services, self.errors = {}, {}, []
+    def __init__(self, _: Any) -> None:
+        self.published: dict[Any, Any] = {}
+        self.services: dict[Any, Any] = {}
+        self.errors: list[Any] = []
 
-    def declare_parameter(self, name, default):
+    def declare_parameter(self, name: str, default: Any) -> Any:
         return SimpleNamespace(value=self.parameters.get(name, default))
 
-    def create_publisher(self, _, topic, __):
+    def create_publisher(self, _: Any, topic: str, __: Any) -> Any:
         return SimpleNamespace(publish=self.published.setdefault(topic, []).append)
 
-    def create_subscription(self, _, topic, callback, __):
+    def create_subscription(self, _: Any, topic: str, callback: Any, __: Any) -> None:
         assert topic == "image"
         self.receive = callback
 
-    def create_service(self, _, name, callback):
+    def create_service(self, _: Any, name: str, callback: Any) -> None:
         self.services[name] = callback
 
-    def get_logger(self):
+    def get_logger(self) -> Any:
         return SimpleNamespace(info=lambda _: None, error=lambda text, **_: self.errors.append(text))
 
 
 @pytest.fixture
-def make_node(monkeypatch, conversions):
+def make_node(monkeypatch: pytest.MonkeyPatch, conversions: Any) -> Any:
     """Import the node with stand-ins for ROS; call it with parameters."""
     names = {
         "rclpy": {},
@@ -143,12 +146,12 @@ def make_node(monkeypatch, conversions):
     }
     for name, content in names.items():
         module = ModuleType(name)
-        module.__dict__.update(content)
+        module.__dict__.update(content)  # type: ignore[call-overload]
         monkeypatch.setitem(sys.modules, name, module)
     monkeypatch.delitem(sys.modules, "tactile_depth_ros.tactile_depth_node", raising=False)
     module = importlib.import_module("tactile_depth_ros.tactile_depth_node")
 
-    def make(**parameters):
+    def make(**parameters: Any) -> Any:
         monkeypatch.setattr(Node, "parameters", parameters)
         return module.TactileDepthNode()
 
@@ -156,14 +159,14 @@ def make_node(monkeypatch, conversions):
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory, ball):
+def files(tmp_path_factory: pytest.TempPathFactory, ball: Any) -> Any:
     folder = tmp_path_factory.mktemp("sensor")
     ball.sensor.save(folder / "sensor.npz")
     Image.fromarray(ball.reference).save(folder / "background.png")
     return folder
 
 
-def message(image, encoding="rgb8"):
+def message(image: np.ndarray, encoding: str = "rgb8") -> Any:
     rows, columns = image.shape[:2]
     sent = image if encoding == "rgb8" else image[..., ::-1]
     return Message(
@@ -171,7 +174,9 @@ def message(image, encoding="rgb8"):
     )
 
 
-def test_the_node_publishes_depth_with_the_header_of_the_picture(make_node, files, conversions, pipeline, ball):
+def test_the_node_publishes_depth_with_the_header_of_the_picture(
+    make_node: Any, files: Any, conversions: Any, pipeline: Any, ball: Any
+) -> None:
     node = make_node(calibration=f"{files}/sensor.npz", reference=f"{files}/background.png")
     node.receive(message(ball.image, "bgr8"))
     assert not node.errors
@@ -187,7 +192,9 @@ def test_the_node_publishes_depth_with_the_header_of_the_picture(make_node, file
     assert contact.layout.dim[0].label.split(",")[0] == "touching"
 
 
-def test_the_first_frames_become_the_reference(make_node, files, conversions, ball, pipeline):
+def test_the_first_frames_become_the_reference(
+    make_node: Any, files: Any, conversions: Any, ball: Any, pipeline: Any
+) -> None:
     node = make_node(calibration=f"{files}/sensor.npz")
     for _ in range(8):
         node.receive(message(ball.reference))
@@ -196,7 +203,9 @@ def test_the_first_frames_become_the_reference(make_node, files, conversions, ba
     assert len(node.published["height"]) == 2  # the eighth and the last
 
 
-def test_the_services_capture_from_the_pictures_that_follow(make_node, files, conversions, ball):
+def test_the_services_capture_from_the_pictures_that_follow(
+    make_node: Any, files: Any, conversions: Any, ball: Any
+) -> None:
     node = make_node(calibration=f"{files}/sensor.npz", reference=f"{files}/background.png")
     weaker = np.rint(ball.reference * 0.9).astype(np.uint8)
     answer = node.services["capture_reference"](None, Message())
@@ -211,7 +220,7 @@ def test_the_services_capture_from_the_pictures_that_follow(make_node, files, co
     assert not node.errors
 
 
-def test_a_bad_picture_is_logged_and_the_node_goes_on(make_node, files, ball):
+def test_a_bad_picture_is_logged_and_the_node_goes_on(make_node: Any, files: Any, ball: Any) -> None:
     node = make_node(calibration=f"{files}/sensor.npz", reference=f"{files}/background.png")
     node.receive(Message(header="", height=1, width=1, step=1, encoding="mono8", data=b"0"))
     assert node.errors == ["encoding 'mono8': accepted are rgb8, bgr8: convert it with image_proc"]
@@ -219,19 +228,19 @@ def test_a_bad_picture_is_logged_and_the_node_goes_on(make_node, files, ball):
     assert len(node.published["height"]) == 1
 
 
-def test_a_reference_of_no_known_sensor_is_tried_again(make_node, ball):
+def test_a_reference_of_no_known_sensor_is_tried_again(make_node: Any, ball: Any) -> None:
     node = make_node()
     for _ in range(8):
         node.receive(message(ball.reference))
     (error,) = node.errors
     assert "looks like no sensor with a built-in calibration" in error
-    mini = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+    mini = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
     for _ in range(8):
         node.receive(message(mini))
     assert len(node.published["height"]) == 1
 
 
-def test_all_files_of_the_package_agree_on_its_name():
+def test_all_files_of_the_package_agree_on_its_name() -> None:
     name = "tactile_depth_ros"
     assert f"<name>{name}</name>" in (FOLDER / "package.xml").read_text()
     assert (FOLDER / "resource" / name).is_file()

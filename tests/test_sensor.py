@@ -2,6 +2,8 @@
 """A sensor, its camera and a configuration: what does not belong together is refused."""
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,11 +22,11 @@ GREY = np.full((16, 16, 3), 128, np.uint8)
 
 
 @pytest.fixture(scope="module")
-def mini():
+def mini() -> Any:
     return load("gelsight-mini")
 
 
-def saved(path, shape, value=128):
+def saved(path: Path, shape: Any, value: int = 128) -> str:
     np.save(path, np.full((1, *shape, 3), value, np.uint8))
     return str(path)
 
@@ -32,7 +34,7 @@ def saved(path, shape, value=128):
 # The camera.
 
 
-def test_a_larger_picture_is_scaled_with_its_pitch(tmp_path, mini):
+def test_a_larger_picture_is_scaled_with_its_pitch(tmp_path: Path, mini: Any) -> None:
     picture = mini.scaled(1, GREY)  # any reference
     for zoom in (1, 2, 3):
         frames = load_frames(saved(tmp_path / "f.npy", (240 * zoom, 320 * zoom)), (96, 128))
@@ -42,7 +44,7 @@ def test_a_larger_picture_is_scaled_with_its_pitch(tmp_path, mini):
     assert picture.reference is not None
 
 
-def test_pictures_of_another_aspect_ratio_are_refused(mini):
+def test_pictures_of_another_aspect_ratio_are_refused(mini: Any) -> None:
     for rows, columns in ((240, 321), (478, 640)):
         assert mini.zoom((rows, columns)) == pytest.approx(columns / 320, rel=0.005)
     for rows, columns in ((240, 322), (480, 720), (320, 240)):
@@ -50,12 +52,12 @@ def test_pictures_of_another_aspect_ratio_are_refused(mini):
             mini.zoom((rows, columns))
 
 
-def test_a_scene_is_not_for_a_real_sensor(mini):
+def test_a_scene_is_not_for_a_real_sensor(mini: Any) -> None:
     with pytest.raises(InputError, match="a scene is drawn for the synthetic sensor, not for gelsight-mini"):
         mini.on_grid(load_frames("ball", (16, 16), "flat"))
 
 
-def test_a_real_sensor_needs_a_reference(tmp_path, mini):
+def test_a_real_sensor_needs_a_reference(tmp_path: Path, mini: Any) -> None:
     frames = load_frames(saved(tmp_path / "f.npy", (240, 320)), (96, 128))
     with pytest.raises(InputError, match="gelsight-mini needs a reference"):
         mini.on_grid(frames)
@@ -63,14 +65,14 @@ def test_a_real_sensor_needs_a_reference(tmp_path, mini):
         replace(mini, flat_field=False).on_grid(replace(frames, reference=GREY))
 
 
-def test_the_scale_of_whole_pictures(mini):
+def test_the_scale_of_whole_pictures(mini: Any) -> None:
     assert camera_scale(mini, Configuration(columns=128, rows=96, solver="tridiagonal")) == 2.5
     assert camera_scale(mini, Configuration(columns=128)) == 1.875
     with pytest.raises(InputError, match="smaller than the grid"):
         camera_scale(mini, Configuration(columns=512, solver="tridiagonal"))
 
 
-def test_the_lighting_of_another_sensor_is_noticed(mini):
+def test_the_lighting_of_another_sensor_is_noticed(mini: Any) -> None:
     rng = np.random.default_rng(1)
     own = np.kron(mini.lighting * 90, np.ones((60, 80, 1))) * rng.uniform(0.95, 1.05)
     mini.check_lighting(own.astype(np.uint8))  # a warning would be an error here
@@ -79,7 +81,7 @@ def test_the_lighting_of_another_sensor_is_noticed(mini):
             mini.check_lighting(other.astype(np.uint8))
 
 
-def test_lighting_does_not_depend_on_exposure():
+def test_lighting_does_not_depend_on_exposure() -> None:
     picture = np.random.default_rng(1).integers(20, 100, (41, 62, 3)).astype(np.uint8)
     np.testing.assert_allclose(lighting(picture), lighting(2 * picture), rtol=1e-12)
 
@@ -87,7 +89,7 @@ def test_lighting_does_not_depend_on_exposure():
 # The configuration.
 
 
-def test_the_configuration_follows_from_the_sensor(mini):
+def test_the_configuration_follows_from_the_sensor(mini: Any) -> None:
     config = mini.scaled(1, GREY).configuration(columns=16)
     assert (config.flat_field, config.gradient_model, config.bits_per_channel) == (True, "quadratic", 5)
     assert config.gradient_limit == mini.gradient_limit
@@ -99,7 +101,7 @@ def test_the_configuration_follows_from_the_sensor(mini):
 
 
 STEEP = Sensor("steep", np.full((16, 16, 16, 2), 1.5), 0.1)
-DISAGREEING = {
+DISAGREEING: dict[str, Any] = {
     "bits_per_channel": (synthetic(5), {}, "bits_per_channel=4 of the configuration, but the table of synthetic has 5"),
     "gradient_limit": (STEEP, {}, "gradient_limit=1 of the configuration is below the slopes of steep, which reach 2"),
     "flat_field": (synthetic().scaled(1, GREY), {}, "flat_field=False of the configuration, but synthetic has a ref"),
@@ -117,10 +119,10 @@ DISAGREEING = {
 
 @pytest.mark.parametrize("case", DISAGREEING)
 @pytest.mark.parametrize("use", ["model", "reference", "tables"])
-def test_a_sensor_and_a_configuration_that_disagree_are_refused(tmp_path, case, use):
+def test_a_sensor_and_a_configuration_that_disagree_are_refused(tmp_path: Path, case: Any, use: Any) -> None:
     sensor, choices, said = DISAGREEING[case]
     config = Configuration(columns=16, **choices)
-    uses = {
+    uses: dict[str, Any] = {
         "model": lambda: tactile_depth(GREY, sensor, config),
         "reference": lambda: slopes_of(GREY, sensor, config),
         "tables": lambda: write_roms(tmp_path, sensor, config),
@@ -130,7 +132,7 @@ def test_a_sensor_and_a_configuration_that_disagree_are_refused(tmp_path, case, 
     assert not list(tmp_path.iterdir())
 
 
-def test_gains_and_floors_of_another_grid_are_refused(tmp_path):
+def test_gains_and_floors_of_another_grid_are_refused(tmp_path: Path) -> None:
     config = Configuration(columns=16, flat_field=True, auto_zero=True)
     with pytest.raises(InputError, match=r"gains have the shape \(5, 5, 3\): accepted is \(8, 8, 3\)"):
         tactile_depth(GREY, synthetic(), config, gains=np.full((5, 5, 3), 4096))
@@ -141,19 +143,19 @@ def test_gains_and_floors_of_another_grid_are_refused(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_wider_limit_than_needed_gives_the_same_depth():
+def test_a_wider_limit_than_needed_gives_the_same_depth() -> None:
     frames = render("ball", 32, seed=1).frames
     depth = [
         tactile_depth(frames, synthetic(), config) * config.depth_lsb_px
         for config in (Configuration(columns=32), Configuration(columns=32, gradient_limit=2.0))
     ]
-    np.testing.assert_allclose(*depth, atol=1e-3)
+    np.testing.assert_allclose(*depth, atol=1e-3)  # type: ignore[call-overload]
 
 
 # The writers of tables never drop a bit.
 
 
-def test_words_that_do_not_fit_are_refused(tmp_path):
+def test_words_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     for word in (-1, 16):
         with pytest.raises(ValueError, match="do not fit 4 unsigned bits"):
             write_words(tmp_path / "a.hex", [3, word], 4)
@@ -168,7 +170,7 @@ def test_words_that_do_not_fit_are_refused(tmp_path):
 # Which sensor took a reference.
 
 
-def rest_of(sensor, zoom=1):
+def rest_of(sensor: Any, zoom: Any = 1) -> Any:
     """A picture without contact as the camera of a sensor sees it."""
     rng = np.random.default_rng(1)
     picture = np.kron(sensor.lighting * 90, np.ones((60 * zoom, 80 * zoom, 1)))
@@ -176,7 +178,7 @@ def rest_of(sensor, zoom=1):
 
 
 @pytest.mark.parametrize("zoom", [1, 2])
-def test_a_sensor_is_identified_by_its_lighting(mini, zoom):
+def test_a_sensor_is_identified_by_its_lighting(mini: Any, zoom: float) -> None:
     assert identify(rest_of(mini, zoom)).name == "gelsight-mini"
     assert identify(rest_of(mini, zoom) // 2).name == "gelsight-mini"
 
@@ -194,13 +196,13 @@ def test_a_sensor_is_identified_by_its_lighting(mini, zoom):
     ],
     ids=["grey", "BGR", "upside down", "on its side", "one colour", "two rows", "floats"],
 )
-def test_a_picture_of_no_known_sensor_is_not_identified(mini, change, reason):
+def test_a_picture_of_no_known_sensor_is_not_identified(mini: Any, change: Any, reason: Any) -> None:
     with pytest.raises(InputError, match=reason):
         identify(change(rest_of(mini)))
 
 
 @needs_real_data
-def test_the_real_sensor_is_identified():
+def test_the_real_sensor_is_identified() -> None:
     background = read_picture(FOLDER / "gelslam" / "background.png")
     assert identify(background).name == "gelsight-mini"
     with pytest.raises(InputError, match="name the calibration of the sensor that took it"):

@@ -2,7 +2,9 @@
 """tactile_depth: RTL against the models, at its pins."""
 
 import json
+from collections.abc import Callable
 from itertools import product
+from typing import Any
 
 import pytest
 
@@ -54,11 +56,11 @@ SECOND = (
     "configuration|one_frame|gaps_and_stalls/offers=random|waits_for_long|contact|malformed|in_a_row|silence|"
     "registers_written"
 )
-TRIDIAGONAL = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+TRIDIAGONAL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
-FLAT_QUADRATIC = {"flat_field": True, "gradient_model": "quadratic"}
-STRUCTURES = {  # choices of the configuration, and which tests run ("": every test)
+FLAT_QUADRATIC: dict[str, Any] = {"flat_field": True, "gradient_model": "quadratic"}
+STRUCTURES: dict[str, Any] = {  # choices of the configuration, and which tests run ("": every test)
     "16-24": ({"columns": 16, "bits_per_channel": 2}, ""),
     "16-27-neumann": ({"columns": 16, "data_width": 27, "neumann": True}, FORMATS),
     "32-12": ({"columns": 32, "data_width": 12, "bits_per_channel": 3}, LARGER),
@@ -85,7 +87,7 @@ STRUCTURES = {  # choices of the configuration, and which tests run ("": every t
     ],
     regress_verilator=[("16-27-neumann",), ("32-12",), ("tridiagonal-21x16-neumann",)],
 )
-def test_rtl(run_tb, simulator, name):
+def test_rtl(run_tb: Callable[..., None], simulator: str, name: str) -> None:
     choices, tests = STRUCTURES[name]
     config = Configuration(**choices)
     spectral, slow = config.solver == "spectral", simulator == "icarus"
@@ -106,9 +108,9 @@ def test_rtl(run_tb, simulator, name):
 
 
 @pytest.mark.parametrize("simulator", ["icarus"], indirect=True)
-def test_words_side_by_side_in_the_frame_store(run_tb, simulator):
+def test_words_side_by_side_in_the_frame_store(run_tb: Callable[..., None], simulator: str) -> None:
     """As on grids too large for the tests of each beat."""
-    choices = {"columns": 32, "solver": "tridiagonal", "bits_per_channel": 2}
+    choices: dict[str, Any] = {"columns": 32, "solver": "tridiagonal", "bits_per_channel": 2}
     config = Configuration(**choices)
     run_tb(
         "tactile_depth",
@@ -121,7 +123,7 @@ def test_words_side_by_side_in_the_frame_store(run_tb, simulator):
 
 @pytest.mark.seeds
 @pytest.mark.structures("name", verilator=[("tridiagonal-8x16",)], regress=[("tridiagonal-8x16",)])
-def test_a_second_client(run_tb, name):
+def test_a_second_client(run_tb: Callable[..., None], name: str) -> None:
     """The same tests through cocotbext-axi, but for those that break a stream off in mid row."""
     choices, _ = STRUCTURES[name]
     config = Configuration(**choices)

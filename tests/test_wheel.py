@@ -11,8 +11,10 @@ import subprocess
 import sys
 import textwrap
 import zipfile
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -47,13 +49,13 @@ QUICK_START = """
     """
 
 
-def without_sources():
+def without_sources() -> dict[Any, Any]:
     """The surroundings of a user: the repository's own modules are not on the path."""
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """One folder for all workers, with a lock around what is made once."""
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "wheel"
@@ -64,7 +66,7 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def wheel(folder):
+def wheel(folder: Path) -> Any:
     """The wheel, built of a copy: setuptools would take up what lies in build/ from before."""
     if not list(folder.glob("*.whl")):
         sources = folder / "sources"
@@ -74,14 +76,14 @@ def wheel(folder):
             else:
                 sources.mkdir(exist_ok=True)
                 shutil.copy(ROOT / name, sources)
-        build = ["wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, sources]
+        build: list[Any] = ["wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, sources]
         subprocess.run([sys.executable, "-m", "pip", *build], check=True, capture_output=True)
     (path,) = folder.glob("*.whl")
     return path
 
 
 @pytest.fixture(scope="module")
-def environment(folder, wheel):
+def environment(folder: Path, wheel: Any) -> Any:
     """An environment that holds the wheel and what it asks for, by pip's usual registry."""
     python = folder / "environment" / "bin" / "python"
     complete = folder / "complete"
@@ -98,7 +100,7 @@ def environment(folder, wheel):
 
 
 @pytest.fixture(scope="module")
-def pictures(folder):
+def pictures(folder: Path) -> Any:
     """A folder with background.png and press.png of a GelSight Mini: real ones where TACTILE_DATA is."""
     place = folder / "pictures"
     if not place.exists():
@@ -108,21 +110,21 @@ def pictures(folder):
             shutil.copy(data / "background.png", place)
             shutil.copy(data / "9.500mm" / "12.png", place / "press.png")
         else:
-            blocks = td.load("gelsight-mini").lighting * 90
+            blocks = td.load("gelsight-mini").lighting * 90  # type: ignore[operator]
             rest = np.kron(blocks, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
             for name in ("background.png", "press.png"):
                 Image.fromarray(rest).save(place / name)
     return place
 
 
-def run(python, cwd, *arguments):
+def run(python: Any, cwd: Any, *arguments: Any) -> Any:
     ended = subprocess.run([python, *arguments], cwd=cwd, env=without_sources(), capture_output=True, text=True)
     assert ended.returncode == 0, ended.stderr
     assert not ended.stderr
     return ended.stdout
 
 
-def examples():
+def examples() -> Iterator[Any]:
     """Code of the package's docstring and of the README."""
     (block,) = re.findall(r"(?:^    .*\n|^\n)*^    result\..*\n", td.__doc__, re.MULTILINE)
     yield pytest.param(textwrap.dedent(block), id="docstring")
@@ -131,18 +133,18 @@ def examples():
             yield pytest.param(block, id=f"{page}-{index}")
 
 
-def test_the_metadata_say_what_a_user_must_know(wheel):
+def test_the_metadata_say_what_a_user_must_know(wheel: Any) -> None:
     with zipfile.ZipFile(wheel) as archive:
         (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
         metadata = email.message_from_bytes(archive.read(name))
     assert metadata["Requires-Python"] == ">=3.10"
     assert metadata["License-Expression"] == "Apache-2.0"
     assert metadata.get_all("Provides-Extra") == ["fit", "plot", "live"]
-    required = [line for line in metadata.get_all("Requires-Dist") if "extra ==" not in line]
-    assert [re.match(r"\w+", line)[0] for line in required] == ["numpy", "scipy", "Pillow"]
+    required = [line for line in metadata.get_all("Requires-Dist") if "extra ==" not in line]  # type: ignore[union-attr]
+    assert [re.match(r"\w+", line)[0] for line in required] == ["numpy", "scipy", "Pillow"]  # type: ignore[index]
 
 
-def test_the_wheel_holds_every_module_and_the_data(wheel):
+def test_the_wheel_holds_every_module_and_the_data(wheel: Any) -> None:
     package = ROOT / "models" / "tactile_depth"
     with zipfile.ZipFile(wheel) as archive:
         held = {name for name in archive.namelist() if ".dist-info/" not in name}
@@ -150,7 +152,7 @@ def test_the_wheel_holds_every_module_and_the_data(wheel):
     assert held == {path.relative_to(package.parent).as_posix() for path in wanted}
 
 
-def test_nothing_beyond_the_declared_is_imported(environment, pictures):
+def test_nothing_beyond_the_declared_is_imported(environment: Any, pictures: Any) -> None:
     script = """
         import sys
         import tactile_depth as td
@@ -164,13 +166,13 @@ def test_nothing_beyond_the_declared_is_imported(environment, pictures):
 
 
 @pytest.mark.parametrize("block", list(examples()))
-def test_the_examples_run_as_printed(environment, pictures, block, tmp_path):
+def test_the_examples_run_as_printed(environment: Any, pictures: Any, block: Any, tmp_path: Path) -> None:
     for picture in pictures.iterdir():
         shutil.copy(picture, tmp_path)
     run(environment, tmp_path, "-c", block)
 
 
-def test_the_command_writes_its_files(environment, pictures, tmp_path):
+def test_the_command_writes_its_files(environment: Any, pictures: Any, tmp_path: Path) -> None:
     command = environment.parent / "tactile-depth"
     options = ["--reference", pictures / "background.png", "--out", tmp_path]
     printed = run(command, tmp_path, "depth", pictures / "press.png", *options)
@@ -183,7 +185,9 @@ def test_the_command_writes_its_files(environment, pictures, tmp_path):
 @pytest.mark.parametrize(
     "picture", [pytest.param(DRAWN, id="drawn"), pytest.param(REAL, id="real", marks=real_data.needs_real_data)]
 )
-def test_the_rtl_has_the_codes_of_the_wheel(environment, pictures, tmp_path, picture):
+def test_the_rtl_has_the_codes_of_the_wheel(
+    environment: Any, pictures: Any, tmp_path: Path, picture: np.ndarray
+) -> None:
     for file in pictures.iterdir():
         shutil.copy(file, tmp_path)
     run(environment, tmp_path, "-c", textwrap.dedent(QUICK_START.format(pictures=picture)))
@@ -197,7 +201,7 @@ def test_the_rtl_has_the_codes_of_the_wheel(environment, pictures, tmp_path, pic
     pipeline = td.Pipeline(sensor, reference)
     rows, columns = pipeline.grid
     frame = np.rint(resampling(image.shape[:2], pipeline.grid).average(image)).astype(np.uint8)
-    sensor = replace(pipeline.sensor, reference=pipeline.sensor.reference[0])
+    sensor = replace(pipeline.sensor, reference=pipeline.sensor.reference[0])  # type: ignore[index]
     work = tmp_path / "rtl"
     work.mkdir()
     played = bench.play(

@@ -3,6 +3,7 @@
 
 import os
 import random
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -16,7 +17,7 @@ LEVELS = 120
 TOLERANCE = 0.04  # of the rate
 
 
-def line_of(data, clocks_a_bit, gaps):
+def line_of(data: Any, clocks_a_bit: Any, gaps: Any) -> Any:
     """Levels in each clock; `gaps` gives the clocks of silence after a byte."""
     levels, time = [1] * 8, 0.0
     for byte in data:
@@ -29,10 +30,11 @@ def line_of(data, clocks_a_bit, gaps):
     return levels
 
 
-async def play(dut, levels):
+async def play(dut: Any, levels: Any) -> Any:
     """What the device makes of the levels, the first of them in a reset."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-    edge, found = RisingEdge(dut.clk), []
+    edge = RisingEdge(dut.clk)
+    found: list[Any] = []
     (divider,) = parameters(dut, "Divider")
     dut.rst.value, dut.line.value = 1, levels[0]
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
@@ -51,7 +53,7 @@ async def play(dut, levels):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize((("off", "gap"), [(0, 0), (0, 40), (-TOLERANCE, 0), (TOLERANCE, 0)]))
-async def words(dut, off, gap):
+async def words(dut: Any, off: Any, gap: Any) -> None:
     """Every byte, back to back too, from a sender that is slower or faster."""
     (divider,) = parameters(dut, "Divider")
     rng = random.Random(cocotb.RANDOM_SEED)
@@ -65,7 +67,7 @@ async def words(dut, off, gap):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(longest=[1, 3, 12])
-async def noise(dut, longest):
+async def noise(dut: Any, longest: Any) -> None:
     """Levels of any length, in bits: glitches, breaks, bytes that begin anywhere."""
     (divider,) = parameters(dut, "Divider")
     rng = random.Random(cocotb.RANDOM_SEED)

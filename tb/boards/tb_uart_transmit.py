@@ -4,6 +4,7 @@
 import os
 import random
 from itertools import groupby
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -16,7 +17,7 @@ from tb.stream import CLOCK_NS, parameters
 BYTES = 40
 
 
-async def start(dut, offers):
+async def start(dut: Any, offers: str) -> Any:
     """Clock, driver, reset; the levels that leave are kept from here on."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value = 1
@@ -27,7 +28,7 @@ async def start(dut, offers):
     await RisingEdge(dut.clk)
     levels = []
 
-    async def watch():
+    async def watch() -> None:
         while True:
             await RisingEdge(dut.clk)
             levels.append(int(dut.line.value))
@@ -38,7 +39,7 @@ async def start(dut, offers):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(offers=["none", "long", "random"])
-async def words(dut, offers):
+async def words(dut: Any, offers: str) -> None:
     """Every byte in order; a bit lasts as it should, and a stop bit no less."""
     (divider,) = parameters(dut, "Divider")
     source, levels = await start(dut, offers)
@@ -57,7 +58,7 @@ async def words(dut, offers):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-async def reset(dut):
+async def reset(dut: Any) -> None:
     """The line is high at once, and the next byte is whole."""
     (divider,) = parameters(dut, "Divider")
     source, levels = await start(dut, "none")

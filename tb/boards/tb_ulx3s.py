@@ -7,6 +7,7 @@ frame that follows is right.
 
 import os
 import random
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -41,17 +42,20 @@ RESET_CLOCKS = 8
 class Board:
     """The device, its line driven and watched."""
 
-    def __init__(self, dut):
+    def __init__(self, dut: Any) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.config = dut, configuration()
         self.rows, self.columns = self.config.rows, self.config.columns
         clock_mhz, baud, self.threshold = parameters(dut, "ClockMhz", "Baud", "Threshold")
         self.bit_clocks = round(clock_mhz * 10**6 / baud)
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
-        self.line, self.replies, self.starts, self.lights = [], [], [], []
+        self.line: list[Any] = []
+        self.replies: list[Any] = []
+        self.starts: list[Any] = []
+        self.lights: list[Any] = []
         dut.ftdi_txd.value, dut.btn.value = 1, 0
 
-    async def start(self, button=True):
+    async def start(self, button: bool = True) -> None:
         Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         if button:
             self.dut.btn.value = 1
@@ -62,7 +66,7 @@ class Board:
         cocotb.start_soon(self.listen())
         cocotb.start_soon(self.note_starts())
 
-    async def listen(self):
+    async def listen(self) -> None:
         """Read the bytes that come back, each with the contact light as it then stands."""
         while True:
             await FallingEdge(self.dut.ftdi_rxd)
@@ -77,7 +81,7 @@ class Board:
             self.replies.append(byte)
             self.lights.append(int(self.dut.led.value))
 
-    async def note_starts(self):
+    async def note_starts(self) -> None:
         """The pipeline's clock for each frame's first pixel, which stands in the record."""
         depth = self.dut.u_depth
         while True:
@@ -90,7 +94,7 @@ class Board:
                 await ReadOnly()
             self.starts.append(int(depth.now.value))
 
-    async def send(self, data):
+    async def send(self, data: Any) -> None:
         """Bytes onto the line, back to back; None is a break."""
         for byte in data:
             if byte is None:
@@ -104,19 +108,19 @@ class Board:
                     await self.bits(1)
             self.line.append(byte)
 
-    async def bits(self, count):
+    async def bits(self, count: Any) -> None:
         """A number of bits' time."""
         await Timer(round(count * self.bit_clocks * CLOCK_NS), unit="ns")
 
-    def flat(self):
+    def flat(self) -> Any:
         return np.full((self.rows, self.columns, 3), 135, np.uint8)
 
-    def touched(self):
+    def touched(self) -> Any:
         """A ball, and noise that shows wherever a pixel is lost."""
         ball = render("ball", self.rows, self.columns).frames[0]
         return (ball ^ self.rng.integers(0, 8, ball.shape, np.uint8)).astype(np.uint8)
 
-    def records(self):
+    def records(self) -> Any:
         """What the models say of the line so far: the words of each record, and whether the light is on."""
         taken = serial_link(self.line, self.columns)
         guarded = frame_guard(taken.pixels, self.rows, self.columns)
@@ -139,16 +143,16 @@ class Board:
                 record = events.beat(
                     int(code), place == 0, row_end, place == codes.size - 1, settings, time_of[frame.first]
                 )
-            found.append((record.words, bool((codes > on).any())))
+            found.append((record.words, bool((codes > on).any())))  # type: ignore[union-attr]
         return found
 
-    def setting(self, name, writes, pixels):
+    def setting(self, name: str, writes: Any, pixels: int) -> Any:
         """Of a register when a frame whose last pixel is that one leaves; tests write between frames."""
         written = [value for address, value, before in writes if address == REGISTERS[name].offset and before <= pixels]
         value = written[-1] if written else self.threshold
         return value - (value >> 31 << 32)
 
-    async def check(self):
+    async def check(self) -> int:
         """Wait for what is on its way; then every record, and the light at its end."""
         depth_clocks = 2 * self.rows * self.columns + 8 * self.columns + 1000
         await ClockCycles(self.dut.clk_25mhz, depth_clocks + 120 * BITS * self.bit_clocks)
@@ -162,7 +166,7 @@ class Board:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def wakes(dut):
+async def wakes(dut: Any) -> None:
     """From any power-up: locked, dark otherwise, and silent."""
     board = Board(dut)
     await board.start(button=False)
@@ -173,7 +177,7 @@ async def wakes(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def frames(dut):
+async def frames(dut: Any) -> None:
     """Contact and none in turn, a record each, the light on and off."""
     board = Board(dut)
     await board.start()
@@ -184,7 +188,7 @@ async def frames(dut):
 
 
 @cocotb.test(timeout_time=40, timeout_unit="ms")
-async def broken_transfers(dut):
+async def broken_transfers(dut: Any) -> None:
     """After each kind of broken transfer the next frame is right."""
     board = Board(dut)
     await board.start()
@@ -210,7 +214,7 @@ async def broken_transfers(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def registers(dut):
+async def registers(dut: Any) -> None:
     """A threshold written over the line holds from the next frame on; a write of another length is none."""
     board = Board(dut)
     await board.start()
@@ -222,7 +226,7 @@ async def registers(dut):
         write_packet(REGISTERS["OFF_THRESHOLD"].offset, -5),
     ]
     long = write_packet(REGISTERS["THRESHOLD"].offset, -(1 << 31))
-    writes += [(*long[:3], None, *long[3:], *long[:-1], 0, END, *long[:-2], END)]
+    writes += [(*long[:3], None, *long[3:], *long[:-1], 0, END, *long[:-2], END)]  # type: ignore[list-item]
     for write in writes:
         await board.send(write)
         await board.send(frame_packet(touched))
@@ -232,7 +236,7 @@ async def registers(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def button(dut):
+async def button(dut: Any) -> None:
     """Pressed inside a frame; the next one is the first again, with the threshold of before the writes."""
     board = Board(dut)
     await board.start()

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Requests of a capture, shared by the testbenches of reference_capture and floor_capture."""
 
+from typing import Any
+
 import cocotb
 from cocotb.triggers import RisingEdge
 
 
-async def request(device, log2=None):
+async def request(device: Any, log2: int | None = None) -> None:
     """Request a capture of 2**log2 frames; None leaves the exponent as it is."""
     if log2 is not None:
         device.dut.log2_frames.value = log2
@@ -14,7 +16,7 @@ async def request(device, log2=None):
     device.dut.request.value = 0
 
 
-async def request_after(device, waits, size):
+async def request_after(device: Any, waits: Any, size: int) -> None:
     """Request a capture a second time, so many cycles after the first word of a frame, while frames keep coming.
 
     The device has the attributes dut, chance, busy, inside and captures, and the coroutine send.
@@ -22,7 +24,7 @@ async def request_after(device, waits, size):
     clk = device.dut.clk
     sending = True
 
-    async def frames():
+    async def frames() -> None:
         while sending:
             await device.send()
 

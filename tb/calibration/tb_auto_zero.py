@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """auto_zero against its model in every clock: depths and floors of all kinds, changed over while frames stream."""
 
+import random
 from collections import deque
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -9,6 +11,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 
 from tactile_depth.calibration.auto_zero import auto_zero, interpolated_floor
 from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
 from tactile_depth.latency import AUTO_ZERO
 from tb.depth_frames import DepthDriver, depth_words, random_depths
 from tb.gains import Gains, Grid
@@ -18,7 +21,7 @@ WORDS = 2048  # that a test sends, at least
 MARKS = ("user", "last", "frame_end")
 
 
-def first_floor(config):
+def first_floor(config: Configuration) -> Any:
     """Of floor_0.hex: every node another, (node rows, node columns)."""
     rows, columns = config.reference_nodes
     return places(rows * columns, config.depth.width).reshape(rows, columns)
@@ -31,24 +34,24 @@ class Floors(Gains):
     capture_pin = "capture_floor"
     per_node = 1
 
-    def __init__(self, dut, config):
+    def __init__(self, dut: Any, config: Configuration) -> None:
         self.width = config.depth.width
         super().__init__(dut, config)
 
-    def at_power_up(self):
+    def at_power_up(self) -> Any:
         return first_floor(self.config)[..., None]
 
-    def random(self, chance):
+    def random(self, chance: random.Random) -> Any:
         return random_depths((*self.config.reference_nodes, 1), self.width, chance)
 
-    def entries(self, words):
+    def entries(self, words: Any) -> dict[Any, Any]:
         return dict(enumerate(words.reshape(-1).tolist()))
 
 
 class Zero:
     """The device, and what the model says of every word sent."""
 
-    def __init__(self, dut, gap, pause):
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut)
         self.shape = (self.config.rows, self.config.columns)
@@ -63,18 +66,21 @@ class Zero:
         self.counted = 0  # of `saturation`
         self.forget()
 
-    def forget(self):
+    def forget(self) -> None:
         """What was sent: words, the places of those that are inside, and what should leave."""
-        self.sent, self.taken, self.expected, self.used = [], 0, [], []
-        self.inside = deque([None] * AUTO_ZERO)
+        self.sent: list[Any] = []
+        self.taken = 0
+        self.expected: list[Any] = []
+        self.used: list[Any] = []
+        self.inside: deque[int | None] = deque([None] * AUTO_ZERO)
         self.clipped = self.begun = False
 
-    async def start(self, written=True):
+    async def start(self, written: bool = True) -> None:
         await self.bench.start()
         await self.floors.settle(written)
         cocotb.start_soon(self.watch())
 
-    async def watch(self):
+    async def watch(self) -> None:
         """Clock by clock: a word leaves AUTO_ZERO enabled clocks after it came, and is counted as it comes out."""
         dut = self.dut
         while True:
@@ -104,7 +110,7 @@ class Zero:
             self.inside.appendleft(comes)
             self.clipped = self.inside[-1] is not None and self.expected[self.inside[-1]][1]
 
-    def depths(self, floor=None):
+    def depths(self, floor: np.ndarray | None = None) -> Any:
         """A frame; with a floor some are at its level, or just within the range and just outside."""
         if floor is None or self.chance.random() < 0.6:
             return random_depths(self.shape, self.width, self.chance)
@@ -113,12 +119,12 @@ class Zero:
         target = generator.choice([low - 1, low, low + 1, -1, 0, 1, high - 1, high, high + 1], self.shape)
         return np.clip(interpolated_floor(floor, self.config) + target, low, high)
 
-    async def send(self, frames=1, depths=None, count=None):
+    async def send(self, frames: int = 1, depths: np.ndarray | None = None, count: int | None = None) -> None:
         """Frames back to back, or the first words of one; each has the floor that table_bank names as it begins, which
         may be with the clock behind its first word."""
         for _ in range(frames):
             late = self.chance.random() < 0.5
-            floor = None if late else self.floors.begin_frame()[..., 0].copy()
+            floor: Any = None if late else self.floors.begin_frame()[..., 0].copy()
             frame = self.depths(floor) if depths is None else depths
             words = depth_words(frame)[:count]
             self.sent += words
@@ -131,13 +137,13 @@ class Zero:
             self.expected += zip(zeroed.tolist(), clipped.tolist(), strict=True)
             await self.driver.words(words[1:])
 
-    async def reset(self, en):
+    async def reset(self, en: Any) -> None:
         resetting = cocotb.start_soon(self.bench.reset(en))
         await FallingEdge(self.dut.clk)  # behind what the clock before did
         self.forget()
         await resetting
 
-    async def check(self):
+    async def check(self) -> None:
         """When all has left."""
         await self.bench.clocks(AUTO_ZERO + 3)
         assert self.taken == len(self.sent) == len(self.expected)
@@ -145,7 +151,7 @@ class Zero:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def at_power_up(dut):
+async def at_power_up(dut: Any) -> None:
     """The floor of floor_0.hex, in both banks."""
     device = Zero(dut, 0.0, 0.0)
     await device.start(written=False)
@@ -158,7 +164,7 @@ async def at_power_up(dut):
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
-async def frames_while_the_bus_rewrites(dut, gap, pause):
+async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
     """The first frame after a change-over has the new floor from first word to last, the one before it the old."""
     device = Zero(dut, gap, pause)
     await device.start()
@@ -175,7 +181,7 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def captured(dut):
+async def captured(dut: Any) -> None:
     """All nodes, into both banks; the bus reads the same."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()
@@ -189,7 +195,7 @@ async def captured(dut):
 
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
-async def differences_at_their_limits(dut):
+async def differences_at_their_limits(dut: Any) -> None:
     """Floors and depths at both ends: what just fits, what is just clipped, and the largest difference there is."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()
@@ -207,7 +213,7 @@ async def differences_at_their_limits(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut):
+async def resets(dut: Any) -> None:
     """In mid-frame: no word of before leaves or is counted; floors stay; a change-over that is due is made."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """flat_field against its model: colours, dark pixels, what is counted; gains changed over while frames stream."""
 
+import random
+from typing import Any
+
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
@@ -16,7 +19,7 @@ PIXEL = ["pixel", "place"]
 COLOURS = ["red", "green", "blue", "place"]
 
 
-def picture(rows, columns, chance, level):
+def picture(rows: int, columns: int, chance: random.Random, level: int) -> Any:
     """uint8 (rows, columns, 3): anything, with dark pixels alone, in runs, in whole rows, and pixels nearly dark."""
     generator = np.random.default_rng(chance.getrandbits(32))
     pixels = generator.integers(0, 256, (rows, columns, 3))
@@ -35,7 +38,7 @@ def picture(rows, columns, chance, level):
 class Field:
     """The device, and what the model says of every frame sent."""
 
-    def __init__(self, dut, gap, pause):
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut, "GainWidth")
         self.quadratic = bool(parameters(dut, "Offset")[0])
@@ -50,21 +53,24 @@ class Field:
         unsigned = ["place"] if self.quadratic else COLOURS
         self.sink = StreamMonitor(dut, "out", "valid", COLOURS, unsigned=unsigned)
         self.monitor = Monitor()
-        self.sent, self.expected, self.dark, self.darkened = [], [], 0, 0
+        self.sent: list[Any] = []
+        self.expected: list[Any] = []
+        self.dark = 0
+        self.darkened = 0
         dut.dark_level.value = 0
 
-    async def start(self, written=True):
+    async def start(self, written: bool = True) -> None:
         await self.bench.start()
         await self.gains.settle(written)
         cocotb.start_soon(self.count())
 
-    async def count(self):
+    async def count(self) -> None:
         while True:
             await RisingEdge(self.dut.clk)
             if not self.dut.rst.value:
                 self.darkened += int(self.dut.dark.value)
 
-    async def send(self, frames=1, level=None, pixels=None, named=None):
+    async def send(self, frames: int = 1, level: int | None = None, pixels: Any = None, named: Any = None) -> None:
         """Frames back to back, each with the gains and the dark level that stand when it begins; the other bank is
         named behind so many words."""
         chance = self.bench.random
@@ -87,7 +93,7 @@ class Field:
                 self.gains.change()
                 await send_apart(self.bench, self.driver, words[named:], self.gap)
 
-    async def check(self):
+    async def check(self) -> None:
         await self.bench.clocks(FLAT_FIELD + 3)
         assert self.source.words == self.sent, "the driver sent something else"
         colours = np.concatenate([frame.reshape(-1, 3) for frame in self.expected]).astype(np.int64)
@@ -98,7 +104,7 @@ class Field:
         clipped = self.monitor.saturations.total()
         assert self.bench.saturations == clipped, f"{self.bench.saturations} values clipped, {clipped} in the model"
 
-    def forget(self):
+    def forget(self) -> None:
         self.source.forget()
         self.sink.forget()
         self.sent, self.expected, self.monitor = [], [], Monitor()
@@ -106,7 +112,7 @@ class Field:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def at_power_up(dut):
+async def at_power_up(dut: Any) -> None:
     """The reference is 128 everywhere: codes are the pixels, deviations theirs from 128."""
     device = Field(dut, 0.0, 0.0)
     await device.start(written=False)
@@ -121,7 +127,7 @@ async def at_power_up(dut):
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
-async def frames_while_the_bus_rewrites(dut, gap, pause):
+async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
     device = Field(dut, gap, pause)
     await device.start()
     await device.gains.write(random_gains(device.config, device.bench.random))
@@ -136,7 +142,7 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def read_as_a_pause_ends(dut):
+async def read_as_a_pause_ends(dut: Any) -> None:
     device = Field(dut, 0.0, 0.0)
     await device.start()
     await reads_as_a_pause_ends(device)
@@ -144,7 +150,7 @@ async def read_as_a_pause_ends(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def named_inside_a_frame(dut):
+async def named_inside_a_frame(dut: Any) -> None:
     """Another bank is that of the next frame, wherever in a frame it is named."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
@@ -157,7 +163,7 @@ async def named_inside_a_frame(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def products_at_their_limits(dut):
+async def products_at_their_limits(dut: Any) -> None:
     """Ties of the rounding, the largest pixel and the largest gain that is not dark, and just over both limits."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
@@ -174,14 +180,14 @@ async def products_at_their_limits(dut):
     assert device.bench.saturations, "nothing was clipped: a poor test"
 
 
-def beside_ties(gains, drop):
+def beside_ties(gains: np.ndarray, drop: int) -> Any:
     """The pixels uint8 (rows, columns, 3) whose products with the gains at their places lie nearest to a tie."""
     products = np.arange(256)[:, None, None, None] * gains
     return np.abs(products % (1 << drop) - (1 << drop - 1)).argmin(axis=0).astype(np.uint8)
 
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
-async def products_beside_ties(dut):
+async def products_beside_ties(dut: Any) -> None:
     """Whichever way a product is rounded hangs on the lowest bits of its gain."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
@@ -196,7 +202,7 @@ async def products_beside_ties(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut):
+async def resets(dut: Any) -> None:
     """In mid-frame, at each stage of the pixels before: none of them leaves or is counted; the next frame is right."""
     device = Field(dut, 0.0, 0.0)
     await device.start()

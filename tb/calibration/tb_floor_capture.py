@@ -2,6 +2,7 @@
 """floor_capture against its model in every clock: what it writes and when, requests at any time, resets."""
 
 import itertools
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -19,7 +20,7 @@ WORDS = 2048  # that a test sends, about
 class Capture:
     """The device, and what it should write."""
 
-    def __init__(self, dut, gap, pause):
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut = dut
         self.config = Grid.of(dut)
         (self.largest,) = parameters(dut, "MaxLog2")
@@ -29,23 +30,30 @@ class Capture:
         self.bench = Bench(dut, pause)
         self.chance = self.bench.random
         self.driver = DepthDriver(dut, self.bench, gap)
-        self.frame = None  # that is being sent
+        self.frame: Any = None  # that is being sent
         self.place = 0  # of the next word in its frame
         self.busy = self.inside = False
-        self.taken, self.count = [], 0  # frames since the request, and how many it wants
-        self.floor = None  # from the last of them on
-        self.writes, self.due = {}, None  # by clock: node and floor; the clock of done
+        # frames since the request, and how many it wants
+        self.taken: list[Any] = []
+        self.count = 0
+        self.floor: Any = None  # from the last of them on
+        # by clock: node and floor; the clock of done
+        self.writes: dict[Any, Any] = {}
+        self.due: Any = None
         self.captures = 0
         dut.request.value, dut.log2_frames.value = 0, 0
 
-    async def start(self):
+    async def start(self) -> None:
         await self.bench.start()
         cocotb.start_soon(self.run())
 
-    def stop(self):
-        self.inside, self.floor, self.writes, self.due = False, None, {}, None
+    def stop(self) -> None:
+        self.inside = False
+        self.floor = None
+        self.writes = {}
+        self.due = None
 
-    async def run(self):
+    async def run(self) -> None:
         """Clock by clock, as the header has it."""
         dut = self.dut
         for clock in itertools.count():
@@ -72,7 +80,7 @@ class Capture:
                 self.stop()
                 self.busy, self.taken = True, []
 
-    def take(self, clock):
+    def take(self, clock: Any) -> None:
         """A word."""
         row, column = divmod(self.place, self.shape[1])
         if self.place == 0:
@@ -94,14 +102,14 @@ class Capture:
         if node == rows * columns - 1:
             self.due = clock + CLOCKS
 
-    async def send(self, depths=None, count=None):
+    async def send(self, depths: Any = None, count: int | None = None) -> None:
         """A frame, or its first words."""
         self.frame = random_depths(self.shape, self.width, self.chance) if depths is None else depths
         await self.driver.words(depth_words(self.frame)[:count])
 
     request = request
 
-    async def until_done(self, depths=None):
+    async def until_done(self, depths: Any = None) -> None:
         """Frames go on until the capture is done, and end with a whole one; one that is not cut follows it."""
         before = self.captures
         while self.captures == before:
@@ -112,9 +120,9 @@ class Capture:
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(
-    (("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), log2=sample([0, 1, 3])
+    (("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), ("log2", sample([0, 1, 3]))
 )
-async def captures(dut, gap, pause, log2):
+async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
     """Of frames in a row; what came before counts for nothing."""
     device = Capture(dut, gap, pause)
     await device.start()
@@ -129,7 +137,7 @@ async def captures(dut, gap, pause, log2):
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(high=[False, True])
-async def most_frames(dut, high):
+async def most_frames(dut: Any, high: bool) -> None:
     """As many as fit the sum, all at one end of the range; more are asked for. The exponent changes meanwhile."""
     device = Capture(dut, 0.0, 0.0)
     if device.size << device.largest > 32 * WORDS:
@@ -148,7 +156,7 @@ async def most_frames(dut, high):
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def depths_of_all_kinds(dut):
+async def depths_of_all_kinds(dut: Any) -> None:
     """Limits, ties of either sign, anything."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()
@@ -159,7 +167,7 @@ async def depths_of_all_kinds(dut):
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.4])
-async def requests_at_any_time(dut, pause):
+async def requests_at_any_time(dut: Any, pause: float) -> None:
     """While idle, armed, summing, writing; in the clock of a frame's first and last word and in that of done."""
     device = Capture(dut, 0.0, pause)
     await device.start()
@@ -176,7 +184,7 @@ async def requests_at_any_time(dut, pause):
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def resets(dut):
+async def resets(dut: Any) -> None:
     """A reset ends a capture; nothing is written in it or after it; the next request is served."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()

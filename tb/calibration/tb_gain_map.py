@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """gain_map against its model: random and extreme gains, rewritten over the bus and changed over while frames stream."""
 
+import random
+from typing import Any
+
 import cocotb
 import numpy as np
 
 from tactile_depth.calibration.flat_field import interpolated_gains
+from tactile_depth.configuration import Configuration
 from tactile_depth.latency import GAIN_MAP
 from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
 from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, raster, sample, send_apart
@@ -15,22 +19,22 @@ PLACES = 2048  # that a test sends, at least
 class Nodes(Gains):
     """Of any width, one to three channels."""
 
-    def __init__(self, dut, config):
+    def __init__(self, dut: Any, config: Configuration) -> None:
         self.width = config.depth.width
         (self.count,) = parameters(dut, "Channels")
         super().__init__(dut, config)
 
-    def at_power_up(self):
+    def at_power_up(self) -> Any:
         return first_gains(*self.config.reference_nodes, self.count, self.width)
 
-    def random(self, chance):
+    def random(self, chance: random.Random) -> Any:
         return random_gains(self.config, chance, self.count, self.width)
 
 
 class Map:
     """The device, and the gains that each frame sent should get."""
 
-    def __init__(self, dut, gap, pause):
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut)
         self.places = raster(self.config.rows, self.config.columns)
@@ -41,13 +45,13 @@ class Map:
         self.driver = StreamDriver(dut, "in", "valid", ["place"])
         self.source = StreamMonitor(dut, "in", "valid", ["place"], unsigned=["place"])
         self.sink = StreamMonitor(dut, "out", "valid", ["gains", "place"], unsigned=["gains", "place"])
-        self.expected = []
+        self.expected: list[Any] = []
 
-    async def start(self, written=True):
+    async def start(self, written: bool = True) -> None:
         await self.bench.start()
         await self.gains.settle(written)
 
-    async def send(self, frames=1):
+    async def send(self, frames: int = 1) -> None:
         """Frames back to back, each with the bank that stands when it begins."""
         for _ in range(frames):
             while self.bench.random.random() < self.gap:
@@ -56,7 +60,7 @@ class Map:
             await send_apart(self.bench, self.driver, [(self.places[0],)], 0.0)
             await send_apart(self.bench, self.driver, [(place,) for place in self.places[1:]], self.gap)
 
-    async def check(self):
+    async def check(self) -> None:
         await self.bench.clocks(GAIN_MAP + 2)
         sent = [(place,) for _ in self.expected for place in self.places]
         assert self.source.words == sent, "the driver sent something else"
@@ -72,7 +76,7 @@ class Map:
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def at_power_up(dut):
+async def at_power_up(dut: Any) -> None:
     """What the files say, in both banks."""
     device = Map(dut, 0.0, 0.0)
     await device.start(written=False)
@@ -85,7 +89,7 @@ async def at_power_up(dut):
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
-async def frames_while_the_bus_rewrites(dut, gap, pause):
+async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
     """The first frame after a change-over has the new gains from first pixel to last, the one before it the old."""
     device = Map(dut, gap, pause)
     await device.start()
@@ -103,7 +107,7 @@ async def frames_while_the_bus_rewrites(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def read_as_a_pause_ends(dut):
+async def read_as_a_pause_ends(dut: Any) -> None:
     device = Map(dut, 0.0, 0.0)
     await device.start()
     await reads_as_a_pause_ends(device)
@@ -112,7 +116,7 @@ async def read_as_a_pause_ends(dut):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.3])
-async def named_inside_a_frame(dut, pause):
+async def named_inside_a_frame(dut: Any, pause: float) -> None:
     """Another bank is that of the next frame, wherever in a frame it is named."""
     device = Map(dut, 0.0, pause)
     await device.start()
@@ -129,7 +133,7 @@ async def named_inside_a_frame(dut, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def captured(dut):
+async def captured(dut: Any) -> None:
     """All nodes at once, into both banks; the bus reads the same; entries left over from before stay."""
     device = Map(dut, 0.0, 0.0)
     await device.start()
@@ -143,7 +147,7 @@ async def captured(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut):
+async def resets(dut: Any) -> None:
     """In mid-frame: gains and banks stay; a change-over that is due is made; the next frame is right."""
     device = Map(dut, 0.0, 0.0)
     await device.start()

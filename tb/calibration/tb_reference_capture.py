@@ -3,6 +3,7 @@
 done. The memory refuses what hdl/common/ram.sv leaves open."""
 
 import itertools
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -21,7 +22,7 @@ FIELDS = ["pixel", "place", "bad"]
 class Capture:
     """The device, a memory, and what should be in it when the capture is done."""
 
-    def __init__(self, dut, gap, pause):
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.config = configuration()
         (self.largest,) = parameters(dut, "MaxLog2")
@@ -32,23 +33,24 @@ class Capture:
         self.generator = np.random.default_rng(cocotb.RANDOM_SEED)
         self.driver = StreamDriver(dut, "in", "valid", FIELDS)
         nodes = self.config.reference_nodes[0] * self.config.reference_nodes[1]
-        self.memory: list[int | None] = [None] * nodes
+        self.memory: list[Any] = [None] * nodes
         self.busy = self.inside = False
-        self.due, self.gains = None, None  # the clock of done, and what is then in the memory
+        self.due: Any = None
+        self.gains: Any = None  # the clock of done, and what is then in the memory
         self.divided = 0  # nodes whose gain was written
         self.captures = 0
-        self.taken = []  # frames since the request: pixels, bad, log2_frames
-        self.frame = None  # that is being sent: pixels, bad
-        self.flipped = None  # what a test put into the memory before the last frame
-        self.sums = []  # to be written for the frames so far: (node, what is added, nothing before it)
+        self.taken: list[Any] = []  # frames since the request: pixels, bad, log2_frames
+        self.frame: Any = None  # that is being sent: pixels, bad
+        self.flipped: Any = None  # what a test put into the memory before the last frame
+        self.sums: list[Any] = []  # to be written for the frames so far: (node, what is added, nothing before it)
         self.passing = 0  # clocks in which sums of before a request may still be written
         dut.request.value, dut.log2_frames.value = 0, 0
 
-    async def start(self):
+    async def start(self) -> None:
         await self.bench.start()
         cocotb.start_soon(self.run())
 
-    async def run(self):
+    async def run(self) -> None:
         """Clock by clock, as the header has it."""
         dut = self.dut
         for clock in itertools.count():
@@ -64,7 +66,8 @@ class Capture:
             assert bool(dut.busy.value) == self.busy
             if done:
                 self.captures += 1
-                self.busy, self.due = False, None
+                self.busy = False
+                self.due = None
                 got = [[word >> GAIN_WIDTH * c & (1 << GAIN_WIDTH) - 1 for c in range(3)] for word in self.memory]
                 np.testing.assert_array_equal(got, self.gains.reshape(-1, 3), "gains")
             if dut.en.value and dut.in_valid.value:
@@ -75,16 +78,18 @@ class Capture:
                         self.sums += self.row_sums(self.frame[0], not self.taken or self.taken[-1][1])
                         self.taken.append((*self.frame, int(dut.log2_frames.value)))
                 if place & 12 == 12 and self.inside:
-                    found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)
+                    found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)  # type: ignore[arg-type, call-arg]
                     if found:
                         self.due, self.gains, self.divided = clock + self.clocks, found[1], 0
                         if self.flipped is not None:
                             self.gains = self.gains_behind_flips(self.taken[-1][0])
             if dut.request.value:
-                self.busy, self.due, self.inside = True, None, False
+                self.busy = True
+                self.due = None
+                self.inside = False
                 self.taken, self.sums, self.passing = [], [], SUM_CLOCKS
 
-    def serve(self):
+    def serve(self) -> None:
         dut = self.dut
         read, write = bool(dut.map_read.value), bool(dut.map_write.value)
         if write:
@@ -111,7 +116,7 @@ class Capture:
         if write:
             self.memory[node] = int(dut.map_write_gains.value)
 
-    def pixels(self):
+    def pixels(self) -> Any:
         """uint8 (rows, columns, 3): anything, black, white, nearly black, gains about to saturate."""
         shape = (self.config.rows, self.config.columns, 3)
         match self.chance.randrange(6):
@@ -126,7 +131,7 @@ class Capture:
                 return np.broadcast_to(self.generator.integers(0, 256, 3, dtype=np.uint8), shape)
         return self.generator.integers(0, 256, shape, dtype=np.uint8)
 
-    def row_sums(self, frame, first):
+    def row_sums(self, frame: Any, first: Any) -> Any:
         """What is written for a frame, in order: node, the colours of a block's row, whether they begin a sum."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
@@ -138,7 +143,7 @@ class Capture:
             for column in range(columns)
         ]
 
-    def gains_behind_flips(self, frame):
+    def gains_behind_flips(self, frame: Any) -> Any:
         """Of sums that are what the memory was made to hold and those of the last frame, modulo their word."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
@@ -148,7 +153,7 @@ class Capture:
         dividend = 2 * len(self.taken) * block * block << GAIN_FRACTION
         return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << GAIN_WIDTH) - 1)
 
-    async def send(self, bad=False):
+    async def send(self, bad: Any = False) -> None:
         """A frame."""
         self.frame = (self.pixels(), bad)
         red, green, blue = self.frame[0].astype(np.int64).reshape(-1, 3).T
@@ -158,7 +163,7 @@ class Capture:
 
     request = request
 
-    async def until_done(self, bad=0.0):
+    async def until_done(self, bad: Any = 0.0) -> None:
         """Frames go on until the capture is done, and end with a whole one."""
         before = self.captures
         while self.captures == before:
@@ -166,8 +171,8 @@ class Capture:
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), log2=sample([0, 1, 3]))
-async def captures(dut, gap, pause, log2):
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), ("log2", sample([0, 1, 3])))
+async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
     """Of frames in a row, without and with broken ones between."""
     device = Capture(dut, gap, pause)
     await device.start()
@@ -181,7 +186,7 @@ async def captures(dut, gap, pause, log2):
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def most_frames(dut):
+async def most_frames(dut: Any) -> None:
     """As many as fit the sum; more are asked for. The exponent changes while the capture goes on."""
     device = Capture(dut, 0.0, 0.0)
     if len(device.places) << device.largest > 128 * PIXELS:
@@ -195,7 +200,7 @@ async def most_frames(dut):
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def any_sum(dut):
+async def any_sum(dut: Any) -> None:
     """The memory holds something else before the last frame: sums of all bits, which frames this small do not make."""
     device = Capture(dut, 0.0, 0.0)
     if len(device.places) > PIXELS:
@@ -215,7 +220,7 @@ async def any_sum(dut):
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.4])
-async def requests_at_any_time(dut, pause):
+async def requests_at_any_time(dut: Any, pause: float) -> None:
     """While idle, armed, summing, dividing; in the clock of a frame's first and last pixel and in that of done."""
     device = Capture(dut, 0.0, pause)
     await device.start()
@@ -231,7 +236,7 @@ async def requests_at_any_time(dut, pause):
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def resets(dut):
+async def resets(dut: Any) -> None:
     """A reset ends a capture; nothing is written after it; the next request is served."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()

@@ -3,6 +3,7 @@
 
 import os
 import random
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -16,7 +17,7 @@ WORDS = 600 if REGRESS else 200
 FIELDS = ("data",)
 
 
-async def follow(dut):
+async def follow(dut: Any) -> None:
     """Compare ready, valid and data with the model, which is fed from the pins."""
     model, edge = AxisSkid(), RisingEdge(dut.clk)
     await edge  # of the first reset: before it everything is unknown
@@ -32,14 +33,14 @@ async def follow(dut):
             model.clock(int(dut.s_data.value) if dut.s_valid.value else None, bool(dut.m_ready.value))
 
 
-async def reset(dut, clocks=3):
+async def reset(dut: Any, clocks: int = 3) -> None:
     dut.rst.value = 1
     await ClockCycles(dut.clk, clocks)
     dut.rst.value = 0
     await RisingEdge(dut.clk)  # AXI: the first edge out of reset comes before the first word
 
 
-async def start(dut, offers, accepts):
+async def start(dut: Any, offers: str, accepts: str) -> Any:
     """Clock, reset, both drivers, both monitors, the model."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value, dut.s_data.value = 1, 0
@@ -52,7 +53,7 @@ async def start(dut, offers, accepts):
     return source, taken, left
 
 
-def random_words(dut, count):
+def random_words(dut: Any, count: int) -> list[Any]:
     (width,) = parameters(dut, "Width")
     rng = random.Random(cocotb.RANDOM_SEED)
     return [(rng.getrandbits(width),) for _ in range(count)]
@@ -60,7 +61,7 @@ def random_words(dut, count):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
-async def words(dut, offers, accepts):
+async def words(dut: Any, offers: str, accepts: str) -> None:
     """All of them leave, in order; at full rate each a clock after it came."""
     source, taken, left = await start(dut, offers, accepts)
     sent = random_words(dut, WORDS)
@@ -76,7 +77,7 @@ async def words(dut, offers, accepts):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=["none", "alternate", "long"], clocks=sample([1, 2, 5]))
-async def resets(dut, accepts, clocks):
+async def resets(dut: Any, accepts: Any, clocks: int) -> None:
     """After a reset nothing of before is left, and nothing of after is lost."""
     source, taken, left = await start(dut, "none", accepts)
     sent = random_words(dut, 200)

@@ -2,6 +2,7 @@
 """burst_counter against tactile_depth.common.burst_counter: bursts apart, back to back, begun again; pauses; reset."""
 
 import random
+from typing import Any
 
 import cocotb
 
@@ -9,7 +10,7 @@ from tactile_depth.common.burst_counter import burst_counter
 from tb.stream import drive, parameters
 
 
-def starts(size, chance):
+def starts(size: int, chance: random.Random) -> list[Any]:
     """Start in each clock: two bursts back to back, one apart, one begun again, random ones, silence."""
     burst = [1] + [0] * (size - 1)
     random_ones = [int(chance.random() < 2 / size) for _ in range(10 * size)]
@@ -18,7 +19,7 @@ def starts(size, chance):
 
 @cocotb.test()
 @cocotb.parametrize(pause=[0.0, 0.3], before=[0, 2])
-async def positions(dut, pause, before):
+async def positions(dut: Any, pause: float, before: Any) -> None:
     (size,) = parameters(dut, "Size")
     chance = random.Random(cocotb.RANDOM_SEED)
     lost = [{"rst": 0, "start": int(n == 0)} for n in range(before)] + [{"rst": 1, "start": 0}]

@@ -2,6 +2,7 @@
 """delay_line against tactile_depth.common.delay_line, with pauses, before and after a reset in mid-stream."""
 
 import random
+from typing import Any
 
 import cocotb
 
@@ -11,7 +12,7 @@ from tb.stream import drive, parameters
 
 @cocotb.test()
 @cocotb.parametrize(pause=[0.0, 0.3], before=[0, 7])
-async def shift(dut, pause, before):
+async def shift(dut: Any, pause: float, before: Any) -> None:
     width, delay = parameters(dut, "Width", "Delay")
     chance = random.Random(cocotb.RANDOM_SEED)
     lost = [{"rst": 0, "in": chance.getrandbits(width)} for _ in range(before)] + [{"rst": 1, "in": 0}]

@@ -3,6 +3,7 @@
 
 import itertools
 import random
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -16,7 +17,7 @@ FACTORS = ("a0", "b0", "a1", "b1")
 
 @cocotb.test()
 @cocotb.parametrize(pause=[0.0, 0.3])
-async def products(dut, pause):
+async def products(dut: Any, pause: float) -> None:
     widths = parameters(dut, "AWidth", "BWidth") * 2
     chance = random.Random(cocotb.RANDOM_SEED)
     limits = [(-(1 << (width - 1)), 0, (1 << (width - 1)) - 1) for width in widths]

@@ -3,6 +3,7 @@
 
 import itertools
 import random
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -14,7 +15,7 @@ from tb.stream import drive, parameters
 
 @cocotb.test()
 @cocotb.parametrize(pause=[0.0, 0.3])
-async def products(dut, pause):
+async def products(dut: Any, pause: float) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     limits = [(-(1 << (width - 1)), (1 << (width - 1)) - 1) for width in parameters(dut, "AWidth", "BWidth")]
     operands = list(itertools.product(*((low, -1, 0, 1, high) for low, high in limits)))

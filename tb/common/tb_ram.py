@@ -4,6 +4,7 @@
 import os
 import random
 from pathlib import Path
+from typing import Any
 
 import cocotb
 
@@ -12,13 +13,13 @@ from tb.stream import drive, parameters
 
 
 @cocotb.test()
-async def reads_and_writes(dut):
+async def reads_and_writes(dut: Any) -> None:
     width, depth = parameters(dut, "Width", "Depth")
     chance = random.Random(cocotb.RANDOM_SEED)
     file = os.environ.get("FILE")
     before = [int(line, 16) for line in Path(file).read_text().split()] if file else [None] * depth
 
-    def clock(read_address=None, write_address=None):
+    def clock(read_address: Any = None, write_address: Any = None) -> Any:
         return {
             "write_en": write_address is not None,
             "write_address": write_address or 0,
@@ -36,7 +37,7 @@ async def reads_and_writes(dut):
     seen = await drive(dut, [*every, clock()], ["read_data"])
 
     pins = ("write_en", "write_address", "write_data", "read_en", "read_address")
-    _, expected = ram(before, list(zip(*(map(int, seen[pin]) for pin in pins), strict=True))[:-1])
+    _, expected = ram(before, list(zip(*(map(int, seen[pin]) for pin in pins), strict=True))[:-1])  # type: ignore[arg-type]
     compared = [(int(seen["read_data"][n + 1]), word) for n, word in enumerate(expected) if word is not None]
     assert len(compared) > 20 * depth
     for n, (got, word) in enumerate(compared):

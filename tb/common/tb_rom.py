@@ -3,6 +3,7 @@
 
 import random
 from pathlib import Path
+from typing import Any
 
 import cocotb
 
@@ -13,7 +14,7 @@ from tb.stream import drive, parameters
 
 @cocotb.test()
 @cocotb.parametrize(pause=[0.0, 0.3])
-async def every_word(dut, pause):
+async def every_word(dut: Any, pause: float) -> None:
     (depth,) = parameters(dut, "Depth")
     words = [int(line, 16) for line in Path("rom.hex").read_text().split()]
     places = random.Random(cocotb.RANDOM_SEED).sample(range(depth), depth)

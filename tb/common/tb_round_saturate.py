@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """round_saturate against tactile_depth.common.round_saturate: every input."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 from cocotb.triggers import Timer
@@ -10,7 +12,7 @@ from tb.stream import parameters
 
 
 @cocotb.test()
-async def every_input(dut):
+async def every_input(dut: Any) -> None:
     in_width, drop, out_width = parameters(dut, "InWidth", "Drop", "OutWidth")
     x = np.arange(-(1 << (in_width - 1)), 1 << (in_width - 1))
     rounded, flags = [], []

@@ -4,6 +4,7 @@
 import os
 import random
 from fractions import Fraction
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -18,7 +19,7 @@ FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 400, 0.1: 100}  # by the s
 WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
 
 
-def numpy_fields(depth, threshold, first_row_last):
+def numpy_fields(depth: np.ndarray, threshold: int, first_row_last: Any) -> Any:
     """The fields of a record from the map of a frame, row 0 at the top, by numpy alone."""
     rows, columns = np.nonzero(depth > threshold)
     if not rows.size:
@@ -35,12 +36,12 @@ def numpy_fields(depth, threshold, first_row_last):
     return [int(value) for value in (rows.size, masked.max(), row, column, *limits, *sums, *centroid, 1)]
 
 
-def seen_fields(words):
+def seen_fields(words: Any) -> list[Any]:
     """The same, from the words of a packet."""
     halves = np.array(words, np.uint32)
     signed = halves.view(np.int32)
 
-    def place(index):
+    def place(index: int) -> Any:
         return [int(halves[index]) >> 16, int(halves[index]) & 0xFFFF]
 
     volume = int(signed[11]) << 32 | int(halves[10])
@@ -52,10 +53,11 @@ def seen_fields(words):
 class Events:
     """Whether it touches, from the areas of all frames so far."""
 
-    def __init__(self):
-        self.touching, self.contrary = False, []
+    def __init__(self) -> None:
+        self.touching = False
+        self.contrary: list[Any] = []
 
-    def frame(self, area, minimum, debounce):
+    def frame(self, area: int, minimum: Any, debounce: int) -> Any:
         """Status bits of the frame."""
         self.contrary.append((area >= minimum) != self.touching)
         needed = max(debounce, 1)
@@ -68,7 +70,7 @@ class Events:
 class Bench:
     """Drives one clock at a time; every output must be what the model makes of the clocks before."""
 
-    def __init__(self, dut, accepts="none", gap=0.0):
+    def __init__(self, dut: Any, accepts: str = "none", gap: float = 0.0) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.gap = dut, gap
         self.random = random.Random(cocotb.RANDOM_SEED)
@@ -81,18 +83,22 @@ class Bench:
         self.accepts = profile(accepts)
         self.model = ContactEvents(self.rows, self.columns, bool(self.bottom_first))
         self.packets = Packets()
-        self.driven = {}  # what stands on the pins
+        self.driven: dict[Any, Any] = {}  # what stands on the pins
         self.now, self.lost = 0, 0
         self.moved = False  # the record, since it was read
-        self.records, self.sent = [], []  # words of each record as it was new, of each packet
+        # words of each record as it was new, of each packet
+        self.records: list[Any] = []
+        self.sent: list[Any] = []
         self.forget()
 
-    def forget(self):
+    def forget(self) -> None:
         """What is due, in the clock in which it is."""
         self.touching, self.record = False, (0,) * WORDS
-        self.touching_due, self.record_due, self.open = {}, {}, []
+        self.touching_due: dict[Any, Any] = {}
+        self.record_due: dict[Any, Any] = {}
+        self.open: list[Any] = []
 
-    async def start(self):
+    async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.in_valid.value, self.dut.m_event_tready.value, self.dut.rst.value = 0, 0, 1
         await RisingEdge(self.dut.clk)
@@ -101,12 +107,12 @@ class Bench:
 
         cocotb.start_soon(self.watch())
 
-    async def watch(self):
+    async def watch(self) -> None:
         while True:
             await self.dut.record.value_change
             self.moved = True
 
-    async def reset(self):
+    async def reset(self) -> None:
         self.dut.rst.value = 1
         await self.edge(False)
         self.dut.rst.value = 0
@@ -114,12 +120,21 @@ class Bench:
         self.packets.reset()
         self.forget()
 
-    def drive(self, **pins):
+    def drive(self, **pins: Any) -> None:
         for name, value in pins.items():
             if self.driven.get(name) != value:  # a write costs more than a clock
                 getattr(self.dut, name).value = self.driven[name] = value
 
-    async def edge(self, valid, data=0, user=False, last=False, frame_end=False, settings=None, time=None):
+    async def edge(
+        self,
+        valid: Any,
+        data: Any = 0,
+        user: Any = False,
+        last: Any = False,
+        frame_end: Any = False,
+        settings: Any = None,
+        time: Any = None,
+    ) -> None:
         """One clock. Settings and time that are not given do not count in it."""
         ready = next(self.accepts)
         self.drive(in_valid=int(valid), in_data=data, in_user=int(user), in_last=int(last))
@@ -135,12 +150,12 @@ class Bench:
                 self.record_due[self.now + self.latency] = record.words
         if settings is not None:
             chance = self.random
-            others = [chance.randint(self.low, self.high), chance.randint(self.low, self.high)]
-            others = Settings(*others, chance.randint(0, 2), chance.randint(0, 2))
+            levels = chance.randint(self.low, self.high), chance.randint(self.low, self.high)
+            others = Settings(*levels, chance.randint(0, 2), chance.randint(0, 2))
             self.drive(**others._asdict(), in_time=chance.getrandbits(32))
         self.now += 1
 
-    def check(self, ready):
+    def check(self, ready: Any) -> None:
         """Outputs as they stand at the end of the clock."""
         dut, now = self.dut, self.now
         self.touching = self.touching_due.pop(now, self.touching)
@@ -169,12 +184,12 @@ class Bench:
             self.sent += [tuple(self.open)] * bool(self.open)
             self.open = []
 
-    async def idle(self, clocks=1):
+    async def idle(self, clocks: int = 1) -> None:
         for _ in range(clocks):
             coin = self.random.getrandbits
             await self.edge(False, coin(self.width) + self.low, coin(1), coin(1), coin(1))
 
-    async def frame(self, depth, settings, time=0, words=None):
+    async def frame(self, depth: np.ndarray, settings: Any, time: float = 0, words: Any = None) -> None:
         """Send a map, row 0 at the top, or its first words."""
         stream = depth[::-1] if self.bottom_first else depth
         for index, data in enumerate(stream.ravel().tolist()[:words]):
@@ -184,14 +199,14 @@ class Bench:
             end = index == self.pixels - 1
             await self.edge(True, data, user, last, end, *((settings, time) if user else ()))
 
-    async def settle(self):
+    async def settle(self) -> None:
         """Until the last record has left or waits behind a sink that does not take it."""
         await self.idle(self.latency + 2)
 
-    def full(self, value):
+    def full(self, value: Any) -> Any:
         return np.full((self.rows, self.columns), value, np.int64)
 
-    def lone(self, value, *places):
+    def lone(self, value: Any, *places: Any) -> Any:
         """A map of the lowest code, but for a few places."""
         depth = self.full(self.low)
         for row, column in places:
@@ -199,7 +214,7 @@ class Bench:
         return depth
 
 
-def random_map(bench, rng):
+def random_map(bench: Any, rng: Any) -> Any:
     """A frame of one of the kinds that matter."""
     shape, low, high = (bench.rows, bench.columns), bench.low, bench.high
     match rng.integers(10):
@@ -233,7 +248,7 @@ def random_map(bench, rng):
     return np.clip(np.rint(depth), low, high).astype(np.int64)
 
 
-def random_settings(bench, rng, depth):
+def random_settings(bench: Any, rng: Any, depth: np.ndarray) -> Any:
     """Thresholds near the map's own values, areas near what is above."""
     values = [*rng.choice(depth.ravel(), 3), 0, depth.max(), depth.min(), depth.max() - 1]
     on, off = np.clip(rng.choice(values, 2) - rng.integers(0, 2, 2), WORD_LOW, WORD_HIGH)
@@ -247,7 +262,7 @@ def random_settings(bench, rng, depth):
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(gap=[0.0, 0.1])
-async def random_frames(dut, gap):
+async def random_frames(dut: Any, gap: float) -> None:
     """Every field of every record equals numpy on the map; frames back to back, or with gaps."""
     bench = Bench(dut, gap=gap)
     await bench.start()
@@ -275,7 +290,7 @@ async def random_frames(dut, gap):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def ties_and_edges(dut):
+async def ties_and_edges(dut: Any) -> None:
     """The first of equal peaks in stream order; a lone one in each corner; all and nothing above."""
     bench = Bench(dut)
     await bench.start()
@@ -297,15 +312,14 @@ async def ties_and_edges(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def centroids_between_two(dut):
+async def centroids_between_two(dut: Any) -> None:
     """A mean that lies half way goes to the even one: 32 pixels above, since 16 sum / 32 has halves."""
     bench = Bench(dut)
     await bench.start()
     want, halves = [], set()
     for _ in range(24):
-        depth = np.zeros(bench.pixels, np.int64)
-        depth[bench.random.sample(range(bench.pixels), 32)] = 1
-        depth = depth.reshape(bench.rows, bench.columns)
+        depth = np.zeros((bench.rows, bench.columns), np.int64)
+        depth.flat[bench.random.sample(range(bench.pixels), 32)] = 1
         await bench.frame(depth, Settings(0, 0, 1, 1))
         want.append(numpy_fields(depth, 0, bench.bottom_first))
         halves |= {total % 4 for total in want[-1][8:10]}
@@ -315,7 +329,7 @@ async def centroids_between_two(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def hysteresis(dut):
+async def hysteresis(dut: Any) -> None:
     """Between the thresholds the state stays, whichever it is; on its own threshold nothing counts as above."""
     bench = Bench(dut)
     await bench.start()
@@ -332,7 +346,7 @@ async def hysteresis(dut):
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(debounce=[0, 1, 2, 5, 255 if REGRESS else 20])
-async def debounce(dut, debounce):
+async def debounce(dut: Any, debounce: int) -> None:
     """It takes so many frames in a row to begin and to end, and one less does not; a frame between starts anew."""
     bench = Bench(dut)
     await bench.start()
@@ -348,7 +362,7 @@ async def debounce(dut, debounce):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def a_debounce_that_is_lowered(dut):
+async def a_debounce_that_is_lowered(dut: Any) -> None:
     """What has been counted stays: the next frame that differs turns it."""
     bench = Bench(dut)
     await bench.start()
@@ -359,7 +373,7 @@ async def a_debounce_that_is_lowered(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def large_areas(dut):
+async def large_areas(dut: Any) -> None:
     """A minimum beyond any frame is never reached, in any of its bits; 0 always is."""
     bench = Bench(dut)
     await bench.start()
@@ -375,7 +389,7 @@ async def large_areas(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def frame_numbers(dut):
+async def frame_numbers(dut: Any) -> None:
     """They count on through every bit, and over the end."""
     bench = Bench(dut)
     await bench.start()
@@ -387,7 +401,7 @@ async def frame_numbers(dut):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def interrupted_frames(dut):
+async def interrupted_frames(dut: Any) -> None:
     """A frame that begins inside another begins afresh, and its settings are its own."""
     bench = Bench(dut)
     await bench.start()
@@ -404,7 +418,7 @@ async def interrupted_frames(dut):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(accepts=[*PROFILES, "rarely", "never"])
-async def packets(dut, accepts):
+async def packets(dut: Any, accepts: str) -> None:
     """Whole packets of records, in order; a slow sink misses some, as many as are said to be lost."""
     PROFILES["rarely"] = lambda rng: (rng.random() < 0.05 for _ in iter(int, 1))
     PROFILES["never"] = lambda rng: iter(lambda: False, True)
@@ -430,7 +444,7 @@ async def packets(dut, accepts):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def the_sink_takes_the_last_word(dut):
+async def the_sink_takes_the_last_word(dut: Any) -> None:
     """In any clock around a new record: the one that waits leaves or is lost, never both."""
     bench = Bench(dut)
     await bench.start()
@@ -454,7 +468,7 @@ async def the_sink_takes_the_last_word(dut):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut):
+async def resets(dut: Any) -> None:
     """In any clock of a frame and after it: no trace is left, registers read zero."""
     bench = Bench(dut, accepts="alternate")
     await bench.start()

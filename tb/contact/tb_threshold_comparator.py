@@ -3,6 +3,7 @@
 
 import os
 import random
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -18,7 +19,7 @@ WORD_BITS = 32
 class Bench:
     """Drives one clock at a time; contact must be what the model makes of the beats of the clocks before."""
 
-    def __init__(self, dut):
+    def __init__(self, dut: Any) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.model = dut, ThresholdComparator()
         self.random = random.Random(cocotb.RANDOM_SEED)
@@ -26,33 +27,33 @@ class Bench:
         self.lowest, self.highest = -(1 << width - 1), (1 << width - 1) - 1
         self.threshold, self.hold = self.highest, False
 
-    async def start(self):
+    async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.rst.value = 1
         await self.edge(valid=False)
         self.dut.rst.value = 0
         await self.idle()
 
-    async def edge(self, valid, data=0, user=False):
+    async def edge(self, valid: Any, data: int = 0, user: Any = False) -> None:
         self.dut.in_valid.value, self.dut.in_user.value, self.dut.in_data.value = int(valid), int(user), data
         self.dut.threshold.value, self.dut.hold.value = self.threshold, int(self.hold)
         await RisingEdge(self.dut.clk)
 
-    async def idle(self):
+    async def idle(self) -> None:
         """A clock without a beat, whose data and user must not count."""
         await self.edge(False, self.highest, bool(self.random.getrandbits(1)))
         self.check()
 
-    def check(self):
+    def check(self) -> None:
         contact = bool(self.dut.contact.value)
         assert contact == self.model.contact, f"contact is {contact}, threshold {self.model.threshold}"
 
-    async def beat(self, data, user=False):
+    async def beat(self, data: Any, user: bool = False) -> None:
         await self.edge(True, data, user)
         self.check()  # as it was before this beat: it counts one clock later, neither sooner nor further on
         self.model.beat(data, user, self.threshold, self.hold)
 
-    async def contact_after(self, *frame):
+    async def contact_after(self, *frame: Any) -> bool:
         """Send a frame of data; contact in the clock after its last beat."""
         for index, data in enumerate(frame):
             await self.beat(data, user=index == 0)
@@ -61,7 +62,7 @@ class Bench:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def boundaries(dut):
+async def boundaries(dut: Any) -> None:
     """A depth is above the threshold from one more than it; at and beyond both full scales of the data."""
     bench = Bench(dut)
     await bench.start()
@@ -78,7 +79,7 @@ async def boundaries(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def clearing(dut):
+async def clearing(dut: Any) -> None:
     """The next frame's first beat clears contact; its second does not, and one above sets it all the same."""
     bench = Bench(dut)
     await bench.start()
@@ -95,7 +96,7 @@ async def clearing(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def hold(dut):
+async def hold(dut: Any) -> None:
     """Held as long as the bit is set; cleared by the first beat after that."""
     bench = Bench(dut)
     await bench.start()
@@ -111,7 +112,7 @@ async def hold(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def threshold_change(dut):
+async def threshold_change(dut: Any) -> None:
     """One written inside a frame counts from the next on; one written between frames from there."""
     bench = Bench(dut)
     await bench.start()
@@ -131,7 +132,7 @@ async def threshold_change(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_frames(dut):
+async def random_frames(dut: Any) -> None:
     """Beats near a threshold that moves, gaps, hold and resets at random."""
     bench = Bench(dut)
     await bench.start()

@@ -3,6 +3,7 @@
 
 import os
 import random
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -23,7 +24,7 @@ class Bench:
     of each that left; `looked` are all words that were looked at.
     """
 
-    def __init__(self, dut, accepts="none"):
+    def __init__(self, dut: Any, accepts: str = "none") -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.random = random.Random(cocotb.RANDOM_SEED)
@@ -33,13 +34,19 @@ class Bench:
         self.monitor = AxisMonitor(dut, "m", FIELDS)  # the rules of the stream
         self.forget()
 
-    def forget(self):
-        self.frames, self.waits, self.dropped, self.looked = [], [], [], []
-        self.left, self.came, self.looks = [], [], []  # clocks
+    def forget(self) -> None:
+        self.frames: list[Any] = []
+        self.waits: list[Any] = []
+        self.dropped: list[Any] = []
+        self.looked: list[Any] = []
+        # clocks
+        self.left: list[Any] = []
+        self.came: list[Any] = []
+        self.looks: list[Any] = []
         self.stood, self.now = 0, 0
         self.monitor.forget()
 
-    async def start(self):
+    async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.in_valid.value, self.dut.m_ready.value, self.dut.drop_frames.value = 0, 0, 0
         self.dut.rst.value = 1
@@ -48,7 +55,7 @@ class Bench:
         self.dut.rst.value = 0
         await self.clock()
 
-    async def reset(self):
+    async def reset(self) -> None:
         self.dut.rst.value, self.dut.in_valid.value = 1, 0
         await RisingEdge(self.dut.clk)
         self.dut.rst.value = 0
@@ -56,7 +63,7 @@ class Bench:
         self.forget()
         await self.clock()
 
-    async def clock(self, word=None):
+    async def clock(self, word: Any = None) -> Any:
         """One clock, with a word present or none; whether it moved. Marks without a word do not count."""
         dut, ready, coin = self.dut, next(self.accepts), self.random.getrandbits
         dut.in_valid.value, dut.m_ready.value = int(word is not None), int(ready)
@@ -88,11 +95,11 @@ class Bench:
         self.now += 1
         return moves
 
-    def pins(self, name):
+    def pins(self, name: str) -> Any:
         data, *marks = (int(getattr(self.dut, f"{name}_{field}").value) for field in FIELDS)
         return Word(data, *map(bool, marks))
 
-    async def frame(self, rows=ROWS, columns=COLUMNS, words=None, each=None):
+    async def frame(self, rows: int = ROWS, columns: int = COLUMNS, words: Any = None, each: Any = None) -> None:
         """Send a frame, or its first words; `each`: called before every clock."""
         total = rows * columns
         self.frames.append([])
@@ -107,15 +114,15 @@ class Bench:
                     each()
                 moved = await self.clock(word)
 
-    async def idle(self, clocks=1):
+    async def idle(self, clocks: int = 1) -> None:
         for _ in range(clocks):
             await self.clock()
 
-    async def drain(self):
+    async def drain(self) -> None:
         self.accepts = profile("none")
         await self.idle(4)
 
-    def check(self):
+    def check(self) -> Any:
         """Words of each frame that left: the first ones, all of them unless it was given up; every word was seen."""
         assert self.looked == [word for frame in self.frames for word in frame]
         words = [Word(data, *map(bool, marks)) for data, *marks in self.monitor.words]
@@ -133,7 +140,7 @@ class Bench:
         return sent
 
 
-async def started(dut, *arguments):
+async def started(dut: Any, *arguments: Any) -> Any:
     bench = Bench(dut, *arguments)
     await bench.start()
     return bench
@@ -141,7 +148,7 @@ async def started(dut, *arguments):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
-async def waiting(dut, accepts, gap):
+async def waiting(dut: Any, accepts: str, gap: float) -> None:
     """Nothing is lost, and each word is looked at in the clock in which it leaves."""
     bench = await started(dut, accepts)
     for _ in range(15):
@@ -156,7 +163,7 @@ async def waiting(dut, accepts, gap):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
-async def dropping(dut, accepts, gap):
+async def dropping(dut: Any, accepts: str, gap: float) -> None:
     """The pipeline never waits; each word is looked at a clock after it came, whatever the sink does."""
     bench = await started(dut, accepts)
     bench.drop_frames = True
@@ -183,7 +190,7 @@ async def dropping(dut, accepts, gap):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
-async def words_left_standing(dut, stands, gap):
+async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
     """When 0 turns to 1 with words in the gate, they are looked at first; when 1 turns to 0, none is twice."""
     bench, total = await started(dut), ROWS * COLUMNS
     for ready_after in range(8):
@@ -205,7 +212,7 @@ async def words_left_standing(dut, stands, gap):
         bench.check()
 
 
-def rest(bench, total, stands):
+def rest(bench: Any, total: int, stands: int) -> Any:
     """The last words of the frame that is being sent."""
     words = []
     for place in range(total - stands, total):
@@ -217,11 +224,11 @@ def rest(bench, total, stands):
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES))
-async def changes_at_random(dut, accepts):
+async def changes_at_random(dut: Any, accepts: str) -> None:
     """The bit moves in any clock: a frame keeps what it began with."""
     bench = await started(dut, accepts)
 
-    def coin():
+    def coin() -> None:
         if bench.random.random() < 0.1:
             bench.drop_frames = not bench.drop_frames
 
@@ -239,7 +246,7 @@ async def changes_at_random(dut, accepts):
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(drop_frames=[False, True])
-async def resets(dut, drop_frames):
+async def resets(dut: Any, drop_frames: Any) -> None:
     """In any clock of a stalled frame: nothing of it is left."""
     bench = await started(dut)
     bench.drop_frames = drop_frames

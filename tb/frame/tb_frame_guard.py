@@ -7,6 +7,7 @@ That the model's frames and faults are the right ones is tests/frame/test_frame_
 import os
 import random
 from itertools import chain, repeat
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -23,13 +24,15 @@ RANDOM_FRAMES = 60
 class Collector:
     """What leaves: frames as (pixels, bad), faults by name, checking the place of every flag."""
 
-    def __init__(self, dut):
+    def __init__(self, dut: Any) -> None:
         self.dut = dut
         self.rows, self.columns = parameters(dut, "Rows", "Columns")
-        self.frames, self.faults, self.open = [], [], []
+        self.frames: list[Any] = []
+        self.faults: list[Any] = []
+        self.open: list[Any] = []
         cocotb.start_soon(self.run())
 
-    async def run(self):
+    async def run(self) -> None:
         dut, edge = self.dut, RisingEdge(self.dut.clk)
         while True:
             await edge
@@ -41,7 +44,7 @@ class Collector:
             if dut.en.value:
                 self.step()
 
-    def step(self):
+    def step(self) -> None:
         dut, place = self.dut, len(self.open)
         if not dut.out_valid.value:
             assert not dut.out_frame_end.value
@@ -64,7 +67,7 @@ class Collector:
 
 
 class Bench:
-    def __init__(self, dut, offers="none", enabled="none"):
+    def __init__(self, dut: Any, offers: str = "none", enabled: str = "none") -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.rows, self.columns = parameters(dut, "Rows", "Columns")
@@ -75,17 +78,17 @@ class Bench:
         self.collector = Collector(dut)
         self.enabled = profile(enabled, 2)
 
-    async def start(self, timeout=0):
+    async def start(self, timeout: int = 0) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         cocotb.start_soon(self.enable())
         await self.reset(3, timeout)
 
-    async def enable(self):
+    async def enable(self) -> None:
         while True:
             self.dut.en.value = int(next(self.enabled))
             await RisingEdge(self.dut.clk)
 
-    async def reset(self, clocks, timeout=None):
+    async def reset(self, clocks: int, timeout: int | None = None) -> None:
         self.source.abort()
         if timeout is not None:
             self.timeout = self.dut.timeout.value = timeout
@@ -95,15 +98,15 @@ class Bench:
         await RisingEdge(self.dut.clk)  # AXI: the first edge out of reset comes before the first word
         self.forget()
 
-    def forget(self):
+    def forget(self) -> None:
         self.monitor.forget()
         self.collector.frames, self.collector.faults, self.collector.open = [], [], []
 
-    def frame(self):
+    def frame(self) -> Any:
         pixels = (self.random.getrandbits(24) for _ in range(self.rows * self.columns))
         return video(pixels, self.columns)
 
-    async def check(self, what):
+    async def check(self, what: Any) -> Any:
         """Let filler end; compare with the model, then start afresh. Must be called with an idle source."""
         moved = 0
         while moved < self.rows * self.columns + 2:
@@ -119,7 +122,7 @@ class Bench:
         assert got.open == want.open, f"{what}: pixels of the last, incomplete frame"
         return want
 
-    def places(self, fault):
+    def places(self, fault: str) -> Any:
         return positions(fault, self.rows, self.columns)
 
 
@@ -132,7 +135,7 @@ STALLS = {
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def long_silences(dut):
+async def long_silences(dut: Any) -> None:
     """Every bit of the timeout and of the count: it is set to a little before the end of what would take too long."""
     bench = Bench(dut)
     await bench.start()
@@ -150,7 +153,7 @@ async def long_silences(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
-async def faults(dut, kind, stalls):
+async def faults(dut: Any, kind: str, stalls: str) -> None:
     """A good frame, a broken one, a good one, for every position of the break; with stalls for a third of them."""
     bench = Bench(dut, *STALLS[stalls])
     timeout = TIMEOUT if kind in SILENT else 0
@@ -169,7 +172,7 @@ async def faults(dut, kind, stalls):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(stalls=list(STALLS))
-async def words_before_the_first_frame(dut, stalls):
+async def words_before_the_first_frame(dut: Any, stalls: str) -> None:
     """Any number of them: dropped, one fault; the frame after them is right."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start()
@@ -183,7 +186,7 @@ async def words_before_the_first_frame(dut, stalls):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def silence(dut):
+async def silence(dut: Any) -> None:
     """At every position `timeout` clocks are waited, not one more; with 0, or between frames, any number."""
     bench = Bench(dut)
     await bench.start()
@@ -201,7 +204,7 @@ async def silence(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def silence_without_movement(dut):
+async def silence_without_movement(dut: Any) -> None:
     """Clocks with en low are not silence; a timeout written late counts from where the silence began."""
     bench = Bench(dut)
     await bench.start(TIMEOUT)
@@ -223,7 +226,7 @@ async def silence_without_movement(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def long_time_outs(dut):
+async def long_time_outs(dut: Any) -> None:
     """Every bit of the register counts. Most of the silence is written into its counter, not waited for."""
     bench = Bench(dut)
     await bench.start()
@@ -241,7 +244,7 @@ async def long_time_outs(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(clocks=[1, 2, 16])
-async def resets(dut, clocks):
+async def resets(dut: Any, clocks: Any) -> None:
     """At every position of a good frame and of the filler of a broken one; the next frame is right."""
     bench = Bench(dut)
     await bench.start()
@@ -260,7 +263,7 @@ async def resets(dut, clocks):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(timeout=[0, 1, TIMEOUT], stalls=list(STALLS))
-async def random_streams(dut, timeout, stalls):
+async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
     """Broken and good frames, several faults in one, stray words, marks flipped anywhere, long silences."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start(timeout)

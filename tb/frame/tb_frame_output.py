@@ -3,6 +3,7 @@
 
 import os
 import random
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock as ClockOf
@@ -15,24 +16,30 @@ from tb.stream import CLOCK_NS, parameters
 class Bench:
     """Drives the inputs of a clock, keeps the outputs, compares them with the model at the end."""
 
-    def __init__(self, dut, pause=0.0):
+    def __init__(self, dut: Any, pause: float = 0.0) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.pause = dut, pause
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, self.rows, self.columns = parameters(dut, "Width", "Rows", "Columns")
 
-    async def start(self):
+    async def start(self) -> None:
         self.dut.en.value = 1
         await self.reset()
 
-    async def reset(self):
+    async def reset(self) -> None:
         dut = self.dut
         dut.in_start.value, dut.in_frame_start.value, dut.in_due.value, dut.rst.value = 0, 0, 0, 1
         await RisingEdge(dut.clk)
         dut.rst.value = 0
-        self.inputs, self.beats, self.clocks, self.ends, self.out_of_step = [], [], [], [], []
+        self.inputs: list[Any] = []
+        self.beats: list[Any] = []
+        self.clocks: list[Any] = []
+        self.ends: list[Any] = []
+        self.out_of_step: list[Any] = []
 
-    async def clock(self, start=False, frame_start=False, due=False, bad=None):
+    async def clock(
+        self, start: bool = False, frame_start: bool = False, due: bool = False, bad: bool | None = None
+    ) -> None:
         """in_bad is right with in_due only: elsewhere anything."""
         dut, coin = self.dut, self.random.random
         bad = coin() < 0.5 if bad is None else bad
@@ -55,17 +62,17 @@ class Bench:
         if dut.out_of_step.value:
             self.out_of_step.append(now)
 
-    async def frame(self, bad=False, rows=None, due=True, begins=True):
+    async def frame(self, bad: bool = False, rows: int | None = None, due: bool = True, begins: bool = True) -> None:
         for row in range(self.rows if rows is None else rows):
             for column in range(self.columns):
                 first = row == column == 0
                 await self.clock(column == 0, first and begins, first and due, bad if first else None)
 
-    async def idle(self, clocks):
+    async def idle(self, clocks: int) -> None:
         for _ in range(clocks):
             await self.clock()
 
-    def check(self):
+    def check(self) -> Any:
         want = frame_output(self.inputs, self.rows, self.columns)
         assert self.out_of_step == want.out_of_step
         assert self.beats == want.beats
@@ -74,7 +81,7 @@ class Bench:
         return want
 
 
-async def started(dut, **arguments):
+async def started(dut: Any, **arguments: Any) -> Any:
     ClockOf(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     bench = Bench(dut, **arguments)
     await bench.start()
@@ -83,7 +90,7 @@ async def started(dut, **arguments):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
-async def frames(dut, gap, pause):
+async def frames(dut: Any, gap: float, pause: float) -> None:
     """Those marked bad do not leave, the others do; nothing is out of step."""
     bench = await started(dut, pause=pause)
     marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
@@ -98,7 +105,7 @@ async def frames(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def out_of_step(dut):
+async def out_of_step(dut: Any) -> None:
     """A frame that is not due, a due one that does not come, rows too early, late or without a start."""
     bench = await started(dut)
     await bench.frame(due=False)
@@ -117,7 +124,7 @@ async def out_of_step(dut):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def whatever_comes(dut):
+async def whatever_comes(dut: Any) -> None:
     """Each input by chance: frames keep their form, whatever the bursts do."""
     bench = await started(dut, pause=0.1)
     chance = bench.random.random
@@ -128,7 +135,7 @@ async def whatever_comes(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(bad=[False, True])
-async def resets(dut, bad):
+async def resets(dut: Any, bad: Any) -> None:
     """A frame cut short by a reset, in any of its rows, leaves no trace."""
     bench = await started(dut)
     for row in range(1, bench.rows + 1):

@@ -3,6 +3,7 @@
 
 import os
 import random
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -15,19 +16,19 @@ from tb.stream import CLOCK_NS, parameters
 class Bench:
     """Drives one clock at a time and compares the outputs with the model."""
 
-    def __init__(self, dut):
+    def __init__(self, dut: Any) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut = dut
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.width, latency, self.pixels = parameters(dut, "Width", "Latency", "Pixels")
         self.model = FrameTags(latency)
 
-    async def start(self):
+    async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.rst.value, self.dut.en.value, self.dut.push.value = 1, 1, 0
         await RisingEdge(self.dut.clk)
 
-    async def clock(self, push, en=True, rst=False):
+    async def clock(self, push: Any, en: bool = True, rst: bool = False) -> None:
         tag = self.random.getrandbits(self.width)
         dut, model = self.dut, self.model
         dut.push.value, dut.tag.value, dut.en.value, dut.rst.value = int(push), tag, int(en), int(rst)
@@ -40,7 +41,7 @@ class Bench:
         elif en:
             model.clock(tag if push else None)
 
-    async def frames(self, count, apart, pause=0.0, reset=0.0):
+    async def frames(self, count: int, apart: Any, pause: float = 0.0, reset: float = 0.0) -> None:
         """Push `count` tags, `apart()` enabled clocks from one to the next."""
         for _ in range(count):
             left = apart()
@@ -53,7 +54,7 @@ class Bench:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.4])
-async def frames_as_close_as_they_can_be(dut, pause):
+async def frames_as_close_as_they_can_be(dut: Any, pause: float) -> None:
     bench = Bench(dut)
     await bench.start()
     await bench.frames(30, lambda: bench.pixels, pause)
@@ -61,7 +62,7 @@ async def frames_as_close_as_they_can_be(dut, pause):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(reset=[0.0, 0.01])
-async def frames_apart(dut, reset):
+async def frames_apart(dut: Any, reset: Any) -> None:
     """Each distance from the closest to where the one before has left; then at random."""
     bench = Bench(dut)
     await bench.start()

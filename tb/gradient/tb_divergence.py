@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """divergence against its model: codes, latency; frame on frame with gaps, pauses, extremes, reset."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
@@ -21,14 +23,14 @@ from tb.stream import (
 FIELDS = ["gx", "gy", "first_row", "first_column", "last_row", "last_column"]
 
 
-def pixels(gradient):
+def pixels(gradient: Any) -> Any:
     """Gradients (frames, rows, columns, 2) as words of FIELDS."""
     marks = np.zeros((*gradient.shape[:3], 4), np.int64)
     marks[:, 0, :, 0] = marks[:, :, 0, 1] = marks[:, -1, :, 2] = marks[:, :, -1, 3] = 1
     return np.concatenate((gradient, marks), axis=-1).reshape(-1, len(FIELDS)).tolist()
 
 
-async def check(dut, gradient, gap=0.0, pause=0.0, interrupts=()):
+async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = ()) -> None:
     (neumann,) = parameters(dut, "Neumann")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", FIELDS)
@@ -36,7 +38,7 @@ async def check(dut, gradient, gap=0.0, pause=0.0, interrupts=()):
     sink = StreamMonitor(dut, "out", "valid", ["data"])
     await bench.start()
 
-    async def send(count):
+    async def send(count: int) -> None:
         await send_apart(bench, driver, pixels(gradient)[:count], gap)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=DIVERGENCE + 2)
@@ -50,14 +52,14 @@ async def check(dut, gradient, gap=0.0, pause=0.0, interrupts=()):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), rows=[1, 4])
-async def frames(dut, gap, pause, rows):
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), ("rows", [1, 4]))
+async def frames(dut: Any, gap: float, pause: float, rows: int) -> None:
     width, columns = parameters(dut, "Width", "Columns")
     await check(dut, uniform((3, rows, columns, 2), width), gap, pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-async def limits(dut):
+async def limits(dut: Any) -> None:
     """Rows of each kind, then with their fields exchanged; the last frame is a chequer board.
 
     On the board neighbours stand at opposite limits everywhere: the largest and smallest results there are.
@@ -70,7 +72,7 @@ async def limits(dut):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-async def reset_in_mid_frame(dut):
+async def reset_in_mid_frame(dut: Any) -> None:
     """At each of the first words, and in the second row."""
     width, columns = parameters(dut, "Width", "Columns")
     await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 5 * columns // 4])

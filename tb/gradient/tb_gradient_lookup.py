@@ -4,6 +4,8 @@
 The reference follows the pins, clock by clock: a pixel's slopes are those that its frame's bank holds.
 """
 
+from typing import Any
+
 import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
@@ -19,7 +21,7 @@ FIRST = 0b0011  # place of the first pixel: in the first row and the first colum
 READ_CLOCKS = 2  # from table_read to its words
 
 
-def every_colour(bits, random):
+def every_colour(bits: int, random: Any) -> Any:
     """Each bin of the table once, in random order, its lower bits random; and each again in reverse."""
     bins = np.array(random.sample(range(1 << 3 * bits), 1 << 3 * bits))
     top = np.stack((bins >> 2 * bits, bins >> bits, bins), axis=-1) & (1 << bits) - 1
@@ -28,7 +30,7 @@ def every_colour(bits, random):
     return np.concatenate((colours, colours[::-1]))
 
 
-def colours_of(pixels):
+def colours_of(pixels: int) -> Any:
     """RGB of words R 23:16, B 15:8, G 7:0."""
     words = np.array(pixels, np.int64)
     return np.stack([words >> low & 255 for low in (16, 0, 8)], axis=-1).astype(np.uint8)
@@ -37,9 +39,9 @@ def colours_of(pixels):
 class Lookup:
     """The device, its reference, and what software does at the table."""
 
-    banks = None  # what stands in them; no reset touches it, so the next test begins with it
+    banks: Any = None  # what stands in them; no reset touches it, so the next test begins with it
 
-    def __init__(self, dut, gap, pause):
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.width, self.bits = parameters(dut, "Width", "BitsPerChannel")
         self.bins = 1 << 3 * self.bits
@@ -48,11 +50,13 @@ class Lookup:
         self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
         self.sink = StreamMonitor(dut, "out", "valid", SLOPES, unsigned=SLOPES[2:])
         self.power_up = gradient_codes(synthetic(self.bits), configuration())
-        self.expected, self.tables = [], set()  # slopes of the pixels taken; banks that frames used
+        # slopes of the pixels taken; banks that frames used
+        self.expected: list[Any] = []
+        self.tables: set[Any] = set()
         dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
         dut.in_place.value = 0
 
-    async def start(self):
+    async def start(self) -> None:
         """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
         both banks anew, and what they hold at power-up is tested on Icarus and by the top."""
         at_power_up = Lookup.banks is None
@@ -68,7 +72,7 @@ class Lookup:
                 await self.frame()
         self.tables.clear()
 
-    async def follow(self):
+    async def follow(self) -> None:
         dut, table = self.dut, self.banks.words[0]
         while True:
             await RisingEdge(dut.clk)
@@ -91,7 +95,7 @@ class Lookup:
 
     # Software.
 
-    async def write(self, index, gx, gy):
+    async def write(self, index: Any, gx: Any, gy: Any) -> None:
         """One entry of the bank not in use, in one clock, whether or not the pipeline moves."""
         for pin, value in (("write", 1), ("index", index), ("gx", gx), ("gy", gy)):
             getattr(self.dut, f"table_{pin}").value = int(value)
@@ -100,11 +104,11 @@ class Lookup:
         for pin in ("index", "gx", "gy"):
             getattr(self.dut, f"table_{pin}").value = self.bench.random.getrandbits(1)
 
-    async def rewrite(self, codes, order=None):
+    async def rewrite(self, codes: np.ndarray, order: Any = None) -> None:
         for index in order or range(self.bins):
             await self.write(index, *codes[index])
 
-    async def read(self, index):
+    async def read(self, index: int) -> None:
         """The slopes of an entry of the bank not in use."""
         dut = self.dut
         dut.table_read.value, dut.table_index.value = 1, index
@@ -116,14 +120,14 @@ class Lookup:
             assert got == self.to_read, f"entry {index} reads {got}, not {self.to_read}"
             await RisingEdge(dut.clk)
 
-    async def commit(self):
+    async def commit(self) -> None:
         """Ask for the other bank; the frames that begin from now on use it."""
         self.dut.table_bank.value = 1 - self.banks.in_use
         await RisingEdge(self.dut.clk)
 
     # Frames.
 
-    def words(self, colours):
+    def words(self, colours: Any) -> Any:
         """A frame: the first pixel has its place, the others any but that."""
         random = self.bench.random
         marks = [FIRST | random.getrandbits(2) << 2]
@@ -131,12 +135,12 @@ class Lookup:
         red, green, blue = colours.astype(np.int64).T
         return list(zip((red << 16 | blue << 8 | green).tolist(), marks, strict=True))
 
-    async def frame(self):
+    async def frame(self) -> None:
         """Every colour; then compare."""
         await send_apart(self.bench, self.driver, self.words(every_colour(self.bits, self.bench.random)), self.gap)
         await self.compare()
 
-    async def compare(self):
+    async def compare(self) -> None:
         await self.bench.clocks(GRADIENT_LOOKUP + 2)
         marks = [place for _, place in self.source.words]
         assert len(self.expected) == len(marks)
@@ -152,7 +156,7 @@ TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
-async def whole_table_then_rewritten(dut, gap, pause):
+async def whole_table_then_rewritten(dut: Any, gap: float, pause: float) -> None:
     lookup = Lookup(dut, gap, pause)
     await lookup.start()
     await lookup.frame()
@@ -170,13 +174,13 @@ async def whole_table_then_rewritten(dut, gap, pause):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
-async def rewritten_while_frames_stream(dut, gap, pause):
+async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> None:
     """Short frames without a pause between; writes, reads and commits in every clock of theirs."""
     lookup = Lookup(dut, gap, pause)
     await lookup.start()
     random, running, changes = lookup.bench.random, True, 0
 
-    async def software():
+    async def software() -> None:
         nonlocal changes
         while running:
             for _ in range(random.randrange(6)):
@@ -204,7 +208,7 @@ async def rewritten_while_frames_stream(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def reset_keeps_the_table_and_takes_the_bank_over(dut):
+async def reset_keeps_the_table_and_takes_the_bank_over(dut: Any) -> None:
     lookup = Lookup(dut, 0.0, 0.0)
     await lookup.start()
     await lookup.write(0, 1, -2)

@@ -7,6 +7,7 @@ began with.
 
 import itertools
 from pathlib import Path
+from typing import Any
 
 import cocotb
 import numpy as np
@@ -26,16 +27,17 @@ READ_CLOCKS = 3  # from table_read to its word
 SMALLEST = [(2, 4), (3, 4), (2, 7)]  # rows and columns
 
 
-def place(row, column, rows, columns):
+def place(row: Any, column: Any, rows: int, columns: int) -> Any:
     return int(row == 0) | int(column == 0) << 1 | int(row == rows - 1) << 2 | int(column == columns - 1) << 3
 
 
 class Gradient:
     """The device, its reference, and what software does at the words."""
 
-    banks, in_use = None, 0  # what stands in them; no reset touches it, so the next test begins with it
+    in_use = 0
+    banks: Any = None  # what stands in them; no reset touches it, so the next test begins with it
 
-    def __init__(self, dut, gap=0.0, pause=0.0):
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         names = ("Width", "DeviationWidth", "CoeffWidth", "WordWidth", "Drop")
         self.width, self.deviation_width, self.coefficient_width, self.word_width, self.drop = parameters(dut, *names)
@@ -44,12 +46,14 @@ class Gradient:
         self.driver = StreamDriver(dut, "in", "valid", DEVIATIONS)
         self.source = StreamMonitor(dut, "in", "valid", DEVIATIONS, unsigned=DEVIATIONS[3:])
         self.sink = StreamMonitor(dut, "out", "valid", SLOPES, unsigned=SLOPES[2:])
-        self.frames, self.used = [], set()  # words and pixels (row, column, colours) taken; banks that frames used
+        # words and pixels (row, column, colours) taken; banks that frames used
+        self.frames: list[Any] = []
+        self.used: set[Any] = set()
         self.wanted = 0
         dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
         dut.in_place.value = 0
 
-    async def start(self):
+    async def start(self) -> None:
         """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
         both banks anew, and what they hold at power-up is tested on Icarus."""
         at_power_up = Gradient.banks is None
@@ -69,7 +73,7 @@ class Gradient:
         self.used.clear()
         self.bench.saturations = 0
 
-    async def follow(self):
+    async def follow(self) -> None:
         dut = self.dut
         while True:
             await RisingEdge(dut.clk)
@@ -99,7 +103,7 @@ class Gradient:
 
     # Software.
 
-    async def write(self, index, word):
+    async def write(self, index: Any, word: Any) -> None:
         """One word of the bank not in use, in one clock, whether or not the pipeline moves."""
         for pin, value in (("write", 1), ("index", index), ("word", word)):
             getattr(self.dut, f"table_{pin}").value = int(value)
@@ -108,11 +112,11 @@ class Gradient:
         for pin in ("index", "word"):
             getattr(self.dut, f"table_{pin}").value = self.random.getrandbits(1)
 
-    async def rewrite(self, words):
+    async def rewrite(self, words: Any) -> None:
         for index in self.random.sample(range(COUNT), COUNT):
             await self.write(index, words[index])
 
-    async def read(self, index):
+    async def read(self, index: int) -> None:
         dut = self.dut
         dut.table_read.value, dut.table_index.value = 1, index
         await RisingEdge(dut.clk)
@@ -123,19 +127,19 @@ class Gradient:
             assert got == self.to_read, f"word {index} reads {got}, not {self.to_read}"
             await RisingEdge(dut.clk)
 
-    async def commit(self):
+    async def commit(self) -> None:
         """Ask for the other bank; the frames that begin from now on use it."""
         self.dut.table_bank.value = 1 - self.in_use
         await RisingEdge(self.dut.clk)
 
-    async def use(self, words):
+    async def use(self, words: Any) -> None:
         """The next frame uses these words."""
         await self.rewrite(words)
         await self.commit()
 
     # Frames.
 
-    def any_words(self):
+    def any_words(self) -> Any:
         """At their limits, over the whole range, small ones, planes, and constants."""
         kind = self.random.randrange(5)
         if kind == 0:
@@ -149,7 +153,7 @@ class Gradient:
             words[:, :, 1:] = 0
         return words.reshape(COUNT)
 
-    def any_deviation(self):
+    def any_deviation(self) -> Any:
         """Over the whole range or a part of it, at its limits, or a multiple of half a step of the result: ties."""
         width = self.deviation_width
         kind = self.random.randrange(4)
@@ -160,7 +164,7 @@ class Gradient:
         grain = min(max(self.drop - 1, 0), width - 1) if kind == 2 else 0
         return [self.random.randrange(-1 << width - 1, 1 << width - 1) >> grain << grain for _ in COLOURS]
 
-    async def send(self, rows, columns, pixels=None, deviations=None):
+    async def send(self, rows: int, columns: int, pixels: Any = None, deviations: Any = None) -> None:
         """A frame, or its first pixels."""
         words = []
         for index in range(rows * columns if pixels is None else pixels):
@@ -168,7 +172,7 @@ class Gradient:
             words.append((*colours, place(*divmod(index, columns), rows, columns)))
         await send_apart(self.bench, self.driver, words, self.gap)
 
-    async def compare(self, last=0):
+    async def compare(self, last: int = 0) -> Any:
         """All pixels, or the last ones, which are the last frame. Returns how many values were clipped."""
         await self.bench.clocks(QUADRATIC_GRADIENT + 2)
         assert self.sink.starts == [clock + QUADRATIC_GRADIENT for clock in self.source.starts]
@@ -192,14 +196,14 @@ class Gradient:
         self.forget()
         return total
 
-    def forget(self):
+    def forget(self) -> None:
         self.source.forget()
         self.sink.forget()
         self.frames.clear()
         self.bench.saturations = 0
 
 
-def corners_of(random, count, width):
+def corners_of(random: Any, count: int, width: int) -> Any:
     """Mostly the lowest and the highest."""
     low, high = -1 << width - 1, (1 << width - 1) - 1
     return np.array([random.choice((*6 * [low, high], -1, 0)) for _ in range(count)])
@@ -210,7 +214,7 @@ TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
-async def both_banks(dut, gap, pause):
+async def both_banks(dut: Any, gap: float, pause: float) -> None:
     """Frames of what stands there, then of words written since, every one read back before it is used."""
     device = Gradient(dut, gap, pause)
     await device.start()
@@ -231,7 +235,7 @@ async def both_banks(dut, gap, pause):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
-async def limits(dut, gap, pause):
+async def limits(dut: Any, gap: float, pause: float) -> None:
     """Words and deviations of every kind, so that sums clip in both directions, and polynomials run over."""
     device = Gradient(dut, gap, pause)
     await device.start()
@@ -251,13 +255,13 @@ async def limits(dut, gap, pause):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
-async def rewritten_while_frames_stream(dut, gap, pause):
+async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> None:
     """Frames without a pause between; writes, reads and commits in every clock of theirs."""
     device = Gradient(dut, gap, pause)
     await device.start()
     random, running, changes = device.random, True, 0
 
-    async def software():
+    async def software() -> None:
         nonlocal changes
         while running:
             words = device.any_words()
@@ -284,7 +288,7 @@ async def rewritten_while_frames_stream(dut, gap, pause):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def reset_keeps_the_words_and_takes_the_bank_over(dut):
+async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
     """Of pixels that are all clipped: none may be counted after it."""
     device = Gradient(dut)
     await device.start()
@@ -314,7 +318,7 @@ async def reset_keeps_the_words_and_takes_the_bank_over(dut):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
-async def a_cut_frame_does_no_harm_to_the_next(dut, gap, pause):
+async def a_cut_frame_does_no_harm_to_the_next(dut: Any, gap: float, pause: float) -> None:
     """Nobody sends one; but a mark may be upset, and that shall heal."""
     device = Gradient(dut, gap, pause)
     await device.start()

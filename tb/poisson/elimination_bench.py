@@ -5,10 +5,12 @@ Checked are codes, latency and saturation counts, with gaps, pauses and resets.
 """
 
 import math
+from typing import Any
 
 import cocotb
 import numpy as np
 
+from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import BACK_SUBSTITUTION, FORWARD_ELIMINATION
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination
@@ -19,14 +21,14 @@ LATENCIES = {"forward_elimination": FORWARD_ELIMINATION, "back_substitution": BA
 UNCLIPPED = {"forward_elimination": 0.01, "back_substitution": 0.05}  # amplitude at which nothing clips
 
 
-async def check(dut, amplitude, frames=3, **behaviour):
+async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> None:
     """Send frames of random words up to an amplitude, and compare the output with the model of the device.
 
     An amplitude of None gives mostly the lowest and the highest word, infinity the highest word only.
     """
     config, core = configuration(), dut._name
 
-    def model(words, monitor):
+    def model(words: Any, monitor: Monitor) -> Any:
         return MODELS[core](words.reshape(-1, config.rows, config.columns), config, monitor)
 
     width = config.arithmetic_width if core == "forward_elimination" else config.data_width
@@ -40,21 +42,23 @@ async def check(dut, amplitude, frames=3, **behaviour):
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (30, 0.0), (0, 0.3), (30, 0.3)])), full_scale=[False, True])
-async def frames(dut, gap, pause, full_scale):
+@cocotb.parametrize(
+    (("gap", "pause"), sample([(0, 0.0), (30, 0.0), (0, 0.3), (30, 0.3)])), ("full_scale", [False, True])
+)
+async def frames(dut: Any, gap: float, pause: float, full_scale: bool) -> None:
     await check(dut, 1.0 if full_scale else UNCLIPPED[dut._name], gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.003, 0.1, None])
-async def many_frames(dut, amplitude):
+async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, amplitude, frames=MANY)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.1, None])
-async def reset_in_mid_frame(dut, amplitude):
+async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """Reset as the first words enter and leave and in the middle of a frame; None: while values are clipped."""
     config = configuration()
     inner = config.columns * (config.rows // 2) + config.columns // 2
@@ -64,6 +68,6 @@ async def reset_in_mid_frame(dut, amplitude):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut, strays):
+async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, 0.1, frames=1, strays=strays)

@@ -2,6 +2,7 @@
 """forward_elimination against its model: the tests that it shares with back_substitution, and its mean."""
 
 import math
+from typing import Any
 
 import cocotb
 
@@ -13,7 +14,7 @@ __all__ = ["a_frame_begins_afresh", "frames", "many_frames", "reset_as_the_mean_
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def reset_as_the_mean_is_clipped(dut):
+async def reset_as_the_mean_is_clipped(dut: Any) -> None:
     """Reset in each cycle after the addend of the last row but one: nothing is counted."""
     config = configuration()
     last_addend = config.columns * (config.rows - 2) + FORWARD_ELIMINATION

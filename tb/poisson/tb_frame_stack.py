@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_stack against its model: positions, latency, rows without a pause; gaps, pauses, reset."""
 
+from typing import Any
+
 import cocotb
 
 from tactile_depth.latency import FRAME_STACK
@@ -10,7 +12,7 @@ from tb.stream import check_frame_memory, parameters, places, sample
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
-async def check(dut, frames=FRAMES, **behaviour):
+async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
     size, width, rows = parameters(dut, "Size", "Width", "Rows")
     words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a position stays
     await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, **behaviour)
@@ -18,19 +20,19 @@ async def check(dut, frames=FRAMES, **behaviour):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)])))
-async def frames(dut, gap, pause):
+async def frames(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(halves=[1, 3, 5])
-async def reset_in_mid_frame(dut, halves):
+async def reset_in_mid_frame(dut: Any, halves: int) -> None:
     size, rows = parameters(dut, "Size", "Rows")
     await check(dut, frames=2, interrupts=[halves * size * rows // 2 + size // 2])
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-async def resets_as_a_frame_begins_to_leave(dut):
+async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
     """With the last row's first words, and around its end: each register that says so is set in one of these clocks."""
     size, rows = parameters(dut, "Size", "Rows")
     clocks = (1, 2, 3, size, size + 1, size + 2)
@@ -39,6 +41,6 @@ async def resets_as_a_frame_begins_to_leave(dut):
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut, strays):
+async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """After part of a frame, and after more than one without a start in between."""
     await check(dut, frames=2, strays=strays)

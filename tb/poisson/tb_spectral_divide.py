@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """spectral_divide against its model: whole frames, so all positions; gaps, pauses, extremes, reset."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
+from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import SPECTRAL_DIVIDE
 from tactile_depth.poisson.spectral_divide import spectral_divide
 from tb.stream import MANY, check_bursts, configuration, corners, extremes, parameters, sample, uniform
 
 
-async def check(dut, x, **behaviour):
+async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
     config = configuration()
 
-    def model(x, monitor):
+    def model(x: Any, monitor: Monitor) -> Any:
         return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
 
     behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.columns}
@@ -20,15 +23,15 @@ async def check(dut, x, **behaviour):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), amplitude=[0.001, 1.0])
-async def frames(dut, gap, pause, amplitude):
+@cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), ("amplitude", [0.001, 1.0]))
+async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((3 * size, size, 1), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.01, 0.2, None])
-async def many_frames(dut, amplitude):
+async def many_frames(dut: Any, amplitude: float) -> None:
     """Ties of the rounding, and values that just clip."""
     size, width = parameters(dut, "Size", "Width")
     shape = (MANY * size, size, 1)
@@ -36,7 +39,7 @@ async def many_frames(dut, amplitude):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-async def limits(dut):
+async def limits(dut: Any) -> None:
     """Each kind of burst fills a frame of its own: every position sees it, and the lowest modes clip."""
     size, width = parameters(dut, "Size", "Width")
     _, sink = await check(dut, np.repeat(extremes(size, width), size, axis=0))
@@ -45,7 +48,7 @@ async def limits(dut):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
-async def reset_in_mid_frame(dut, late):
+async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """As the first words enter and leave; in the midst of a second frame."""
     size, width = parameters(dut, "Size", "Width")
     first = 3 * size * size // 2 + size // 2 if late else 1
@@ -54,7 +57,7 @@ async def reset_in_mid_frame(dut, late):
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut, strays):
+async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """After part of a frame, and after more than one without a start in between."""
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((size, size, 1), width), strays=strays)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """spectral_solver against its model: codes, fixed latency, one frame every N^2 clocks, saturations; reset."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
@@ -21,14 +23,14 @@ from tb.stream import (
 )
 
 
-def codes(frames, amplitude):
+def codes(frames: int, amplitude: float) -> Any:
     """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
     config = configuration()
     shape, width = (frames, config.columns, config.columns), config.divergence.width
     return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
 
 
-async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
+async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> Any:
     config = configuration()
     size = config.columns
     bench = Bench(dut, pause)
@@ -39,7 +41,7 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
 
     words = f.reshape(-1, 1).tolist()
 
-    async def send(count):
+    async def send(count: int) -> None:
         await send_apart(bench, driver, (words * (count // len(words) + 1))[:count], gap, size * size)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=spectral_solver_latency(size))
@@ -67,19 +69,19 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
-async def frames_that_fit(dut, gap, pause):
+async def frames_that_fit(dut: Any, gap: float, pause: float) -> None:
     await check(dut, codes(3, 0.002), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 0.05, None])
-async def many_frames(dut, amplitude):
+async def many_frames(dut: Any, amplitude: float) -> None:
     """Ties of every rounding, and clips of every one that can."""
     await check(dut, codes(MANY, amplitude))
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
-async def frames_that_saturate(dut):
+async def frames_that_saturate(dut: Any) -> None:
     f = codes(3, 1.0)
     f[1], f[2] = f.max(), f.min()
     bench = await check(dut, f, gap=0.1)
@@ -88,7 +90,7 @@ async def frames_that_saturate(dut):
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 1.0])
-async def reset_in_mid_frame(dut, amplitude):
+async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """The third frame arrives as the first one leaves: every core is at work, and clips if it can."""
     size = configuration().columns
     first = 2 * size * size + 10 * size + size // 2
@@ -97,7 +99,7 @@ async def reset_in_mid_frame(dut, amplitude):
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(rows=[1, 3])
-async def a_frame_begins_afresh(dut, rows):
+async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
     """After rows of a frame that is not completed, and part of one more."""
     columns = configuration().columns
     await check(dut, codes(2, 0.002), strays=rows * columns + 5)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """thomas_table against its model: every position of every row."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
@@ -11,7 +13,7 @@ from tb.stream import configuration, drive
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.3])
-async def every_entry(dut, pause):
+async def every_entry(dut: Any, pause: float) -> None:
     config = configuration()
     table = thomas_table(config)
     places = [(row, position) for row in range(config.rows) for position in range(config.columns)]

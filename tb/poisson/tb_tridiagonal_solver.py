@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """tridiagonal_solver against its model: codes, fixed latency, one frame every rows x columns clocks, saturations."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
@@ -22,7 +24,7 @@ from tb.stream import (
 )
 
 
-async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
+async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> Any:
     """Frames f (frames, rows, columns) through the device; for `interrupts` see stream.interrupt."""
     config = configuration()
     pixels = config.rows * config.columns
@@ -34,7 +36,7 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
     words = f.reshape(-1, 1).tolist()
     latency = tridiagonal_solver_latency(config.columns)
 
-    async def send(count):
+    async def send(count: int) -> None:
         await send_apart(bench, driver, words[:count], gap, pixels)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=latency + pixels)
@@ -57,7 +59,7 @@ async def check(dut, f, gap=0.0, pause=0.0, interrupts=(), strays=0):
     return monitor.saturations
 
 
-def codes(frames, amplitude):
+def codes(frames: int, amplitude: float) -> Any:
     """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
     config = configuration()
     shape, width = (frames, config.rows, config.columns), config.divergence.width
@@ -66,24 +68,24 @@ def codes(frames, amplitude):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.3, 0.0), (0.0, 0.3), (0.3, 0.3)])))
-async def frames(dut, gap, pause):
+async def frames(dut: Any, gap: float, pause: float) -> None:
     assert not await check(dut, codes(4, 0.002), gap, pause)
 
 
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 0.05, None])
-async def many_frames(dut, amplitude):
+async def many_frames(dut: Any, amplitude: float) -> None:
     """Ties of every rounding, and clips of every one that can."""
     await check(dut, codes(MANY, amplitude))
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def full_scale_saturates(dut):
+async def full_scale_saturates(dut: Any) -> None:
     assert await check(dut, codes(3, 1.0)), "full scale everywhere must clip somewhere"
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
-async def a_frame_does_not_know_the_one_before(dut):
+async def a_frame_does_not_know_the_one_before(dut: Any) -> None:
     f = codes(3, 0.002)
     f[2] = f[0]
     await check(dut, f)
@@ -91,7 +93,7 @@ async def a_frame_does_not_know_the_one_before(dut):
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 1.0])
-async def reset_in_mid_frame(dut, amplitude):
+async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
     """At places in a row of the second frame, as the first one leaves: every core is at work, and clips if it can."""
     config = configuration()
     first = 3 * config.rows * config.columns // 2 + 3
@@ -101,7 +103,7 @@ async def reset_in_mid_frame(dut, amplitude):
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(rows=[1, 3])
-async def a_frame_begins_afresh(dut, rows):
+async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
     """After rows of a frame that is not completed, and part of one more."""
     columns = configuration().columns
     await check(dut, codes(2, 0.002), strays=rows * columns + 5)

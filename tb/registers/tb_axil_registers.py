@@ -7,6 +7,7 @@ import os
 import random
 from collections.abc import AsyncIterator, Awaitable
 from contextlib import asynccontextmanager
+from typing import Any
 
 import cocotb
 from cocotb.clock import Clock
@@ -59,10 +60,10 @@ def entry(table: int, index: int) -> tuple[int, int]:
 class Checker:
     """Follows the pins, feeds the model with what it sees there and compares every output in every clock."""
 
-    def __init__(self, dut) -> None:
+    def __init__(self, dut: Any) -> None:
         self.dut = dut
-        names = ("Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel")
-        names += ("CoefficientWords", "ReferenceWords", "FloorWords")
+        names = ["Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"]
+        names += ["CoefficientWords", "ReferenceWords", "FloorWords"]
         self.build = Build(*(int(getattr(dut, name).value) for name in names))
         self.model = AxilRegisters(self.build, entry)
         self.responses: dict[str, list[Response]] = {"read": [], "write": []}
@@ -71,10 +72,10 @@ class Checker:
 
     def drop(self) -> None:
         """Forget the transactions in flight."""
-        self.address: int | None = None
+        self.address: Any = None
         self.data: tuple[int, int] | None = None
         self.written: Response | None = None
-        self.read: tuple[int, Response] | None = None
+        self.read: Any = None
         self.asked: int | None = None  # a table, by a read of this address
         self.asked_for = 0  # clocks
 
@@ -87,7 +88,7 @@ class Checker:
     def fires(self, channel: str) -> bool:
         return bool(self.bus(f"{channel}valid") and self.bus(f"{channel}ready"))
 
-    def expect(self, name: str, want: int) -> None:
+    def expect(self, name: str, want: Any) -> None:
         got = self.pin(name)
         assert got == want, f"clock {self.clocks}: {name} is {got:#x}, the model says {want:#x}"
 
@@ -161,7 +162,7 @@ class Checker:
             and asked_before is None
             and not self.pin("rst")
         ):
-            self.written = model.write(self.address, *self.data, live)
+            self.written = model.write(self.address, *self.data, live)  # type: ignore[call-arg, misc]
             self.responses["write"].append(self.written)
         if self.fires("aw"):
             self.address = self.bus("awaddr")
@@ -171,7 +172,7 @@ class Checker:
             self.expect(f"{pin}_request", model.captures[captures:] == [table])
         self.expect("table_write", len(model.table_writes) - writes)
         if len(model.table_writes) > writes:
-            table, index, high, low = model.table_writes[-1]
+            table, index, high, low = model.table_writes[-1]  # type: ignore[assignment]
             self.expect("table_select", table)
             self.expect("table_index", index)
             self.expect("table_high", high)
@@ -196,7 +197,7 @@ class Tables:
     """What stands behind the table ports: the words of an entry come as late as they may, other words before; a table
     changes over `lag` clocks after the frame start."""
 
-    def __init__(self, dut, lag: int = 0) -> None:
+    def __init__(self, dut: Any, lag: int = 0) -> None:
         self.dut, self.lag = dut, lag
         self.random = random.Random(lag)
 
@@ -216,14 +217,14 @@ class Tables:
                 late = 0
 
 
-async def reset(dut) -> None:
+async def reset(dut: Any) -> None:
     dut.rst.value = 1
     await ClockCycles(dut.clk, 3)
     dut.rst.value = 0
 
 
 @asynccontextmanager
-async def checked(dut, lag: int = 0) -> AsyncIterator[Checker]:
+async def checked(dut: Any, lag: int = 0) -> AsyncIterator[Checker]:
     """A clocked, reset device, followed by a Checker until the end of the block; `lag`: of its tables."""
     for name in INPUTS:
         getattr(dut, name).value = 0
@@ -241,7 +242,7 @@ async def checked(dut, lag: int = 0) -> AsyncIterator[Checker]:
     tables.cancel()
 
 
-async def pulse(dut, **values: int) -> None:
+async def pulse(dut: Any, **values: int) -> None:
     """Set inputs for one clock."""
     for name, value in values.items():
         getattr(dut, name).value = value
@@ -250,7 +251,7 @@ async def pulse(dut, **values: int) -> None:
         getattr(dut, name).value = 0
 
 
-async def present(dut, channel: str, **values: int) -> None:
+async def present(dut: Any, channel: str, **values: Any) -> None:
     """Offer one beat on channel aw, w or ar until it is taken; then something else stands there."""
     for name, value in values.items():
         getattr(dut, f"s_axil_{name}").value = value
@@ -265,7 +266,7 @@ async def present(dut, channel: str, **values: int) -> None:
         pin.value = value ^ ((1 << len(pin)) - 1)
 
 
-async def take(dut, channel: str, stall: int = 0) -> int:
+async def take(dut: Any, channel: str, stall: int = 0) -> int:
     """Take one response on channel b or r, not before it was there for `stall` clocks; its code."""
     valid, ready = (getattr(dut, f"s_axil_{channel}{wire}") for wire in ("valid", "ready"))
     while not valid.value:
@@ -281,18 +282,18 @@ async def take(dut, channel: str, stall: int = 0) -> int:
     return response
 
 
-async def write_beats(dut, address: int, data: int, strobe: int = 0xF) -> None:
+async def write_beats(dut: Any, address: int, data: int, strobe: int = 0xF) -> None:
     """Address and data of a write, together, without its response."""
     await gather(present(dut, "aw", awaddr=address), present(dut, "w", wdata=data, wstrb=strobe))
 
 
-async def write(dut, address: int, data: int, strobe: int = 0xF) -> int:
+async def write(dut: Any, address: int, data: int, strobe: int = 0xF) -> int:
     """Write pin by pin; the response."""
     await write_beats(dut, address, data, strobe)
     return await take(dut, "b")
 
 
-async def read(dut, address: int) -> tuple[int, int]:
+async def read(dut: Any, address: int) -> tuple[int, int]:
     """Read pin by pin; data and response."""
     await present(dut, "ar", araddr=address)
     while not dut.s_axil_rvalid.value:
@@ -301,13 +302,13 @@ async def read(dut, address: int) -> tuple[int, int]:
     return data, await take(dut, "r")
 
 
-async def value(dut, name: str) -> int:
+async def value(dut: Any, name: str) -> int:
     data, response = await read(dut, OFFSET[name])
     assert response == Response.OKAY, f"reading {name} is answered {response}"
     return data
 
 
-def master_of(dut) -> AXI4LiteMaster:
+def master_of(dut: Any) -> AXI4LiteMaster:
     """A bus master, which takes every response at once: not to be mixed with the pin-by-pin functions."""
     return AXI4LiteMaster(dut, "s_axil", dut.clk)
 
@@ -322,7 +323,7 @@ async def response_of(transaction: Awaitable) -> Response:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_values(dut) -> None:
+async def reset_values(dut: Any) -> None:
     """Every field has the reset value of the map, or that of the build; bits of no field read 0."""
     async with checked(dut) as checker:
         for register in MAP:
@@ -341,7 +342,7 @@ async def reset_values(dut) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(register=[r.name for r in MAP if "port" not in {f.access for f in r.fields}])
-async def access(dut, register) -> None:
+async def access(dut: Any, register: Any) -> None:
     """Every bit does what the access of its field says, bit by bit and byte by byte; what lies behind the others is
     tested with the tables."""
     async with checked(dut) as checker:
@@ -393,7 +394,7 @@ def tables_present(build: Build) -> int:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def outputs(dut) -> None:
+async def outputs(dut: Any) -> None:
     """What the pipeline gets of the registers, through the bus master."""
     async with checked(dut):
         master = master_of(dut)
@@ -405,7 +406,7 @@ async def outputs(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def unaligned_byte_access(dut) -> None:
+async def unaligned_byte_access(dut: Any) -> None:
     """A byte of a register is written and read at its own address, as a processor does."""
     async with checked(dut):
         for byte in range(BYTES):
@@ -416,14 +417,14 @@ async def unaligned_byte_access(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def address_and_data_in_either_order(dut) -> None:
+async def address_and_data_in_either_order(dut: Any) -> None:
     """Neither is lost, and no answer comes before both were taken."""
     async with checked(dut):
         address = {"channel": "aw", "awaddr": OFFSET["TIMEOUT"]}
         for gap in range(4):
             for address_first in (True, False):
                 word = 0x100 * gap + address_first
-                data = {"channel": "w", "wdata": word, "wstrb": 0xF}
+                data: dict[str, Any] = {"channel": "w", "wdata": word, "wstrb": 0xF}
                 first, second = (address, data) if address_first else (data, address)
                 await present(dut, **first)
                 for _ in range(gap):
@@ -436,12 +437,12 @@ async def address_and_data_in_either_order(dut) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(ahead=["aw", "w"])
-async def the_next_waits_for_this(dut, ahead) -> None:
+async def the_next_waits_for_this(dut: Any, ahead: Any) -> None:
     """An address, or a word, that is offered while the one before it waits for its other half stays out."""
     async with checked(dut):
         writes = [("TIMEOUT", 0x1234), ("MINIMUM_AREA", 0xABCDEF01)]
-        addresses = [{"channel": "aw", "awaddr": OFFSET[name]} for name, _ in writes]
-        words = [{"channel": "w", "wdata": word, "wstrb": 0xF} for _, word in writes]
+        addresses: list[dict[str, Any]] = [{"channel": "aw", "awaddr": OFFSET[name]} for name, _ in writes]
+        words: list[dict[str, Any]] = [{"channel": "w", "wdata": word, "wstrb": 0xF} for _, word in writes]
         first, second = (addresses, words) if ahead == "aw" else (words, addresses)
         await present(dut, **first[0])
         following = cocotb.start_soon(present(dut, **first[1]))
@@ -455,7 +456,7 @@ async def the_next_waits_for_this(dut, ahead) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def responses_wait(dut) -> None:
+async def responses_wait(dut: Any) -> None:
     """A response stays, unchanged, until it is taken, and holds off the next transaction of its kind only."""
     async with checked(dut):
         await write(dut, OFFSET["TIMEOUT"], 7)
@@ -478,7 +479,7 @@ async def responses_wait(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_inside_transactions(dut) -> None:
+async def reset_inside_transactions(dut: Any) -> None:
     """A reset at every point of a write and a read leaves nothing behind."""
     async with checked(dut) as checker:
         for clocks in range(6):
@@ -507,7 +508,7 @@ async def reset_inside_transactions(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def errors_change_nothing(dut) -> None:
+async def errors_change_nothing(dut: Any) -> None:
     """Unmapped offsets and writes to ro registers: SLVERR, as the map says, and no effect."""
     async with checked(dut) as checker:
         master = master_of(dut)
@@ -523,7 +524,7 @@ async def errors_change_nothing(dut) -> None:
             assert checker.model.values == before
 
 
-async def choose(dut, table: int, index: int) -> None:
+async def choose(dut: Any, table: int, index: int) -> None:
     """Set TABLE_SELECT and TABLE_INDEX."""
     await write(dut, OFFSET["TABLE_SELECT"], table)
     await write(dut, OFFSET["TABLE_INDEX"], index)
@@ -531,7 +532,7 @@ async def choose(dut, table: int, index: int) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(table=list(TABLES.values()))
-async def table_entries(dut, table) -> None:
+async def table_entries(dut: Any, table: Any) -> None:
     """Entries are written and read in turn, the index runs round; nothing happens outside, half strobed, in reset."""
     async with checked(dut) as checker:
         size, writes = checker.build.table_sizes[table], checker.model.table_writes
@@ -591,7 +592,7 @@ async def table_entries(dut, table) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def no_table_that_the_build_has_not(dut) -> None:
+async def no_table_that_the_build_has_not(dut: Any) -> None:
     """Values of TABLE_SELECT that name none of the build's tables."""
     async with checked(dut) as checker:
         await ClockCycles(dut.clk, 3)
@@ -606,7 +607,7 @@ async def no_table_that_the_build_has_not(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def a_write_beside_a_read_of_a_table(dut) -> None:
+async def a_write_beside_a_read_of_a_table(dut: Any) -> None:
     """Writes that come in each clock of a read wait for its end, and the entry read is that of before or after."""
     async with checked(dut) as checker:
         table = min(table for table, size in checker.build.table_sizes.items() if size)
@@ -614,7 +615,7 @@ async def a_write_beside_a_read_of_a_table(dut) -> None:
             await choose(dut, table, 1)
             await write(dut, OFFSET["TABLE_HIGH"], 77)
 
-            async def writes(lead=lead) -> None:
+            async def writes(lead: Any = lead) -> None:
                 await ClockCycles(dut.clk, max(0, lead) + 1)
                 assert await write(dut, OFFSET["TABLE_LOW"], 8) == Response.OKAY
 
@@ -630,7 +631,7 @@ async def a_write_beside_a_read_of_a_table(dut) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(lag=[0, 1, 7])
-async def commits(dut, lag) -> None:
+async def commits(dut: Any, lag: int) -> None:
     """A change-over comes with the next frame start, is pending until the table has followed, and guards that table."""
     async with checked(dut, lag) as checker:
         COMMIT, has = OFFSET["TABLE_COMMIT"], tables_present(checker.build)
@@ -698,7 +699,7 @@ async def commits(dut, lag) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def sticky_bits(dut) -> None:
+async def sticky_bits(dut: Any) -> None:
     """Each event sets its own bit, a written 1 clears that bit alone, the live bits follow their inputs."""
     async with checked(dut):
         sources = [(flag, {f"event_{flag}": 1}) for flag in STICKY_EVENTS]
@@ -725,7 +726,7 @@ async def sticky_bits(dut) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(register=["STATUS", "CONTROL"])
-async def setting_wins_over_clearing(dut, register) -> None:
+async def setting_wins_over_clearing(dut: Any, register: str) -> None:
     """Events one clock before, in, and one clock after the clock in which a write clears what they set."""
     async with checked(dut):
         events = {f"event_{flag}": 1 for flag in FLAGS} | {"saturations": 9}
@@ -749,7 +750,7 @@ async def setting_wins_over_clearing(dut, register) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def counters(dut) -> None:
+async def counters(dut: Any) -> None:
     """Each counts its own event, stays at all ones, and is cleared."""
     async with checked(dut) as checker:
         sources = {name: {f"event_{flag}": 1} for flag, name in EVENT_COUNTERS.items()}
@@ -775,7 +776,7 @@ async def counters(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def latency(dut) -> None:
+async def latency(dut: Any) -> None:
     """The latency last reported stays, through clear_counters too."""
     async with checked(dut):
         for clocks in (0x1234_5678, WORD, 0, 34_567):
@@ -786,7 +787,7 @@ async def latency(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def each_address_reads_its_own(dut) -> None:
+async def each_address_reads_its_own(dut: Any) -> None:
     """Every register with bits of its own, so that another in its place, or two at once, would show at any address."""
     async with checked(dut) as checker:
         rng = random.Random(cocotb.RANDOM_SEED)
@@ -811,7 +812,7 @@ async def each_address_reads_its_own(dut) -> None:
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def records(dut) -> None:
+async def records(dut: Any) -> None:
     """Each word of the record is read as it stands in that clock, and at its own address."""
     async with checked(dut):
         rng = random.Random(cocotb.RANDOM_SEED)
@@ -823,7 +824,7 @@ async def records(dut) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(name=list(PINS))
-async def capture(dut, name) -> None:
+async def capture(dut: Any, name: str) -> None:
     """A start goes out once; while the capture is busy its table is closed, and its end asks for the change-over."""
     async with checked(dut) as checker:
         model, table, register, pin = checker.model, TABLES[name], CAPTURES[name], PINS[name]
@@ -885,7 +886,7 @@ async def capture(dut, name) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(pressure=[0.0, 0.6])
-async def random_traffic(dut, pressure) -> None:
+async def random_traffic(dut: Any, pressure: float) -> None:
     """Reads, writes and events at random, responses refused with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])

@@ -4,6 +4,8 @@
 Checked are codes, latency and saturation counts, with gaps, pauses, extreme words and resets.
 """
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
@@ -12,16 +14,19 @@ from tactile_depth.transform.dst_forward import dst_forward
 from tactile_depth.transform.dst_inverse import dst_inverse
 from tb.stream import MANY, check_bursts, corners, extremes, parameters, sample, uniform, with_and_without_en
 
-CORES = {"dst_forward": (dst_forward, dst_forward_latency), "dst_inverse": (dst_inverse, dst_inverse_latency)}
+CORES: dict[str, tuple[Any, Any]] = {
+    "dst_forward": (dst_forward, dst_forward_latency),
+    "dst_inverse": (dst_inverse, dst_inverse_latency),
+}
 CLOCKS_OF_A_BURST_EDGE = 12  # in which a burst begins to enter, or to leave
 
 
-async def check(dut, words, **behaviour):
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
     """Send bursts (count, size, 1) and compare the output with the model of the device."""
     *formats, alternate = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Alternate")
     transform, latency = CORES[dut._name]
 
-    def model(words, monitor):
+    def model(words: Any, monitor: Any) -> Any:
         return transform(words[..., 0], *formats, monitor, alternate=bool(alternate))
 
     return await check_bursts(
@@ -30,8 +35,8 @@ async def check(dut, words, **behaviour):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=sample([0.3, 1.0, None]))
-async def bursts(dut, gap, pause, amplitude):
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     shape = (5, size, 1)
     words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
@@ -40,7 +45,7 @@ async def bursts(dut, gap, pause, amplitude):
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.1, None])
-async def many_bursts(dut, amplitude):
+async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     size, width = parameters(dut, "Size", "InWidth")
     shape = (2 * MANY, size, 1)
@@ -48,7 +53,7 @@ async def many_bursts(dut, amplitude):
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
-async def limits(dut):
+async def limits(dut: Any) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     _, sink = await check(dut, extremes(size, width))
     assert not np.any(sink.words[:size]), "zero in, but not zero out"
@@ -56,7 +61,7 @@ async def limits(dut):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
-async def reset_in_mid_burst(dut, late, clips):
+async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
     size, width = parameters(dut, "Size", "InWidth")
     _, latency = CORES[dut._name]

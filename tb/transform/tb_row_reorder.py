@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """row_reorder against its model: places, latency from the last word; gaps inside rows, pauses, reset."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
@@ -12,7 +14,7 @@ ROWS = 7
 FRAME = 3  # rows
 
 
-async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
+async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> None:
     size, width, to_burst = parameters(dut, "Size", "Width", "ToBurst")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
@@ -21,7 +23,7 @@ async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
     await bench.start()
     words = places(ROWS * size, width).reshape(-1, 1).tolist()
 
-    async def send(count):
+    async def send(count: int) -> None:
         await send_apart(bench, driver, words[-count:], gap, FRAME * size)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=ROW_REORDER + 2)
@@ -42,12 +44,12 @@ async def check(dut, gap=0.0, pause=0.0, interrupts=(), strays=0):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(gap=[0.0, 0.1, 0.8], pause=[0.0, 0.3])
-async def rows(dut, gap, pause):
+async def rows(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap, pause)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_in_mid_row(dut):
+async def reset_in_mid_row(dut: Any) -> None:
     """At each word of a row, and while it leaves."""
     (size,) = parameters(dut, "Size")
     await check(dut, interrupts=range(1, size + size // 2))
@@ -55,7 +57,7 @@ async def reset_in_mid_row(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
-async def a_frame_begins_afresh(dut, rows, words):
+async def a_frame_begins_afresh(dut: Any, rows: int, words: Any) -> None:
     """After `rows` rows and `words` words of the frame before."""
     (size,) = parameters(dut, "Size")
     await check(dut, strays=rows * size + words)

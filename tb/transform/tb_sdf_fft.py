@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """sdf_fft against tactile_depth.transform.sdf_fft: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
+from typing import Any
+
 import cocotb
 import numpy as np
 
+from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import sdf_fft_latency
 from tactile_depth.transform.sdf_fft import sdf_fft
 from tb.stream import MANY, check_bursts, corners, extremes, parameters, uniform
@@ -11,10 +14,10 @@ from tb.stream import MANY, check_bursts, corners, extremes, parameters, uniform
 FIELDS = ["re", "im"]
 
 
-async def check(dut, x, **behaviour):
+async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
     width, coeff, inverse = parameters(dut, "Width", "CoeffWidth", "Inverse")
 
-    def model(x, monitor):
+    def model(x: Any, monitor: Monitor) -> Any:
         return np.stack(sdf_fft(x[..., 0], x[..., 1], bool(inverse), width, coeff, monitor), axis=-1)
 
     latency = sdf_fft_latency(x.shape[1])
@@ -22,15 +25,15 @@ async def check(dut, x, **behaviour):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0])
-async def bursts(dut, gap, pause, amplitude):
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((5, size, 2), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.1, None])
-async def many_bursts(dut, amplitude):
+async def many_bursts(dut: Any, amplitude: float) -> None:
     """Ties of every rounding, and clips of every one that can."""
     size, width = parameters(dut, "Size", "Width")
     shape = (2 * MANY, size, 2)
@@ -38,7 +41,7 @@ async def many_bursts(dut, amplitude):
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-async def limits(dut):
+async def limits(dut: Any) -> None:
     size, width = parameters(dut, "Size", "Width")
     _, sink = await check(dut, extremes(size, width, 2))
     assert not np.any(sink.words[:size]), "zero in, but not zero out"
@@ -46,7 +49,7 @@ async def limits(dut):
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
-async def reset_in_mid_burst(dut, late):
+async def reset_in_mid_burst(dut: Any, late: bool) -> None:
     """In each of the clocks in which a burst begins to enter, or to leave."""
     size, width = parameters(dut, "Size", "Width")
     first = sdf_fft_latency(size) - 3 if late else 1

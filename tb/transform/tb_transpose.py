@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """transpose against its model: positions, latency, columns without a pause; gaps, pauses, reset."""
 
+from typing import Any
+
 import cocotb
 
 from tactile_depth.latency import TRANSPOSE
@@ -10,10 +12,10 @@ from tb.stream import check_frame_memory, parameters, places
 FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
 
 
-async def check(dut, frames=FRAMES, **behaviour):
+async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
     size, width, makhoul_in, makhoul_out = parameters(dut, "Size", "Width", "MakhoulIn", "MakhoulOut")
 
-    def model(words):
+    def model(words: Any) -> Any:
         return transpose(words, bool(makhoul_in), bool(makhoul_out))
 
     words = places(frames * size * size, width).reshape(frames, -1)
@@ -22,13 +24,13 @@ async def check(dut, frames=FRAMES, **behaviour):
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
-async def frames(dut, gap, pause):
+async def frames(dut: Any, gap: float, pause: float) -> None:
     await check(dut, gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
-async def reset_in_mid_frame(dut, late):
+async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """As the first words enter, or as the last row does, when reading begins; with a third frame half in."""
     (size,) = parameters(dut, "Size")
     first = (size - 1) * size if late else 1
@@ -37,6 +39,6 @@ async def reset_in_mid_frame(dut, late):
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
-async def a_frame_begins_afresh(dut, strays):
+async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """After part of a frame, and after more than one without a start in between."""
     await check(dut, frames=2, strays=strays)

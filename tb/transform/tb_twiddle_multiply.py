@@ -2,10 +2,12 @@
 """twiddle_multiply against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
 import os
+from typing import Any
 
 import cocotb
 import numpy as np
 
+from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import TWIDDLE_MULTIPLY
 from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
 from tb.stream import check_bursts, extremes, parameters, uniform
@@ -13,17 +15,17 @@ from tb.stream import check_bursts, extremes, parameters, uniform
 FIELDS = ["re", "im"]
 
 
-def factors_of(dut):
+def factors_of(dut: Any) -> Any:
     coeff, block = parameters(dut, "CoeffWidth", "Block")
     kind, direction = os.environ["FACTORS"].split("_")
     return {"twiddle": twiddle_factors, "phase": phase_factors}[kind](block, direction == "inverse", coeff)
 
 
-async def check(dut, x, **behaviour):
+async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
     width, drop, real_only = parameters(dut, "OutWidth", "Drop", "RealOnly")
     factors = factors_of(dut)
 
-    def model(x, monitor):
+    def model(x: Any, monitor: Monitor) -> Any:
         out = twiddle_multiply(x[..., 0], x[..., 1], factors, drop, width, monitor, real_only=bool(real_only))
         return np.stack(out, axis=-1)
 
@@ -31,14 +33,14 @@ async def check(dut, x, **behaviour):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), amplitude=[0.3, 1.0])
-async def bursts(dut, gap, pause, amplitude):
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     await check(dut, uniform((6, size, 2), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def limits(dut):
+async def limits(dut: Any) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     _, sink = await check(dut, extremes(size, width, 2))
     assert not np.any(sink.words[:size]), "zero in, but not zero out"
@@ -46,7 +48,7 @@ async def limits(dut):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(part=[0, 1])
-async def ties(dut, part):
+async def ties(dut: Any, part: Any) -> None:
     """A burst of products that drop just half a step, then for each lower bit one of half a step and that bit alone.
 
     What they keep is even, so each of those bits decides between down and up. Where the factor's real part is odd
@@ -68,7 +70,7 @@ async def ties(dut, part):
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_in_mid_burst(dut):
+async def reset_in_mid_burst(dut: Any) -> None:
     """In each clock of a burst, as it enters and as it leaves."""
     size, width = parameters(dut, "Size", "InWidth")
     await check(dut, uniform((2, size, 2), width), interrupts=range(1, size + TWIDDLE_MULTIPLY + 2))

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """uart_transmit: RTL against the model."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from commands.common.repository import ROOT
 
 
 @pytest.mark.structures("divider", both=[(33,)], icarus=[(4,)])
-def test_rtl(run_tb, divider):
+def test_rtl(run_tb: Callable[..., None], divider: Any) -> None:
     run_tb("uart_transmit", [], {"Divider": divider}, files=[ROOT / "boards" / "ulx3s" / "uart_transmit.sv"])

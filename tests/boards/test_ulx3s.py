@@ -2,6 +2,8 @@
 """The top of the ULX3S board in simulation, at a small grid and a fast line."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -17,11 +19,15 @@ QUICK = "^(?!.*broken)"  # `make regress` breaks transfers off as well
 
 
 @pytest.mark.seeds
-def test_rtl(run_tb, simulator):
+def test_rtl(run_tb: Callable[..., None], simulator: str) -> None:
     tests = "wakes|frames" if simulator == "icarus" else "" if REGRESS else QUICK  # 20 times slower there
-    choices = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
+    choices: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}
     config = Configuration(**choices)
-    given = {"ClockMhz": CLOCK_MHZ, "Baud": CLOCK_MHZ * 10**6 // CLOCKS_A_BIT, "Threshold": threshold(config)}
+    given: dict[str, Any] = {
+        "ClockMhz": CLOCK_MHZ,
+        "Baud": CLOCK_MHZ * 10**6 // CLOCKS_A_BIT,
+        "Threshold": threshold(config),
+    }
     run_tb(
         "ulx3s",
         None,

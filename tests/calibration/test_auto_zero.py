@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """auto_zero: RTL against the model; what the model does."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -21,7 +24,7 @@ SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_satura
     icarus=[(4, 2, 1, 5), (16, 16, 1, 12)],
     regress=[(16, 8, 1, 24), (32, 21, 1, 16), (128, 8, 3, 32), (64, 64, 2, 24)],
 )
-def test_rtl(run_tb, columns, rows, block_log2, width):
+def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int) -> None:
     floor = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
     run_tb(
         "auto_zero",
@@ -35,25 +38,25 @@ CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")
 HIGHEST = (1 << CONFIG.depth.width - 1) - 1
 
 
-def codes(count=2, limit=HIGHEST):
+def codes(count: int = 2, limit: int = HIGHEST) -> Any:
     return np.random.default_rng(1).integers(-limit - 1, limit, (count, 21, 32), endpoint=True)
 
 
-def test_no_floor_changes_nothing():
+def test_no_floor_changes_nothing() -> None:
     monitor = Monitor()
     np.testing.assert_array_equal(auto_zero(codes(), no_floor(CONFIG), CONFIG, monitor), codes())
     assert not monitor.saturations
 
 
 @pytest.mark.parametrize("level", [-1000, -1, 1, 77777])
-def test_a_flat_floor_is_subtracted_everywhere(level):
+def test_a_flat_floor_is_subtracted_everywhere(level: int) -> None:
     floor = np.full(CONFIG.reference_nodes, level)
     assert np.all(interpolated_floor(floor, CONFIG) == level)
     low = codes(limit=HIGHEST // 2)
     np.testing.assert_array_equal(auto_zero(low, floor, CONFIG), low - level)
 
 
-def test_what_is_clipped_is_counted():
+def test_what_is_clipped_is_counted() -> None:
     monitor = Monitor()
     floor = np.full(CONFIG.reference_nodes, -2)
     depths = np.zeros((21, 32), np.int64)
@@ -65,14 +68,14 @@ def test_what_is_clipped_is_counted():
     assert monitor.saturations == {"auto_zero": 2 + 21 * 32}
 
 
-def test_exact_zero_is_the_same_but_for_rounding():
+def test_exact_zero_is_the_same_but_for_rounding() -> None:
     untouched, depths = codes(4, 5000), codes(3, 100000)
     zeroed = auto_zero(depths, captured_floor(untouched, CONFIG), CONFIG)
     exact = exact_zero(depths.astype(float), untouched.astype(float), CONFIG)
     assert 0 < np.abs(zeroed - exact).max() <= 1
 
 
-def test_a_floor_that_is_a_plane_is_taken_off_between_the_centres_of_blocks():
+def test_a_floor_that_is_a_plane_is_taken_off_between_the_centres_of_blocks() -> None:
     """A cut row of blocks has no node: there, and outside the outermost centres, the floor stands still."""
     row, column = np.mgrid[:21, :32]
     plane = 400 * row - 600 * column + 5000

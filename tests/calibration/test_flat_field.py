@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """flat_field: RTL against the model; what the model's parameters mean."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -25,13 +27,13 @@ SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_satur
     icarus=[(16, 11, 2, True)],
     regress=[(32, 21, 1, False), (128, 8, 3, False), (64, 64, 2, True)],
 )
-def test_rtl(run_tb, columns, rows, block_log2, quadratic):
+def test_rtl(run_tb: Any, columns: int, rows: int, block_log2: int, quadratic: Any) -> None:
     config = Grid(rows, columns, block_log2, Format(GAIN_WIDTH, 0))
     run_tb(
         "flat_field",
         SOURCES,
-        flat_field_parameters(config, quadratic),
-        roms=lambda folder: write_gains(folder, unit_gains(config)),
+        flat_field_parameters(config, quadratic),  # type: ignore[arg-type]
+        roms=lambda folder: write_gains(folder, unit_gains(config)),  # type: ignore[arg-type]
     )
 
 
@@ -39,7 +41,7 @@ CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")
 
 
 @pytest.mark.parametrize("level", [8, 16, 40, 128, 255])
-def test_a_frame_like_the_reference_is_flat(level):
+def test_a_frame_like_the_reference_is_flat(level: int) -> None:
     """At every level: gains of under 16 grey levels make dark pixels, which are flat as well."""
     frames = np.full((1, 21, 32, 3), level, np.uint8)
     gains = captured_gains(frames, CONFIG)
@@ -48,14 +50,14 @@ def test_a_frame_like_the_reference_is_flat(level):
     assert not np.any(deviations(frames, gains, CONFIG))
 
 
-def test_gains_at_power_up_leave_pixels_as_they_are():
+def test_gains_at_power_up_leave_pixels_as_they_are() -> None:
     frames = np.random.default_rng(1).integers(0, 256, (2, 21, 32, 3), dtype=np.uint8)
     np.testing.assert_array_equal(flat_codes(frames, unit_gains(CONFIG), CONFIG), frames)
     relative = frames.astype(int) - 128 << (DEVIATION.fraction - 7)
     np.testing.assert_array_equal(deviations(frames, unit_gains(CONFIG), CONFIG), relative)
 
 
-def test_interpolation_is_linear_between_the_centres_of_blocks():
+def test_interpolation_is_linear_between_the_centres_of_blocks() -> None:
     """Gains on a plane come back as that plane, between the outermost centres."""
     log2 = CONFIG.reference_block_log2
     rows, columns = CONFIG.reference_nodes
@@ -68,7 +70,7 @@ def test_interpolation_is_linear_between_the_centres_of_blocks():
     assert np.abs(interpolated_gains(gains, CONFIG)[..., 1] - want).max() <= 0.5
 
 
-def test_a_dark_pixel_takes_over_its_neighbour_and_is_not_counted_as_clipped():
+def test_a_dark_pixel_takes_over_its_neighbour_and_is_not_counted_as_clipped() -> None:
     frames = np.full((21, 32, 3), 100, np.uint8)
     frames[3, 0] = frames[3, 1] = frames[5, 4] = frames[5, 5] = 2
     frames[5, 3] = 77

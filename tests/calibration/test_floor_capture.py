@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """floor_capture: RTL against the model, and the model against exact fractions."""
 
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -19,14 +20,14 @@ SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
     icarus=[(4, 5, 1, 4, 2), (4, 2, 1, 6, 1)],
     regress=[(32, 21, 1, 12, 1), (16, 16, 2, 24, 3), (128, 20, 3, 16, 1), (16, 9, 1, 32, 0)],
 )
-def test_rtl(run_tb, columns, rows, block_log2, width, largest):
+def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, largest: int) -> None:
     parameters = {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "MaxLog2": largest}
     run_tb("floor_capture", SOURCES, parameters)
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])
 @pytest.mark.parametrize("limit", [2, 1 << 23])
-def test_a_floor_is_the_mean_to_the_nearest_with_ties_to_even(count, limit):
+def test_a_floor_is_the_mean_to_the_nearest_with_ties_to_even(count: int, limit: int) -> None:
     config = Configuration(columns=32, rows=21, solver="tridiagonal")
     frames = np.random.default_rng(count).integers(-limit, limit, (count, 21, 32))
     floor = captured_floor(frames, config)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """gain_map: RTL against the model."""
 
+from collections.abc import Callable
+
 import pytest
 
 from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
@@ -17,7 +19,7 @@ SOURCES = ["gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
     icarus=[(4, 2, 1, 1, 5), (4, 3, 1, 2, 1)],
     regress=[(16, 8, 1, 3, 24), (32, 21, 2, 3, 24), (128, 8, 3, 3, 24), (64, 64, 2, 3, 24)],
 )
-def test_rtl(run_tb, columns, rows, block_log2, channels, width):
+def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, channels: int, width: int) -> None:
     gains = first_gains(rows >> block_log2, columns >> block_log2, channels, width)
     run_tb(
         "gain_map",
@@ -27,8 +29,8 @@ def test_rtl(run_tb, columns, rows, block_log2, channels, width):
     )
 
 
-def test_entries_are_the_channels_of_each_node():
+def test_entries_are_the_channels_of_each_node() -> None:
     gains = [[[10, 11, 12], [20, 21, 22]]]
-    assert table_entries(gains) == {0: 10, 1: 11, 2: 12, 4: 20, 5: 21, 6: 22}
-    assert table_entries([[[10], [20]]]) == {0: 10, 4: 20}
+    assert table_entries(gains) == {0: 10, 1: 11, 2: 12, 4: 20, 5: 21, 6: 22}  # type: ignore[arg-type]
+    assert table_entries([[[10], [20]]]) == {0: 10, 4: 20}  # type: ignore[arg-type]
     assert ENTRIES_PER_NODE == 4

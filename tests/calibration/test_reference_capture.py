@@ -2,6 +2,7 @@
 """reference_capture: RTL against the model; the largest number of frames."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,8 +22,8 @@ from tactile_depth.configuration import GAIN_WIDTH, Configuration
     regress=[(16, 16, 3), (32, 21, 3), (128, 8, 4), (16, 8, 8)],
     regress_verilator=[(16, 8, 8)],
 )
-def test_rtl(run_tb, columns, rows, largest):
-    choices = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
+def test_rtl(run_tb: Any, columns: int, rows: int, largest: Any) -> None:
+    choices: dict[str, Any] = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
     run_tb(
         "reference_capture",
         ["reference_capture.sv"],
@@ -32,7 +33,7 @@ def test_rtl(run_tb, columns, rows, largest):
 
 
 @pytest.mark.parametrize(("columns", "largest"), [(16, 8), (128, 8), (256, 8), (512, 6), (1024, 4)])
-def test_the_largest_sum_fits_its_word(columns, largest):
+def test_the_largest_sum_fits_its_word(columns: int, largest: int) -> None:
     config = Configuration(columns=columns, solver="tridiagonal")
     assert largest_log2_frames(config) == largest
     pixels = 1 << 2 * config.reference_block_log2 + largest
@@ -40,7 +41,7 @@ def test_the_largest_sum_fits_its_word(columns, largest):
     assert largest == 8 or 2 * 255 * pixels >= 1 << GAIN_WIDTH
 
 
-def test_a_broken_frame_starts_afresh():
+def test_a_broken_frame_starts_afresh() -> None:
     config = Configuration(columns=16, rows=8, solver="tridiagonal")
     frames = [np.full((8, 16, 3), level, np.uint8) for level in (50, 60, 100, 102, 30)]
     found = reference_capture(frames, [False, True, False, False, False], [1, 1, 1, 2, 2], 8, config)

@@ -6,6 +6,8 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,15 +57,15 @@ library(two) {
 
 
 @pytest.fixture
-def library(tmp_path):
+def library(tmp_path: Path) -> Any:
     path = tmp_path / "two.lib"
     path.write_text(LIBERTY)
     return read(path)
 
 
-def test_power_by_hand(library):
+def test_power_by_hand(library: Any) -> None:
     """A flip-flop (net 3) that an inverter (net 4) feeds back, and that is an output: it toggles each clock."""
-    gates = [
+    gates: list[Any] = [
         Instance("DFF", "", {"CK": [2], "D": [4], "Q": [3]}),
         Instance("INV", "", {"A": [3], "Y": [4]}),
     ]
@@ -91,18 +93,18 @@ def test_power_by_hand(library):
         ("!(A|B)&C", {4}),
     ],
 )
-def test_boolean(text, true_at):
+def test_boolean(text: str, true_at: Any) -> None:
     table = truth(text, ["A", "B", "C"])
     assert {i for i in range(8) if table >> i & 1} == true_at
 
 
 @pytest.mark.parametrize("text", ["", "(A", "A)", "A +", "A @ B", "D", "__import__('os')", "A B C A.B"])
-def test_what_is_no_boolean_function_is_refused(text):
+def test_what_is_no_boolean_function_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="is no Boolean function of up to 6 pins: A, B, C"):
         truth(text, ["A", "B", "C"])
 
 
-def test_flip_flops():
+def test_flip_flops() -> None:
     group = groups_of('library(a) { ff(IQ, IQN) { next_state : "!D"; clocked_on : "CK"; } }').groups[0]
     pins = {"D": Pin("input", 1, ""), "Q": Pin("output", 0, "IQ"), "QN": Pin("output", 0, "IQN")}
     cell = Cell("DFF", 1, 0, pins, group)
@@ -116,7 +118,7 @@ def test_flip_flops():
         clock_pin(cell)
 
 
-def test_memory_model_is_the_macro_at_45_nm():
+def test_memory_model_is_the_macro_at_45_nm() -> None:
     assert memory_model.area_um2(512 * 64, 45) == pytest.approx(17_301, rel=0.005)
     assert memory_model.energy_pj(64, 45, 1.1) == pytest.approx(5.3)
     assert memory_model.energy_pj(32, 90, 2.2) == pytest.approx(0.5 * 5.3 * 2 * 4)
@@ -128,7 +130,7 @@ def test_memory_model_is_the_macro_at_45_nm():
     ("tridiagonal", 0.227, 865_095, 89.5),
     ("spectral", 0.41, 1_420_403, 181.5),
 ])  # fmt: skip
-def test_estimate_at_45_nm(solver, logic, bits, milliwatts):
+def test_estimate_at_45_nm(solver: str, logic: Any, bits: int, milliwatts: Any) -> None:
     """Recorded logic and 0.53 um2 and 5.3 / 64 pJ per bit at 166 MHz, by hand."""
     _, area_mm2, power_mw, source = estimate.at_45_nm(solver)
     assert area_mm2 == pytest.approx(logic + 0.53e-6 * bits)
@@ -137,7 +139,7 @@ def test_estimate_at_45_nm(solver, logic, bits, milliwatts):
     assert source.startswith("not of this run")
 
 
-def test_whole_design_in_gates(library, tmp_path):
+def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
     """A stand-in with the ports of the design: a pixel's green is written to a memory and leaves two clocks later."""
     nets = iter(range(10, 200))
     bus = [next(nets) for _ in range(24)]
@@ -149,12 +151,12 @@ def test_whole_design_in_gates(library, tmp_path):
         Instance("DFF", "", {"CK": [2], "D": [late], "Q": [out_valid]}),
         Instance("macro_0", "memory", {
             "clk": [2], "write_en": ["0"], "write_address": ["0"], "write_data": ["0"] * 8,
-            "read_en": [valid], "read_address": bus[:4], "read_data": read_data}),
+            "read_en": [valid], "read_address": bus[:4], "read_data": read_data}),  # type: ignore[dict-item]
     ]  # fmt: skip
     for i in range(8):
         gates.append(Instance("INV", "", {"A": [read_data[i]], "Y": [inverse[i]]}))
         gates.append(Instance("DFF", "", {"CK": [2], "D": [inverse[i]], "Q": [out[i]]}))
-    ports = {
+    ports: dict[str, Any] = {
         "clk": ("input", [2]), "rst": ("input", [rst]), "s_axis_tdata": ("input", bus),
         "s_axis_tvalid": ("input", [valid]),
         "s_axis_tlast": ("input", [last]), "s_axis_tuser": ("input", [user]), "s_axis_tready": ("output", ["1"]),
@@ -184,11 +186,11 @@ def test_whole_design_in_gates(library, tmp_path):
     assert gate_sim.simulate(netlist, [macro], Stimulus(pixels, wrong, 8, 3, range(0)), {}, 0.5, tmp_path).wrong == 3
 
 
-def activity_of(toggles, window, window_with_delays):
+def activity_of(toggles: Any, window: Any, window_with_delays: Any) -> Any:
     return Activity(9, 0, 0, [(0.5, 0.25)], toggles, window, window_with_delays)
 
 
-def test_delays_count_for_the_cores_in_which_they_act(library):
+def test_delays_count_for_the_cores_in_which_they_act(library: Any) -> None:
     """Two inverters: in a core that glitches in the window, and in one that does not move there."""
     gates = [Instance("INV", path, {"A": [i], "Y": [i + 1]}) for i, path in ((5, "a"), (9, "b"))]
     netlist = Netlist("two", {"clk": ("input", [2])}, gates, library, 2)
@@ -202,7 +204,7 @@ def test_delays_count_for_the_cores_in_which_they_act(library):
 
 
 @pytest.mark.parametrize("node_nm", [180.0, 45.0])
-def test_figures(library, node_nm):
+def test_figures(library: Any, node_nm: Any) -> None:
     """One figure each for area and power, and the published ones at their node only."""
     core = {"core": "one", "cells": 7, "area_um2": 2e6, "delay_factor": 2.0, "with_delays_mw": 30.0}
     core["without_delays_mw"] = {"clock": 10.0, "internal": 4.0, "switching": 5.0, "leakage": 1.0}
@@ -220,7 +222,7 @@ def test_figures(library, node_nm):
     assert ("5.10" in text) == ("324.0" in text) == ("another pipeline" in text) == (node_nm == 45)
 
 
-def test_delays():
+def test_delays() -> None:
     text = """(DELAYFILE (CELL (CELLTYPE "top") (INSTANCE) (DELAY (ABSOLUTE (INTERCONNECT a b (0.1)))))
      (CELL (CELLTYPE "DFF") (INSTANCE c1) (DELAY (ABSOLUTE
        (COND S (IOPATH (posedge CK) Q (0.1::0.3) (0.2::0.25))) (IOPATH CK Q (0.4::0.2))))
@@ -229,7 +231,7 @@ def test_delays():
     assert asic.delays(text) == {1: {("CK", "Q"): (0.4, 0.4)}, 20: {("A", "Y"): (0.1, 0.2)}}
 
 
-def needs_tools(*tools):
+def needs_tools(*tools: Any) -> None:
     for tool in tools:
         if shutil.which(tool) is None:
             pytest.skip(f"{tool} is not installed: apt-get install {asic.TOOLS.get(tool, tool)}")
@@ -237,7 +239,7 @@ def needs_tools(*tools):
         pytest.skip(f"{asic.DEFAULT_LIB} is not installed: apt-get install qflow-tech-osu018")
 
 
-def cell_models(netlist):
+def cell_models(netlist: Any) -> Any:
     """Cells as Verilog for Icarus, with paths for an SDF file."""
     lines = ["`timescale 1ns/1ps"]
     for cell in {cell.name: cell for _, _, cell in netlist.gates}.values():
@@ -256,7 +258,9 @@ def cell_models(netlist):
     return "\n".join(lines)
 
 
-def icarus_toggles(folder, netlist, operands, delays, settle_ns, period_ns):
+def icarus_toggles(
+    folder: Any, netlist: Any, operands: Any, delays: Any, settle_ns: Any, period_ns: Any
+) -> dict[Any, Any]:
     """Transitions of each net while the operands go by a second time, and clocks with wrong outputs, by Icarus."""
     names = [
         name for name, (direction, _) in netlist.ports.items() if direction == "input" and name not in ("clk", "en")
@@ -287,14 +291,15 @@ def icarus_toggles(folder, netlist, operands, delays, settle_ns, period_ns):
     subprocess.run(["vvp", "-n", "part.vvp"], cwd=folder, check=True, capture_output=True)
     header, _, changes = (folder / "part.vcd").read_text().partition("$enddefinitions $end")
     codes = {int(net): code for code, net in re.findall(r"\$var wire 1 (\S+) n(\d+) \$end", header)}
-    last, toggles = {}, Counter()
+    last: dict[Any, Any] = {}
+    toggles: Counter[Any] = Counter()
     for value, code in re.findall(r"^([01xz])(\S+)$", changes, re.M):
         toggles[code] += {last.get(code), value} == {"0", "1"}
         last[code] = value
     return {net: toggles[code] for net, code in codes.items()}
 
 
-def as_design(netlist, operands, widths):
+def as_design(netlist: Any, operands: Any, widths: Any) -> tuple[Any, ...]:
     """A dot product behind the ports of the design: operands are its pixels, sums its codes; and the pixels."""
     ports = {name: nets for name, (_, nets) in netlist.ports.items()}
     pixels, place = 0, 0
@@ -302,14 +307,14 @@ def as_design(netlist, operands, widths):
         pixels = pixels + ((operands[name] & (1 << width) - 1) << place)
         place += width
     unused = ("rst", "s_axis_tlast", "s_axis_tuser", "s_axis_tvalid", *gate_sim.ALWAYS_READY[1:])
-    design = {name: ("input", [10**6 + i]) for i, name in enumerate(unused)}
+    design: dict[str, Any] = {name: ("input", [10**6 + i]) for i, name in enumerate(unused)}
     design |= {"s_axis_tready": ("output", ["1"]), "m_axis_tvalid": ("output", design["s_axis_tvalid"][1])}
     design |= {"m_axis_tready": ("input", ports["en"]), "m_axis_tdata": ("output", ports["sum"])}
     design["s_axis_tdata"] = ("input", [bit for name in widths for bit in ports[name]])
     return Netlist("design", design, netlist.instances, netlist.library, netlist.clock), pixels
 
 
-def test_small_core_end_to_end(tmp_path):
+def test_small_core_end_to_end(tmp_path: Any) -> None:
     """Cells that compute products; the same toggles from Icarus without delays, nearly the same with delays."""
     needs_tools("sta", "c++", "iverilog")
     widths = {"AWidth": 6, "BWidth": 5}
@@ -350,7 +355,7 @@ def test_small_core_end_to_end(tmp_path):
     assert total > 1.2 * sum(activity.window[net] for net in outputs)  # glitches
 
 
-def without(text, cell):
+def without(text: str, cell: Any) -> Any:
     return text.replace(f"cell({cell})", f"cell({cell}) {{}} other({cell})")
 
 
@@ -369,7 +374,7 @@ def without(text, cell):
         (without(LIBERTY, "INV"), "holds no inverter"),
     ],
 )
-def test_bad_library(tmp_path, text, message):
+def test_bad_library(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "bad.lib"
     if text is not None:
         path.write_text(text)
@@ -379,7 +384,7 @@ def test_bad_library(tmp_path, text, message):
     assert "\n" not in str(error.value)
 
 
-def test_groups_nest():
+def test_groups_nest() -> None:
     group = groups_of('library("x") { a : "1 2"; b(1, "2,3"); c(d) { e : f; } }')
     assert (group.attributes, group.lists) == ({"a": "1 2"}, {"b": ["1", "2,3"]})
     assert group.groups[0].attributes == {"e": "f"}
@@ -396,7 +401,7 @@ def test_groups_nest():
         (["LIB=two.lib", "NODE_NM=90", "SOLVER=fast"], "SOLVER=fast is unknown"),
     ],
 )
-def test_bad_input(tmp_path, monkeypatch, arguments, message):
+def test_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: Any, message: str) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.lib").write_text(LIBERTY)
     with pytest.raises(InputError) as error:
@@ -404,7 +409,7 @@ def test_bad_input(tmp_path, monkeypatch, arguments, message):
     assert message in str(error.value)
 
 
-def test_missing_tool_is_one_line(tmp_path, monkeypatch):
+def test_missing_tool_is_one_line(tmp_path: Path, monkeypatch: Any) -> None:
     path = tmp_path / "two.lib"
     path.write_text(LIBERTY)
     monkeypatch.setattr(asic.shutil, "which", lambda tool: None)
@@ -413,7 +418,7 @@ def test_missing_tool_is_one_line(tmp_path, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
-def test_exit_status():
+def test_exit_status() -> None:
     result = subprocess.run(
         [sys.executable, "-m", "commands.hardware.asic", "LIB=none.lib", "NODE_NM=90"],
         capture_output=True,

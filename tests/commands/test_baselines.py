@@ -3,6 +3,8 @@
 
 import json
 import time
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,12 +29,12 @@ from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
         ("CLOCK_MHZ=nan", "a number from"),
     ],
 )
-def test_bad_input(given, says):
+def test_bad_input(given: Any, says: str) -> None:
     with pytest.raises(InputError, match=says):
         baselines.parse([given])
 
 
-def test_out_is_a_file(tmp_path):
+def test_out_is_a_file(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="is a file: give a folder"):
         baselines.run(baselines.parse([f"OUT={tmp_path / 'file'}"]))
@@ -40,7 +42,7 @@ def test_out_is_a_file(tmp_path):
 
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("method", [method for method in METHODS if not method.device], ids=lambda method: method.name)
-def test_methods_equal_the_reference(method, threads):
+def test_methods_equal_the_reference(method: Any, threads: Any) -> None:
     if problem := baseline_methods.missing(method):
         pytest.skip(f"{problem}: `make baselines` installs it")
     prepared = method.prepare(32, threads)
@@ -50,11 +52,11 @@ def test_methods_equal_the_reference(method, threads):
         assert baselines.percent_of_peak(depth, want) <= baselines.TOLERANCE_PERCENT
 
 
-def job(runs, seconds=100):
+def job(runs: Any, seconds: float = 100) -> Any:
     return baselines.Job(0, 1, {16: baselines.frames(16)}, runs, time.monotonic() + seconds, 1)
 
 
-def test_a_wrong_result_is_not_timed(monkeypatch):
+def test_a_wrong_result_is_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = Method("wrong", lambda size, threads: Prepared(lambda f: 0.999 * f), ())
     monkeypatch.setattr(baselines, "METHODS", (wrong,))
     (row,) = baselines.measure(job(10))
@@ -65,14 +67,14 @@ def test_a_wrong_result_is_not_timed(monkeypatch):
         baselines.measure_all(baselines.parse(["GRIDS=16"]))
 
 
-def test_a_slow_method_is_cut_short():
+def test_a_slow_method_is_cut_short() -> None:
     (row,) = baselines.measure(job(1000, seconds=0))
     assert len(row["times_us"]) == baselines.FEWEST_RUNS
     (row,) = baselines.measure(job(1000))
     assert len(row["times_us"]) == 1000
 
 
-def test_the_pipeline_beside_them():
+def test_the_pipeline_beside_them() -> None:
     for row in baselines.pipeline((64,), 100.0):
         config = Configuration(columns=64, solver=row["solver"])
         assert row["first_depth"] == last_pixel_to_first_depth(config)
@@ -80,13 +82,13 @@ def test_the_pipeline_beside_them():
         assert row["last_depth_us"] == row["last_depth"] / 100
 
 
-def test_percentiles():
+def test_percentiles() -> None:
     row = baselines.summarise({"times_us": list(range(101))})
     assert row == {"runs": 101, "p1_us": 1, "p50_us": 50, "p99_us": 99, "max_us": 100}
     assert baselines.summarise({"problem": "no device"}) == {"problem": "no device"}
 
 
-def test_a_small_run(tmp_path, monkeypatch):
+def test_a_small_run(tmp_path: Path, monkeypatch: Any) -> None:
     absent = Method("absent", METHODS[0].prepare, ("no-such-package",))
     monkeypatch.setattr(baselines, "METHODS", (METHODS[0], absent))
     monkeypatch.setattr(baselines.os, "sched_getaffinity", lambda process: {0})
@@ -107,7 +109,7 @@ def test_a_small_run(tmp_path, monkeypatch):
     assert "no-such-package not installed" in section
 
 
-def test_the_report_runs_what_has_not_been_run(tmp_path, monkeypatch):
+def test_the_report_runs_what_has_not_been_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(baselines, "DEFAULT_OUT", tmp_path)
     monkeypatch.setattr(baselines, "run", lambda request: (request.out / "baselines.json").write_text('{"runs": 3}'))
     assert report.document_of(baselines, "baselines") == {"runs": 3}

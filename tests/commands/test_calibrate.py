@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,12 +21,12 @@ from tests.ball_presses import CAMERA, PITCH, read, real_folder, table_rows, wri
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return write_folder(tmp_path_factory.mktemp("ball") / "presses")
 
 
 @pytest.fixture
-def folder(made, tmp_path):
+def folder(made: Any, tmp_path: Path) -> Any:
     return Path(shutil.copytree(made, tmp_path / "presses"))
 
 
@@ -36,7 +37,9 @@ def refused(*variables: str) -> str:
     return str(caught.value)
 
 
-def test_the_command_writes_a_calibration_a_picture_and_a_table(made, tmp_path, capsys):
+def test_the_command_writes_a_calibration_a_picture_and_a_table(
+    made: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "new" / "mine.npz"
     assert run(parse([f"PRESSES={made}", f"OUT={out}", "EXPOSURE_US=8000"])) == 0
     report = capsys.readouterr()
@@ -45,7 +48,7 @@ def test_the_command_writes_a_calibration_a_picture_and_a_table(made, tmp_path, 
     np.testing.assert_array_equal(sensor.coefficients, fit.sensor.coefficients)
     np.testing.assert_array_equal(sensor.gradient, fit.sensor.gradient)
     assert sensor.height_errors == fit.sensor.height_errors
-    assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)
+    assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)  # type: ignore[union-attr]
     assert read_picture(out.with_suffix(".png")).shape[1] > 1000
     assert str(fit.evaluation) in report.out
     for words in ("of its bins", "circles found in 24 pictures", "the better model is quadratic"):
@@ -54,7 +57,7 @@ def test_the_command_writes_a_calibration_a_picture_and_a_table(made, tmp_path, 
 
 
 @pytest.mark.parametrize("model", ["lut", "quadratic"])
-def test_one_model_alone_is_written_alone(made, tmp_path, model):
+def test_one_model_alone_is_written_alone(made: Any, tmp_path: Path, model: Any) -> None:
     out = tmp_path / "one.npz"
     assert run(parse([f"PRESSES={made}", f"OUT={out}", f"GRADIENT={model}", "BITS=3"])) == 0
     sensor = load(str(out))
@@ -64,7 +67,9 @@ def test_one_model_alone_is_written_alone(made, tmp_path, model):
         assert sensor.bits_per_channel == 3
 
 
-def test_presses_held_out_in_turn_are_in_the_file(made, tmp_path, capsys):
+def test_presses_held_out_in_turn_are_in_the_file(
+    made: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "each.npz"
     assert run(parse([f"PRESSES={made}", f"OUT={out}", "GRADIENT=quadratic", "HELD_OUT=each"])) == 0
     count = sum(view.is_whole for view in read(made).views)
@@ -72,7 +77,7 @@ def test_presses_held_out_in_turn_are_in_the_file(made, tmp_path, capsys):
     assert "every whole press in turn" in capsys.readouterr().out
 
 
-def test_a_table_of_frames_and_diameters_alone_serves(folder, tmp_path):
+def test_a_table_of_frames_and_diameters_alone_serves(folder: Path, tmp_path: Path) -> None:
     rows = [{**row, "ball_diameter_mm": row["diameter_mm"]} for row in table_rows()]
     write_table(folder, rows, ["frame", "ball_diameter_mm"])
     out = tmp_path / "found.npz"
@@ -80,7 +85,7 @@ def test_a_table_of_frames_and_diameters_alone_serves(folder, tmp_path):
     assert load(str(out)).height_errors["quadratic"].mean == pytest.approx(1, abs=0.06)
 
 
-def test_what_is_left_out_is_printed(folder, tmp_path, capsys):
+def test_what_is_left_out_is_printed(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "03.png").unlink()
     assert run(parse([f"PRESSES={folder}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"])) == 0
     assert re.fullmatch(r"make calibrate: \S+03\.png: no such file.*: left out\n", capsys.readouterr().err)
@@ -101,31 +106,31 @@ def test_what_is_left_out_is_printed(folder, tmp_path, capsys):
         (["OUT=x.txt"], "OUT=x.txt: give the name of an .npz file"),
     ],
 )
-def test_bad_variables_are_named(variables, said):
+def test_bad_variables_are_named(variables: Any, said: Any) -> None:
     with pytest.raises(InputError, match=re.escape(said)):
         parse(variables)
 
 
-def test_a_folder_that_is_missing_says_how_to_get_one(tmp_path, monkeypatch):
+def test_a_folder_that_is_missing_says_how_to_get_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TACTILE_DATA", str(tmp_path))
     assert "rpl-cmu/gelslam" in refused()
 
 
 @pytest.mark.parametrize("out", ["file/mine.npz", "folder.npz"])
-def test_a_result_that_cannot_be_written_is_named_before_the_fit(tmp_path, out):
+def test_a_result_that_cannot_be_written_is_named_before_the_fit(tmp_path: Path, out: Any) -> None:
     (tmp_path / "file").write_text("")
     (tmp_path / "folder.npz").mkdir()
     assert f"OUT={tmp_path / out} cannot be written" in refused(f"PRESSES={tmp_path}", f"OUT={tmp_path / out}")
 
 
-def test_bad_input_ends_with_status_2_and_one_line(tmp_path):
+def test_bad_input_ends_with_status_2_and_one_line(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "commands.run.calibrate", f"PRESSES={tmp_path}", f"OUT={tmp_path}/mine.npz"]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 2
     assert re.fullmatch(r"make calibrate: .*: no presses\.csv in it: .*\n", result.stderr)
 
 
-def test_the_shipped_calibration_is_what_the_command_makes(tmp_path):
+def test_the_shipped_calibration_is_what_the_command_makes(tmp_path: Path) -> None:
     out = tmp_path / "gelsight-mini.npz"
     assert run(parse([f"PRESSES={real_folder()}", f"OUT={out}"])) == 0
     with np.load(out) as made, np.load(FOLDER / "gelsight-mini.npz") as shipped:

@@ -5,6 +5,8 @@ import importlib
 import os
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,7 +16,7 @@ from commands.common.repository import ROOT
 from commands.run import sim
 
 
-def refusal(monkeypatch, capsys, *words):
+def refusal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
     """Run a command that must end with status 2; returns the line that it prints."""
     monkeypatch.setattr("sys.argv", ["commands", *words])
     with pytest.raises(SystemExit) as ended:
@@ -29,13 +31,17 @@ def refusal(monkeypatch, capsys, *words):
 
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("word", ["NO_SUCH=1", "word"])
-def test_every_command_refuses_what_it_does_not_know(monkeypatch, capsys, command, word):
+def test_every_command_refuses_what_it_does_not_know(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: Any, word: Any
+) -> None:
     line = refusal(monkeypatch, capsys, command, word)
     assert line.startswith(f"make {command}: {word}: unknown variable: accepted ")
 
 
 @pytest.mark.parametrize(("words", "given"), [((), "no command"), (("simulate", "N=16"), "simulate")])
-def test_an_unknown_command_is_refused(monkeypatch, capsys, words, given):
+def test_an_unknown_command_is_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: Any, given: Any
+) -> None:
     line = refusal(monkeypatch, capsys, *words)
     assert line == f"python -m commands: {given}: unknown command: accepted are {', '.join(sorted(COMMANDS))}"
 
@@ -60,13 +66,17 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("words", REFUSED)
-def test_a_value_that_is_not_accepted_is_named(monkeypatch, capsys, words):
+def test_a_value_that_is_not_accepted_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: Any
+) -> None:
     command = words.split()[0]
     assert refusal(monkeypatch, capsys, *words.split()) == f"make {command}: {REFUSED[words]}"
 
 
 @pytest.mark.parametrize("command", ["asic", "baselines", "certify", "extremes", "reflex", "report", "sweep", "synth"])
-def test_an_out_that_is_too_long_is_refused(monkeypatch, capsys, tmp_path, command):
+def test_an_out_that_is_too_long_is_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, command: Any
+) -> None:
     module = importlib.import_module(f"commands.{entry.COMMANDS[command]}.{command}")
     if command == "asic":
         monkeypatch.setattr(module, "check_tools", lambda: None)
@@ -78,7 +88,9 @@ def test_an_out_that_is_too_long_is_refused(monkeypatch, capsys, tmp_path, comma
 
 
 @pytest.mark.parametrize(("status", "change"), [(0, 0), (1, 1)])
-def test_a_command_returns_its_own_status(monkeypatch, capsys, tmp_path, status, change):
+def test_a_command_returns_its_own_status(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, status: Any, change: Any
+) -> None:
     model = sim.tactile_depth
     monkeypatch.setattr(sim, "tactile_depth", lambda *words, **named: model(*words, **named) + change)
     monkeypatch.setattr("sys.argv", ["commands", "sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}"])
@@ -87,7 +99,7 @@ def test_a_command_returns_its_own_status(monkeypatch, capsys, tmp_path, status,
     assert ended.value.code == status
 
 
-def test_a_path_that_is_no_text_is_printed_all_the_same(tmp_path):
+def test_a_path_that_is_no_text_is_printed_all_the_same(tmp_path: Path) -> None:
     out = os.fsencode(tmp_path) + b"/\xff"
     result = subprocess.run(
         [sys.executable, "-m", "commands", "sim", "N=16", "SIM=icarus", b"OUT=" + out],
@@ -99,7 +111,7 @@ def test_a_path_that_is_no_text_is_printed_all_the_same(tmp_path):
     assert b"\\udcff" in result.stdout
 
 
-def test_a_reader_of_the_output_that_ends_is_no_traceback(tmp_path):
+def test_a_reader_of_the_output_that_ends_is_no_traceback(tmp_path: Path) -> None:
     command = f"{sys.executable} -m commands sim N=16 SIM=icarus OUT={tmp_path / 'out'}"
     result = subprocess.run(
         ["bash", "-c", f"{command} | true; exit ${{PIPESTATUS[0]}}"],

@@ -3,6 +3,8 @@
 
 import csv
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,7 +27,7 @@ SPECTRAL_IN_REGRESS = ["tridiagonal", pytest.param("spectral", marks=pytest.mark
 
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=lambda extreme: extreme.name.replace(" ", "-"))
-def test_row(extreme, solver):
+def test_row(extreme: Any, solver: str) -> None:
     row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
     if not row.saturations:
@@ -33,7 +35,7 @@ def test_row(extreme, solver):
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_smallest_grid(solver):
+def test_the_smallest_grid(solver: str) -> None:
     extreme = smallest(solver)
     row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
@@ -43,17 +45,17 @@ def test_the_smallest_grid(solver):
 
 @pytest.mark.regress
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_largest_grid(solver):
+def test_the_largest_grid(solver: str) -> None:
     extreme = largest(solver)
     row = measure(extreme, solver, SIZE, "verilator")
     assert faults(extreme, row) == []
     assert row.grid == {"spectral": "512x512", "tridiagonal": "1024x1024"}[solver]
-    assert row.rms_percent < 0.1
+    assert row.rms_percent < 0.1  # type: ignore[operator]
 
 
 @pytest.mark.regress
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_frames_back_to_back_do_not_drift(solver):
+def test_frames_back_to_back_do_not_drift(solver: str) -> None:
     extreme = drift(32)
     row = measure(extreme, solver, SIZE, "icarus")
     assert faults(extreme, row) == []
@@ -61,7 +63,7 @@ def test_frames_back_to_back_do_not_drift(solver):
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_frames_on_the_model_do_not_drift(solver):
+def test_frames_on_the_model_do_not_drift(solver: str) -> None:
     row = model_drift(solver, SIZE, extremes.SHORT_MODEL)
     assert row.bit_exact
     assert not row.saturations
@@ -69,7 +71,7 @@ def test_frames_on_the_model_do_not_drift(solver):
 
 
 @pytest.mark.parametrize("data_width", [24, 32])
-def test_transforms_comply(data_width):
+def test_transforms_comply(data_width: int) -> None:
     """Bars near what is measured: small noise has the error of its roundings alone, whatever the width."""
     rows = compliance(Configuration(columns=SIZE, data_width=data_width), 640)
     assert {row.core for row in rows} == {"dst_forward", "dst_inverse", "2-D forward", "2-D inverse"}
@@ -85,11 +87,11 @@ def test_transforms_comply(data_width):
             assert row.peak <= {"dst_forward": 1, "dst_inverse": 2, "2-D forward": 4, "2-D inverse": 15}[row.core]
 
 
-def test_lone_modes_fill_the_range_that_noise_leaves_empty():
+def test_lone_modes_fill_the_range_that_noise_leaves_empty() -> None:
     """A lone mode of the depth range reaches full scale; noise that fits beside it stays far below."""
     config = Configuration(columns=SIZE)
     core = transforms(config)["2-D inverse"][0]
-    largest_word = {}
+    largest_word: dict[Any, Any] = {}
     for name, _, blocks in transform_noise._blocks("2-D inverse", SIZE, 2, config, 20):
         monitor = Monitor()
         largest_word[name] = max(largest_word.get(name, 0), int(np.abs(core(blocks, monitor)).max()))
@@ -99,11 +101,11 @@ def test_lone_modes_fill_the_range_that_noise_leaves_empty():
     assert largest_word["noise +"] < 0.5 * limit
 
 
-def extremes_headroom(config):
+def extremes_headroom(config: Any) -> Any:
     return config.depth_limit_px / config.depth_range_px
 
 
-def test_a_row_that_is_not_as_it_must_be_is_named():
+def test_a_row_that_is_not_as_it_must_be_is_named() -> None:
     extreme = EXTREMES[0]
     row = measure(extreme, "tridiagonal", SIZE, "icarus")
     broken = type(row)(**{**vars(row), "bit_exact": False, "told": True, "wrapped": 3, "registers_agree": False})
@@ -113,7 +115,7 @@ def test_a_row_that_is_not_as_it_must_be_is_named():
     assert "3 codes wrapped around" in found[-1]
 
 
-def test_the_files_it_leaves(tmp_path):
+def test_the_files_it_leaves(tmp_path: Path) -> None:
     row = model_drift("spectral", SIZE, 16)
     measured = compliance(Configuration(columns=SIZE), 32)
     extremes.write(tmp_path, [row], measured)
@@ -127,7 +129,9 @@ def test_the_files_it_leaves(tmp_path):
     ("given", "named"),
     [("N=100", "N=100"), ("SIM=other", "SIM=other"), ("SHORT=2", "SHORT=2"), ("FRAMES=a", "FRAMES=a")],
 )
-def test_bad_input(monkeypatch, capsys, tmp_path, given, named):
+def test_bad_input(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, given: Any, named: str
+) -> None:
     monkeypatch.setattr("sys.argv", ["extremes", given, f"OUT={tmp_path / 'out'}"])
     with pytest.raises(SystemExit) as stop:
         extremes.main()

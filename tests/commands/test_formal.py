@@ -2,6 +2,8 @@
 """make formal: every core is proven or says why not, two quick proofs hold, and a wrong core is found out."""
 
 import re
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,30 +14,33 @@ QUICK = ("axis_skid", "burst_counter")
 CORES = list(cores())
 
 
-def proof(core):
+def proof(core: str) -> Any:
     return next(proof for proof in proofs.PROOFS if proof.core == core)
 
 
+ENTRIES: tuple[Any, ...] = (*proofs.PROOFS, *proofs.STRUCTURES)
+
+
 @pytest.mark.parametrize("core", CORES)
-def test_every_core_is_proven_or_says_why_not(core):
-    proven = any(core == entry.core for entry in (*proofs.PROOFS, *proofs.STRUCTURES))
+def test_every_core_is_proven_or_says_why_not(core: Any) -> None:
+    proven = any(core == entry.core for entry in ENTRIES)
     assert proven != (core in proofs.WITHOUT_CONTROL), f"{core}: a bench in formal/ or a reason in WITHOUT_CONTROL"
 
 
-def test_names_are_those_of_cores_and_benches():
-    assert {entry.core for entry in (*proofs.PROOFS, *proofs.STRUCTURES)} | set(proofs.WITHOUT_CONTROL) == set(CORES)
+def test_names_are_those_of_cores_and_benches() -> None:
+    assert {entry.core for entry in ENTRIES} | set(proofs.WITHOUT_CONTROL) == set(CORES)
     benches = {f"fv_{entry.core}" for entry in proofs.PROOFS} | set(formal.HELPERS)
     assert {path.stem for path in formal.BENCHES.rglob("*.sv")} == benches
-    names = [entry.name for entry in (*proofs.PROOFS, *proofs.STRUCTURES)]
+    names = [entry.name for entry in ENTRIES]
     assert len(set(names)) == len(names)
 
 
-def test_document_is_up_to_date():
+def test_document_is_up_to_date() -> None:
     assert formal.DOCUMENT.read_text() == formal.document(), "run python -m commands.verify.formal --document"
 
 
 @pytest.mark.parametrize("path", sorted(formal.BENCHES.rglob("fv_*.sv")), ids=lambda path: path.stem)
-def test_every_bench_asserts_and_covers(path):
+def test_every_bench_asserts_and_covers(path: Path) -> None:
     text = path.read_text()
     assert re.search(r"\bassert \(", text)
     assert re.search(r"\bcover \(", text)
@@ -43,11 +48,11 @@ def test_every_bench_asserts_and_covers(path):
 
 @pytest.mark.parametrize("core", QUICK)
 @pytest.mark.parametrize("mode", formal.MODES)
-def test_holds(core, mode):
+def test_holds(core: str, mode: Any) -> None:
     assert formal.run(proof(core), mode).status == "PASS"
 
 
-def test_a_wrong_core_is_found_out(monkeypatch, tmp_path):
+def test_a_wrong_core_is_found_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     wrong = tmp_path / "axis_skid.sv"
     text = cores()["axis_skid"].hdl.read_text()
     assert "m_data <= s_ready ? s_data : waiting;" in text

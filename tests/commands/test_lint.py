@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """make lint: each tool sees the defects that it is there for, and a sound module passes all of them."""
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from commands.common import repository, simulator
@@ -76,7 +79,7 @@ DEFECTS = {
 }
 
 
-def said(tool: str, folder, body: str) -> str:
+def said(tool: str, folder: Path, body: str) -> str:
     """What a tool says of a module."""
     files = [folder / "seeded.sv"]
     files[0].write_text(HEADER + body + ("" if "endmodule" in body else "\nendmodule\n"))
@@ -96,27 +99,27 @@ TOOLS = ("verilator", "icarus", "slang", "verible", "yosys")
 
 
 @pytest.fixture(autouse=True)
-def tools():
+def tools() -> None:
     simulator.check("verilator")
     simulator.check("icarus")
 
 
 @pytest.mark.parametrize("tool", TOOLS)
-def test_a_sound_module_passes(tmp_path, tool):
+def test_a_sound_module_passes(tmp_path: Path, tool: Any) -> None:
     assert not said(tool, tmp_path, SOUND)
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
-def test_a_seeded_defect_is_seen(tmp_path, defect):
+def test_a_seeded_defect_is_seen(tmp_path: Path, defect: Any) -> None:
     body, tools = DEFECTS[defect]
     assert tools == {tool for tool in sorted(tools) if said(tool, tmp_path, body)}
 
 
-def test_every_tool_sees_some_defect():
+def test_every_tool_sees_some_defect() -> None:
     assert set().union(*(tools for _, tools in DEFECTS.values())) == set(TOOLS)
 
 
-def test_every_tool_looks_at_every_core_and_at_the_whole():
+def test_every_tool_looks_at_every_core_and_at_the_whole() -> None:
     cores = set(repository.cores())
     whole = {structure.name for structure in lint.structures()}
     seen = {tool: {check.name for check in lint.checks() if check.tool == tool} for tool in TOOLS}
@@ -127,18 +130,18 @@ def test_every_tool_looks_at_every_core_and_at_the_whole():
         assert "cores" in seen[tool]
     assert whole <= seen["slang"]
     assert len(seen["yosys"] & whole) == 5  # both solvers, both boundaries, and the quadratic model
-    assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in seen["yosys"]} == {
+    assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in seen["yosys"]} == {  # type: ignore[union-attr]
         (solver, neumann) for solver in ("spectral", "tridiagonal") for neumann in (False, True)
     }
 
 
-def test_no_waiver_of_slang_is_idle():
+def test_no_waiver_of_slang_is_idle() -> None:
     files = repository.sources()
     waived = {waiver(finding) for finding in findings(lint.modules(files), files)}
     assert set(WAIVERS) <= waived
 
 
-def test_a_failing_check_fails_the_gate(monkeypatch, capsys):
+def test_a_failing_check_fails_the_gate(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     found = [lint.Check("tool", "good", lambda: ""), lint.Check("tool", "bad", lambda: "a finding")]
     monkeypatch.setattr(lint, "checks", lambda: found)
     monkeypatch.setattr("sys.argv", ["lint"])
@@ -148,5 +151,5 @@ def test_a_failing_check_fails_the_gate(monkeypatch, capsys):
     assert "a finding" in capsys.readouterr().out
 
 
-def test_a_core_is_checked_alone():
+def test_a_core_is_checked_alone() -> None:
     assert {check.name for check in lint.core_checks(["transpose"])} == {"transpose", "cores", "rules", "columns"}

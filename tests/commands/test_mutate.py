@@ -3,6 +3,8 @@
 
 import itertools
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,21 +17,21 @@ SMALL = "burst_counter"
 
 
 @pytest.fixture
-def outcome(monkeypatch, tmp_path):
+def outcome(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
     """Of a few mutants of the small core, with some of its tests."""
 
-    def run(**changes):
+    def run(**changes: Any) -> Any:
         monkeypatch.setattr(mutate, "OUT", tmp_path)
         return mutate.mutate(SMALL, replace(mutate.CORES[SMALL], **changes), count=40, seed=1, jobs=1, seconds=5)
 
     return run
 
 
-def test_every_core_is_listed():
+def test_every_core_is_listed() -> None:
     assert {path.stem for path in repository.sources()} == mutate.CORES.keys() | mutate.LEFT_OUT.keys()
 
 
-def test_mutants_are_killed_or_proven_equivalent(outcome):
+def test_mutants_are_killed_or_proven_equivalent(outcome: Any) -> None:
     seen = outcome()
     assert seen.mutants == 40
     assert seen.killed + seen.equivalent == 40
@@ -37,7 +39,7 @@ def test_mutants_are_killed_or_proven_equivalent(outcome):
     assert seen.passed
 
 
-def test_holes_are_seen(outcome, monkeypatch):
+def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a reset in mid-burst nobody sees a counter that is not reset; without pauses, none that does not wait."""
     monkeypatch.setattr(mutate, "CORE_BAR", 99.0)  # of 40 mutants one is a hole
     seen = outcome(tests="positions/pause=0.0/before=0$")
@@ -46,7 +48,7 @@ def test_holes_are_seen(outcome, monkeypatch):
     assert {survivor["verdict"] for survivor in seen.survivors} <= {"equivalent", "different"}
 
 
-def contrary(mutant):
+def contrary(mutant: Any) -> Any:
     """The graph of two registers that take a word and its inverse, and of a third that says so; all of them for `en`.
 
     The output is the first, looked at while the third is high. Mutants invert it: "equal", where both are the same,
@@ -56,7 +58,7 @@ def contrary(mutant):
     en, rst, x, selector, word, inverse, valid, *idle = range(2, 2 * 12, 2)  # literals of inputs and registers
     gates = Gates(12)
 
-    def choose(condition, one, other):
+    def choose(condition: Any, one: Any, other: Any) -> Any:
         return gates.either((gates.both(condition, one), gates.both(condition ^ 1, other)))
 
     following = {
@@ -80,7 +82,7 @@ def contrary(mutant):
     return Graph(inputs, latches, outputs, ands)
 
 
-def turning(every):
+def turning(every: Any) -> Any:
     """A register that takes its inverse in every clock in the mutant, and a count; it is looked at in every second
     clock since the last reset, or in all of them. Beside it a word, which the mutant has as well."""
     rst, x, selector, toggle, word, even = range(2, 2 * 7, 2)
@@ -109,5 +111,5 @@ def turning(every):
         (turning(every=True), False),
     ],
 )
-def test_a_difference_confined_to_a_few_registers(tmp_path, graph, proven):
+def test_a_difference_confined_to_a_few_registers(tmp_path: Path, graph: Any, proven: Any) -> None:
     assert confined(graph, 1, tmp_path, 5) == proven

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make netlists` on two small cores: their netlists pass their own testbenches, and a wrong one does not."""
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from commands.verify import netlists
 
 
 @pytest.mark.parametrize(("core", "dsps"), [("burst_counter", 0), ("twiddle_multiply", 4)])
-def test_a_netlist_is_as_the_rtl(tmp_path, monkeypatch, core, dsps):
+def test_a_netlist_is_as_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, core: str, dsps: Any) -> None:
     monkeypatch.setattr(netlists, "OUT", tmp_path)
     (case,) = netlists.cases([core])
     result = netlists.run(case, seed=1)
@@ -16,11 +19,11 @@ def test_a_netlist_is_as_the_rtl(tmp_path, monkeypatch, core, dsps):
     assert result.cells.get("DSP48E1", 0) == dsps
 
 
-def test_a_wrong_netlist_is_seen(tmp_path, monkeypatch):
+def test_a_wrong_netlist_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(netlists, "OUT", tmp_path)
     synthesis = netlists.netlist
 
-    def stuck(case, folder):
+    def stuck(case: Any, folder: Path) -> Any:
         """Every constant one is a zero."""
         cells = synthesis(case, folder)
         file = folder / "netlist.v"

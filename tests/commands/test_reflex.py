@@ -3,6 +3,8 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,27 +38,27 @@ TRIALS = 20_000
         ("VIDEO=missing/trial.gif", "folder is missing"),
     ],
 )
-def test_bad_input(given, says):
+def test_bad_input(given: Any, says: str) -> None:
     with pytest.raises(InputError, match=says):
         reflex.parse([given])
 
 
-def test_an_unknown_simulator(tmp_path):
+def test_an_unknown_simulator(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="SIM=vcs is unknown"):
         reflex.run(reflex.parse(["SIM=vcs", f"OUT={tmp_path}"]))
 
 
-def test_out_is_a_file(tmp_path):
+def test_out_is_a_file(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="is a file: give a folder"):
         reflex.run(reflex.parse([*SMALL, f"OUT={tmp_path / 'file'}"]))
 
 
-def setup(**changes):
+def setup(**changes: Any) -> Any:
     return replace(reflex_model.Setup(speed=20, threshold=0.1, frame=2.5, exposure=0.5, read_out=0.9), **changes)
 
 
-def test_draws_are_those_of_the_seed():
+def test_draws_are_those_of_the_seed() -> None:
     first, again, other = (reflex_model.draw(5, seed, "near") for seed in (1, 1, 2))
     for name in ("phase", "waiting", "servo", "noise"):
         np.testing.assert_array_equal(getattr(first, name), getattr(again, name))
@@ -64,7 +66,7 @@ def test_draws_are_those_of_the_seed():
     assert (first.phase != reflex_model.draw(5, 1, "host").phase).any()
 
 
-def test_delays_are_distributed_as_stated():
+def test_delays_are_distributed_as_stated() -> None:
     """Mean and standard deviation within five standard errors."""
     draws = reflex_model.draw(TRIALS, 3, "host")
     error = 5 / np.sqrt(TRIALS)
@@ -80,7 +82,7 @@ def test_delays_are_distributed_as_stated():
     assert servo.std() == pytest.approx(reflex_model.SERVO_SPREAD_MS, abs=error * reflex_model.SERVO_SPREAD_MS)
 
 
-def test_a_trial_by_hand():
+def test_a_trial_by_hand() -> None:
     draws = reflex_model.Draws(np.array([0.4]), np.array([2]), np.array([1.0]), np.array([0]))
     one = setup(transfer=3)
     assert one.exposed(0.4, 2) == pytest.approx(6.0)
@@ -93,14 +95,14 @@ def test_a_trial_by_hand():
     assert sum(part[0] for part in found.parts.values()) == pytest.approx(found.motion[0])
 
 
-def test_rank_sum():
+def test_rank_sum() -> None:
     near, host = np.arange(50.0), 60 + np.arange(81.0)
     assert reflex_model.rank_sum(near, host)["U"] == 0
     assert reflex_model.rank_sum(near, host)["p"] < 1e-20
     assert reflex_model.rank_sum(np.array([1.0, 4.0]), np.array([2.0, 3.0]))["U"] == 2  # 4 beats both
 
 
-def test_published_spread():
+def test_published_spread() -> None:
     mean, spread = published.REFLEX["near"]["motion"]
     assert reflex_model.within_published({"mean": mean - 0.99 * spread, "sd": spread})
     assert not reflex_model.within_published({"mean": mean + 1.01 * spread, "sd": 1})
@@ -117,7 +119,7 @@ def test_published_spread():
         ("d 41 b 45 c 46", "first depth 31 clocks after the last pixel, not 30"),
     ],
 )
-def test_pins_that_are_wrong(monkeypatch, events, says):
+def test_pins_that_are_wrong(monkeypatch: pytest.MonkeyPatch, events: Any, says: str) -> None:
     monkeypatch.setattr(reflex, "last_pixel_to_first_depth", lambda config: 30)
     words = f"t 1 t 10 {events}".split()
     played = bench.Played(
@@ -128,24 +130,26 @@ def test_pins_that_are_wrong(monkeypatch, events, says):
     assert any(says in fault for fault in faults), faults
 
 
-def test_pins_that_are_right(monkeypatch):
+def test_pins_that_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reflex, "last_pixel_to_first_depth", lambda config: 30)
-    events = [("t", (1,)), ("t", (10,)), ("d", (40,)), ("b", (45,)), ("c", (46,))]
+    events: Any = [("t", (1,)), ("t", (10,)), ("d", (40,)), ("b", (45,)), ("c", (46,))]
     found, faults = reflex.decisions(
-        bench.Played(np.zeros(0), events, {}), [reflex.Sent(0, 2, True)], Configuration(columns=16)
+        bench.Played(np.zeros(0), events, {}),
+        [reflex.Sent(0, 2, True)],
+        Configuration(columns=16),
     )
     assert faults == []
     assert found == [reflex.Decision(2, 45, 36, 30, 5, 1)]
 
 
-def test_the_loop_on_the_rtl(tmp_path, monkeypatch):
+def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole command, small: the command time is the pin's clock, and the clocks do not know the camera's pace."""
     monkeypatch.setattr(reflex_pictures, "STEP_MS", 1.0)
     out, film = tmp_path / "out", tmp_path / "trial.gif"
     reflex.run(reflex.parse([*SMALL, "HOST_TRIALS=3", f"OUT={out}", f"VIDEO={film}"]))
     assert sorted(path.name for path in out.iterdir()) == ["reflex.json", "reflex.png"]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "trial.gif"]
-    assert Image.open(film).n_frames > 10
+    assert Image.open(film).n_frames > 10  # type: ignore[attr-defined]
     document = json.loads((out / "reflex.json").read_text())
 
     request = reflex.parse([*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])

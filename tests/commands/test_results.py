@@ -5,10 +5,12 @@ import errno
 import json
 import os
 import subprocess
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from skimage import io
+from skimage import io  # type: ignore[attr-defined]
 
 from commands.common import results, variables
 from commands.run import bench, sim
@@ -19,7 +21,7 @@ SMALL = ["N=16", "SIM=icarus"]
 NAMES = ["depth.npy", "depth.png", "report.json"]
 
 
-def run(monkeypatch, capsys, *words):
+def run(monkeypatch: Any, capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
     """Run `make sim` as the command line does; returns its exit status, its output and the lines on stderr."""
     monkeypatch.setattr("sys.argv", ["sim", *words])
     with pytest.raises(SystemExit) as ended:
@@ -28,15 +30,15 @@ def run(monkeypatch, capsys, *words):
     return ended.value.code, output.out, output.err.splitlines()
 
 
-def content(folder):
+def content(folder: Path) -> dict[Any, Any]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def alter(monkeypatch, change):
+def alter(monkeypatch: pytest.MonkeyPatch, change: Any) -> None:
     """Have the simulation return codes that `change` has altered in place."""
     play = bench.play
 
-    def altered(*arguments, **options):
+    def altered(*arguments: Any, **options: Any) -> Any:
         played = play(*arguments, **options)
         change(played.codes)
         return played
@@ -48,10 +50,12 @@ def alter(monkeypatch, change):
 
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
-def test_differing_codes_are_counted_and_the_first_is_named(tmp_path, monkeypatch, capsys, solver):
+def test_differing_codes_are_counted_and_the_first_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], solver: str
+) -> None:
     left = {"spectral": 12, "tridiagonal": 15 - 12}[solver]  # the row as it leaves; the tridiagonal solver begins below
 
-    def change(codes):
+    def change(codes: np.ndarray) -> None:
         frames = codes.reshape(6, 16, 16)  # two frames, three times
         frames[3, left, 5] += 7
         frames[4, :] -= 1
@@ -79,7 +83,9 @@ def test_differing_codes_are_counted_and_the_first_is_named(tmp_path, monkeypatc
     assert not report["bit_exact"]
 
 
-def test_equal_codes_are_counted(tmp_path, monkeypatch, capsys):
+def test_equal_codes_are_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     status, output, _ = run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'out'}")
     assert status == 0
     assert "RTL equals the model on every code: 256 codes in 1 frames\n" in output
@@ -88,7 +94,7 @@ def test_equal_codes_are_counted(tmp_path, monkeypatch, capsys):
     assert report["warnings"] == []
 
 
-def test_the_first_differing_code_is_the_first_in_depth_npy():
+def test_the_first_differing_code_is_the_first_in_depth_npy() -> None:
     expected = np.arange(24).reshape(2, 3, 4)
     codes = np.stack([expected, expected])
     codes[1, 0, 2, 1] = -1
@@ -99,17 +105,19 @@ def test_the_first_differing_code_is_the_first_in_depth_npy():
     )
 
 
-def red(picture):
+def red(picture: np.ndarray) -> Any:
     return np.count_nonzero((picture[..., 0] > 240) & (picture[..., 1:3] < 20).all(axis=-1))
 
 
-def test_the_picture_marks_differing_codes_in_any_frame(tmp_path, monkeypatch, capsys):
+def test_the_picture_marks_differing_codes_in_any_frame(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     np.save(tmp_path / "grey.npy", np.full((8, 16, 16, 3), 128, np.uint8))
     words = [*SMALL, f"FRAMES={tmp_path / 'grey.npy'}", "CALIBRATION=synthetic", f"OUT={tmp_path / 'out'}"]
     run(monkeypatch, capsys, *words)
     assert red(io.imread(tmp_path / "out" / "depth.png")) == 0
 
-    def change(codes):
+    def change(codes: np.ndarray) -> None:
         codes.reshape(8, 16, 16)[7, 3, 3] += 1  # beyond the frames that are drawn otherwise
 
     alter(monkeypatch, change)
@@ -120,7 +128,9 @@ def test_the_picture_marks_differing_codes_in_any_frame(tmp_path, monkeypatch, c
 # Warnings.
 
 
-def test_a_large_error_gives_a_warning(tmp_path, monkeypatch, capsys):
+def test_a_large_error_gives_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     words = [*SMALL, "DATA_WIDTH=12", "FRAMES=contacts", "DEPTH_RANGE=100", f"OUT={tmp_path / 'out'}"]
     status, _, lines = run(monkeypatch, capsys, *words)
     report = json.loads((tmp_path / "out" / "report.json").read_text())
@@ -139,7 +149,7 @@ def test_a_large_error_gives_a_warning(tmp_path, monkeypatch, capsys):
         ((24, 18), 7.84, {}, "give a larger DATA_WIDTH or COEFF_WIDTH"),
     ],
 )
-def test_a_warning_names_what_reduces_the_error(widths, error, clips, line):
+def test_a_warning_names_what_reduces_the_error(widths: Any, error: Any, clips: Any, line: Any) -> None:
     config = Configuration(columns=16, data_width=widths[0], coefficient_width=widths[1])
     assert warnings(config, [error, None], clips) == [f"the mean RMS error is {error:.2f} % of peak, above 1 %: {line}"]
     assert warnings(config, [1.0, None], clips) == []
@@ -149,22 +159,22 @@ def test_a_warning_names_what_reduces_the_error(widths, error, clips, line):
 # OUT that cannot be used: exit status 2, one line, nothing written.
 
 
-def _link(tmp_path):
+def _link(tmp_path: Path) -> Any:
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
     return tmp_path / "link"
 
 
-def _file(tmp_path):
+def _file(tmp_path: Path) -> Any:
     (tmp_path / "file").touch()
     return tmp_path / "file"
 
 
-def _holding_a_folder(tmp_path):
+def _holding_a_folder(tmp_path: Path) -> Any:
     (tmp_path / "out" / "depth.png").mkdir(parents=True)
     return tmp_path / "out"
 
 
-BAD_OUT = {
+BAD_OUT: dict[str, Any] = {
     "300 characters": (lambda t: t / ("x" * 300), "File name too long"),
     "5,000 characters": (lambda t: t.joinpath(*["y" * 200] * 25), "File name too long"),
     "a dangling link": (_link, "is a link to"),
@@ -176,7 +186,9 @@ BAD_OUT = {
 
 
 @pytest.mark.parametrize("case", BAD_OUT)
-def test_an_out_that_cannot_be_used_is_refused(tmp_path, monkeypatch, capsys, case):
+def test_an_out_that_cannot_be_used_is_refused(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
+) -> None:
     place, reason = BAD_OUT[case]
     out = place(tmp_path)
     before = sorted(tmp_path.rglob("*"))
@@ -190,7 +202,9 @@ def test_an_out_that_cannot_be_used_is_refused(tmp_path, monkeypatch, capsys, ca
 
 @pytest.mark.parametrize("text", ["a\0b", "\ud800"], ids=["NUL", "half a character"])
 @pytest.mark.parametrize("name", ["OUT", "FRAMES", "REFERENCE", "CALIBRATION", "FLOOR", "SOLVER", "AT"])
-def test_a_configuration_file_with_a_character_that_no_path_holds_is_refused(tmp_path, monkeypatch, capsys, name, text):
+def test_a_configuration_file_with_a_character_that_no_path_holds_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, text: str
+) -> None:
     (tmp_path / "c.json").write_text(json.dumps({name: text}))
     status, _, lines = run(monkeypatch, capsys, *SMALL, f"CONFIG={tmp_path / 'c.json'}")
     assert status == 2
@@ -199,7 +213,7 @@ def test_a_configuration_file_with_a_character_that_no_path_holds_is_refused(tmp
 
 
 @pytest.mark.parametrize("word", ["AT=0,nan", "AT=nan,0", "AT=inf,0", "AT=0,-inf"])
-def test_a_position_is_finite(monkeypatch, capsys, word):
+def test_a_position_is_finite(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], word: Any) -> None:
     status, _, lines = run(monkeypatch, capsys, *SMALL, word)
     assert status == 2
     assert lines == [f"make sim: {word}: accepted is x,y in mm from the middle of the frame, as 2.5,-1"]
@@ -210,7 +224,9 @@ NUMBERS = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "PRE
 
 @pytest.mark.parametrize("name", [*NUMBERS, "STALLS", "WAVES"])
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e999"])
-def test_every_number_is_finite(monkeypatch, capsys, name, value):
+def test_every_number_is_finite(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, value: Any
+) -> None:
     status, _, lines = run(monkeypatch, capsys, *SMALL, f"{name}={value}")
     assert status == 2
     assert len(lines) == 1
@@ -221,7 +237,7 @@ def test_every_number_is_finite(monkeypatch, capsys, name, value):
 
 
 @pytest.fixture
-def earlier(tmp_path, monkeypatch, capsys):
+def earlier(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Any:
     """A folder with results of a run, and a file of somebody else."""
     out = tmp_path / "out"
     assert run(monkeypatch, capsys, *SMALL, f"OUT={out}")[0] == 0
@@ -234,11 +250,13 @@ NO_SPACE = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "depth.npy")
 
 
 @pytest.mark.parametrize("failing", range(6))  # three moves aside, three moves in
-def test_a_move_that_fails_brings_earlier_results_back(tmp_path, monkeypatch, capsys, earlier, failing):
+def test_a_move_that_fails_brings_earlier_results_back(
+    tmp_path: Path, monkeypatch: Any, capsys: pytest.CaptureFixture[str], earlier: Any, failing: Any
+) -> None:
     before = content(earlier)
     replace, moves = os.replace, []
 
-    def full(source, target):
+    def full(source: Any, target: str) -> None:
         moves.append(target)
         if len(moves) == failing + 1:
             raise NO_SPACE
@@ -252,11 +270,13 @@ def test_a_move_that_fails_brings_earlier_results_back(tmp_path, monkeypatch, ca
 
 
 @pytest.mark.parametrize("fresh", [True, False], ids=["no results before", "results before"])
-def test_a_write_that_fails_leaves_nothing_new(tmp_path, monkeypatch, capsys, earlier, fresh):
+def test_a_write_that_fails_leaves_nothing_new(
+    tmp_path: Path, monkeypatch: Any, capsys: pytest.CaptureFixture[str], earlier: Any, fresh: Any
+) -> None:
     out = tmp_path / "missing" / "new" if fresh else earlier
     before = sorted(tmp_path.rglob("*")), content(earlier)
 
-    def full(*_):
+    def full(*_: Any) -> None:
         raise OSError("4096 requested and 0 written")  # numpy's words for a full disk
 
     monkeypatch.setattr(sim.np, "save", full)
@@ -266,10 +286,12 @@ def test_a_write_that_fails_leaves_nothing_new(tmp_path, monkeypatch, capsys, ea
     assert (sorted(tmp_path.rglob("*")), content(earlier)) == before
 
 
-def test_a_full_disk_ends_with_one_line(tmp_path, monkeypatch, capsys):
+def test_a_full_disk_ends_with_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     disk = tmp_path / "disk"
     disk.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk]
+    mount: list[Any] = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk]
     if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("a file system of 64 KiB cannot be mounted here")
     try:
@@ -281,10 +303,12 @@ def test_a_full_disk_ends_with_one_line(tmp_path, monkeypatch, capsys):
         subprocess.run(["umount", disk], check=True)
 
 
-def test_results_can_be_the_root_of_a_file_system(tmp_path, monkeypatch, capsys):
+def test_results_can_be_the_root_of_a_file_system(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     disk = tmp_path / "disk"
     disk.mkdir()
-    mount = ["mount", "-t", "tmpfs", "tmpfs", disk]
+    mount: list[Any] = ["mount", "-t", "tmpfs", "tmpfs", disk]
     if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("a file system cannot be mounted here")
     try:
@@ -294,14 +318,18 @@ def test_results_can_be_the_root_of_a_file_system(tmp_path, monkeypatch, capsys)
         subprocess.run(["umount", disk], check=True)
 
 
-def test_a_link_to_a_folder_is_followed(tmp_path, monkeypatch, capsys):
+def test_a_link_to_a_folder_is_followed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "real").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "real")
     assert run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'link'}")[0] == 0
     assert sorted(content(tmp_path / "real")) == NAMES
 
 
-def test_waveforms_of_an_earlier_run_go_and_other_files_stay(monkeypatch, capsys, earlier):
+def test_waveforms_of_an_earlier_run_go_and_other_files_stay(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], earlier: Any
+) -> None:
     others = ["mine.vcd", "notes.txt"]
     assert run(monkeypatch, capsys, *SMALL, "WAVES=1", f"OUT={earlier}")[0] == 0
     assert sorted(content(earlier)) == sorted([*NAMES, *others, "frame_bench.fst"])
@@ -313,7 +341,9 @@ def test_waveforms_of_an_earlier_run_go_and_other_files_stay(monkeypatch, capsys
 @pytest.mark.parametrize(
     "report", ['{"waves": ["../outside.vcd", "notes.txt", 3]}', "[]", "no JSON", '{"waves": "mine.vcd"}', "{}"]
 )
-def test_a_report_of_something_else_removes_nothing(tmp_path, monkeypatch, capsys, earlier, report):
+def test_a_report_of_something_else_removes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], earlier: Any, report: Any
+) -> None:
     (tmp_path / "outside.vcd").touch()
     (earlier / "report.json").write_text(report)
     assert run(monkeypatch, capsys, *SMALL, f"OUT={earlier}")[0] == 0
@@ -321,8 +351,10 @@ def test_a_report_of_something_else_removes_nothing(tmp_path, monkeypatch, capsy
     assert (tmp_path / "outside.vcd").exists()
 
 
-def test_a_simulation_that_fails_has_status_3(tmp_path, monkeypatch, capsys):
-    def crash(*_, **__):
+def test_a_simulation_that_fails_has_status_3(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def crash(*_: Any, **__: Any) -> None:
         raise RuntimeError("the simulation failed: see simulation.log")
 
     monkeypatch.setattr(bench, "play", crash)

@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,10 +23,10 @@ LONG = ["N=64", "SIM=icarus", "REPEAT=1000"]  # minutes
 WAIT_S = 60
 
 
-def started(command, folder):
+def started(command: Any, folder: Path) -> Any:
     """Start a command in a session of its own, with signals as a terminal leaves them."""
 
-    def defaults():
+    def defaults() -> None:
         for number in ENDS:
             signal.signal(number, signal.SIG_DFL)
 
@@ -43,7 +44,7 @@ def started(command, folder):
     )
 
 
-def members(session):
+def members(session: Any) -> Any:
     """Command lines of the living processes of a session."""
     found = {}
     for entry in Path("/proc").glob("[0-9]*"):
@@ -54,17 +55,17 @@ def members(session):
     return found
 
 
-def wait_for(condition, what):
+def wait_for(condition: Any, what: Any) -> None:
     deadline = time.monotonic() + WAIT_S
     while not condition():
         assert time.monotonic() < deadline, f"{what} did not come within {WAIT_S} s"
         time.sleep(0.05)
 
 
-def wait_for_the_simulator(process):
+def wait_for_the_simulator(process: Any) -> None:
     """Wait until vvp runs; fail with what the command wrote if it ends before."""
 
-    def running():
+    def running() -> Any:
         assert process.poll() is None, process.stderr.read()
         return any("vvp" in line for line in members(process.pid).values())
 
@@ -72,7 +73,7 @@ def wait_for_the_simulator(process):
 
 
 @pytest.mark.parametrize("number", ENDS, ids=lambda number: number.name)
-def test_a_signal_ends_the_command(tmp_path, number):
+def test_a_signal_ends_the_command(tmp_path: Path, number: Any) -> None:
     process = started([sys.executable, "-m", "commands", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], ROOT)
     wait_for_the_simulator(process)
     os.kill(process.pid, number)
@@ -84,7 +85,7 @@ def test_a_signal_ends_the_command(tmp_path, number):
 
 
 @pytest.fixture
-def makefile(tmp_path):
+def makefile(tmp_path: Path) -> Any:
     """A folder with the Makefile, whose virtual environment is complete and runs the Python of this test."""
     folder = tmp_path / "place"
     python = folder / ".venv" / "bin" / "python"
@@ -99,7 +100,7 @@ def makefile(tmp_path):
 
 
 @pytest.mark.parametrize("number", ENDS, ids=lambda number: number.name)
-def test_a_signal_to_the_terminal_ends_make_and_its_command(tmp_path, makefile, number):
+def test_a_signal_to_the_terminal_ends_make_and_its_command(tmp_path: Path, makefile: Any, number: Any) -> None:
     process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
     wait_for_the_simulator(process)
     os.killpg(process.pid, number)
@@ -110,7 +111,7 @@ def test_a_signal_to_the_terminal_ends_make_and_its_command(tmp_path, makefile, 
     assert list(tmp_path.iterdir()) == [makefile]
 
 
-def test_a_signal_to_make_alone_ends_its_command(tmp_path, makefile):
+def test_a_signal_to_make_alone_ends_its_command(tmp_path: Path, makefile: Any) -> None:
     process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
     wait_for_the_simulator(process)
     os.kill(process.pid, signal.SIGTERM)
@@ -121,7 +122,7 @@ def test_a_signal_to_make_alone_ends_its_command(tmp_path, makefile):
     assert list(tmp_path.iterdir()) == [makefile]
 
 
-def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path):
+def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path: Path) -> None:
     process = started([sys.executable, "-X", "importtime", "-m", "commands", "sim"], ROOT)
     lines = []
     while "numpy" not in (line := process.stderr.readline()):
@@ -132,7 +133,7 @@ def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path):
     assert [line for line in said.splitlines() if not line.startswith("import time:")] == ["make sim: interrupted"]
 
 
-def test_an_ignored_signal_stays_ignored():
+def test_an_ignored_signal_stays_ignored() -> None:
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         with signals.stoppable():
@@ -141,10 +142,10 @@ def test_an_ignored_signal_stays_ignored():
         signal.signal(signal.SIGHUP, before)
 
 
-def test_a_second_signal_does_not_cut_the_cleaning_up_short():
+def test_a_second_signal_does_not_cut_the_cleaning_up_short() -> None:
     cleaned = []
 
-    def command():
+    def command() -> None:
         try:
             os.kill(os.getpid(), signal.SIGTERM)
             time.sleep(WAIT_S)
@@ -158,35 +159,35 @@ def test_a_second_signal_does_not_cut_the_cleaning_up_short():
     assert cleaned == [True]
 
 
-def test_handlers_come_back():
+def test_handlers_come_back() -> None:
     before = [signal.getsignal(number) for number in ENDS]
     with signals.stoppable():
         assert [signal.getsignal(number) for number in ENDS] != before
     assert [signal.getsignal(number) for number in ENDS] == before
 
 
-def test_grandchildren_end_and_those_that_ignore_sigterm_too():
+def test_grandchildren_end_and_those_that_ignore_sigterm_too() -> None:
     inner = (
         "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('up', flush=True); time.sleep(99)"
     )
     outer = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {inner!r}])"
     with subprocess.Popen([sys.executable, "-c", outer], stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline() == "up\n"
+        assert process.stdout.readline() == "up\n"  # type: ignore[union-attr]
         assert len(signals.children()) == 2
         signals.end_children()
         assert signals.children() == []
         assert process.wait(WAIT_S) == -signal.SIGTERM
 
 
-def test_calls_of_a_pool_that_have_not_begun_are_cancelled():
+def test_calls_of_a_pool_that_have_not_begun_are_cancelled() -> None:
     running, calls = threading.Event(), []
 
-    def call(number):
+    def call(number: int) -> None:
         calls.append(number)
         running.set()
         subprocess.run(["sleep", str(WAIT_S)], check=False)
 
-    def command():
+    def command() -> None:
         with signals.threads(1) as pool:
             for number in range(3):
                 pool.submit(call, number)

@@ -4,10 +4,12 @@
 import json
 import os
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from skimage import io
+from skimage import io  # type: ignore[attr-defined]
 
 from commands.common import published
 from commands.run import sim
@@ -22,7 +24,7 @@ from tactile_depth.samples import sample
 from tactile_depth.sensor import load
 
 
-def run(tmp_path, *arguments):
+def run(tmp_path: Any, *arguments: Any) -> Any:
     """Run `make sim` into tmp_path/out; returns the report. It must be bit-exact."""
     out = tmp_path / "out"
     assert sim.run(sim.parse([*arguments, f"OUT={out}"])) == 0
@@ -35,7 +37,7 @@ def run(tmp_path, *arguments):
 SPECTRAL_IN_REGRESS = ["tridiagonal", pytest.param("spectral", marks=pytest.mark.regress)]
 
 
-def only(values):
+def only(values: Any) -> Any:
     """The one value that a list repeats."""
     assert len(set(values)) == 1, f"not constant: {sorted(set(values))}"
     return values[0]
@@ -43,7 +45,7 @@ def only(values):
 
 @pytest.mark.parametrize("solver", COLUMNS)
 @pytest.mark.parametrize("size", [64, *(pytest.param(size, marks=pytest.mark.regress) for size in (128, 256))])
-def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
+def test_every_grid_on_every_simulator(tmp_path: Path, simulator: str, size: int, solver: str) -> None:
     report = run(tmp_path, f"N={size}", f"SIM={simulator}", f"SOLVER={solver}")
     assert report["bit_exact"]
     assert report["registers_agree"]
@@ -59,7 +61,7 @@ def test_every_grid_on_every_simulator(tmp_path, simulator, size, solver):
 @pytest.mark.parametrize(
     ("rows", "columns", "chosen"), [(8, 16, "icarus"), pytest.param(240, 256, "verilator", marks=pytest.mark.regress)]
 )
-def test_rectangles(tmp_path, rows, columns, boundary, chosen):
+def test_rectangles(tmp_path: Path, rows: int, columns: int, boundary: str, chosen: Any) -> None:
     given = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
     report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
     assert report["grid"] == [rows, columns]
@@ -68,7 +70,7 @@ def test_rectangles(tmp_path, rows, columns, boundary, chosen):
     assert max(error for error in report["rms_percent_of_peak"] if error is not None) <= 0.06
 
 
-def test_rows_are_in_the_order_of_the_input(tmp_path):
+def test_rows_are_in_the_order_of_the_input(tmp_path: Path) -> None:
     depth = {}
     for solver in COLUMNS:
         report = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
@@ -77,7 +79,7 @@ def test_rows_are_in_the_order_of_the_input(tmp_path):
 
 
 @pytest.mark.regress
-def test_the_largest_grid(tmp_path):
+def test_the_largest_grid(tmp_path: Path) -> None:
     report = run(tmp_path, "N=1024", "SOLVER=tridiagonal")
     assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * 1024 + 64
 
@@ -103,7 +105,9 @@ def test_the_largest_grid(tmp_path):
         ),
     ],
 )
-def test_accuracy_and_rate(tmp_path, solver, boundary, size, data_width, percent):
+def test_accuracy_and_rate(
+    tmp_path: Path, solver: str, boundary: str, size: int, data_width: int, percent: Any
+) -> None:
     chosen = [f"SOLVER={solver}", f"BOUNDARY={boundary}", f"DATA_WIDTH={data_width}"]
     report = run(tmp_path, f"N={size}", "FRAMES=contacts", *chosen)
     latency = first_depth_latency(Configuration(columns=size, solver=solver))
@@ -128,7 +132,7 @@ def test_accuracy_and_rate(tmp_path, solver, boundary, size, data_width, percent
         *(pytest.param([alone], marks=pytest.mark.regress) for alone in ("GAPS=0.3", "STALLS=0.3")),
     ],
 )
-def test_gaps_and_stalls(tmp_path, disturbance, solver):
+def test_gaps_and_stalls(tmp_path: Path, disturbance: Any, solver: str) -> None:
     quiet = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}")
     codes = np.load(tmp_path / "out" / "depth.npy")
     report = run(tmp_path, "N=64", "FRAMES=contacts", f"SOLVER={solver}", *disturbance)
@@ -139,7 +143,7 @@ def test_gaps_and_stalls(tmp_path, disturbance, solver):
         assert only(quiet["last_pixel_to_first_depth_cycles"]) == expected
 
 
-def test_repeat_keeps_every_latency(tmp_path):
+def test_repeat_keeps_every_latency(tmp_path: Path) -> None:
     report = run(tmp_path, "N=64", "REPEAT=20", "FRAMES=seal")
     assert report["frames"] == 20
     for latency in ("first_depth", "last_depth", "last_pixel_to_first_depth", "contact"):
@@ -149,12 +153,12 @@ def test_repeat_keeps_every_latency(tmp_path):
 
 
 @pytest.mark.parametrize("solver", COLUMNS)
-def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path, solver):
+def test_a_contact_as_deep_as_the_range_does_not_saturate(tmp_path: Path, solver: str) -> None:
     assert run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}")["saturations"] == {}
 
 
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
-def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path, solver):
+def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path: Path, solver: str) -> None:
     deepest = 16 * 15.232 / 64  # mm: the peak of `deep` at N = 64, a quarter of the grid
     report = run(tmp_path, "N=64", "FRAMES=deep", f"SOLVER={solver}", f"DEPTH_RANGE={deepest / 2.05}")
     assert sum(report["saturations"].values()) > 0
@@ -164,20 +168,20 @@ def test_a_contact_over_twice_as_deep_saturates_and_says_so(tmp_path, solver):
     assert codes[0, 28:36, 28:36].min() > 2**22, "a wrapped code shows as a hole in the peak"
 
 
-def test_flat_gel_reads_nothing(tmp_path):
+def test_flat_gel_reads_nothing(tmp_path: Path) -> None:
     report = run(tmp_path, "N=16", "FRAMES=flat")
     assert report["rms_percent_of_peak"] == [None]
     assert report["contact_latency_cycles"] == [None]
 
 
 @pytest.mark.structures("", icarus=[()], regress_verilator=[()])  # Verilator compiles its whole runtime for it
-def test_waves(tmp_path, simulator):
+def test_waves(tmp_path: Path, simulator: str) -> None:
     out = tmp_path / "out"
     assert sim.run(sim.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
     assert [p for p in out.iterdir() if p.suffix in (".vcd", ".fst") and p.stat().st_size]
 
 
-def test_pictures_with_a_reference(tmp_path):
+def test_pictures_with_a_reference(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     folder = tmp_path / "frames"
     folder.mkdir()
@@ -198,18 +202,18 @@ def test_pictures_with_a_reference(tmp_path):
     assert report["pixel_pitch_mm"] == pytest.approx(240 / 32 * load("gelsight-mini").pixel_pitch_mm)
 
 
-def _press(tmp_path, name="ball"):
+def _press(tmp_path: Path, name: str = "ball") -> list[Any]:
     """Variables that give a drawn press, its reference and its calibration."""
     drawn = sample(name)
     drawn.sensor.save(tmp_path / "sensor.npz")
     for file, image in (("press.png", drawn.image), ("background.png", drawn.reference)):
         io.imsave(tmp_path / file, image, check_contrast=False)
-    given = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
+    given: dict[str, Any] = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
     small = ["ROWS=24", "COLS=32", "SOLVER=tridiagonal", "BOUNDARY=neumann", "SIM=icarus"]
     return [*small, *(f"{key}={tmp_path / file}" for key, file in given.items())]
 
 
-def test_the_rtl_computes_what_the_python_interface_returns(tmp_path):
+def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> None:
     """Depth in mm is codes times unit, and the codes are those of the RTL."""
     report = run(tmp_path, *_press(tmp_path), f"FLOOR={tmp_path / 'background.png'}")
     drawn = sample("ball")
@@ -219,7 +223,7 @@ def test_the_rtl_computes_what_the_python_interface_returns(tmp_path):
     np.testing.assert_array_equal(result.depth_mm, codes * report["depth_lsb_mm"])
 
 
-def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path):
+def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path: Path) -> None:
     given = _press(tmp_path)
     report = run(tmp_path, *given)
     codes = np.load(tmp_path / "out" / "depth.npy")
@@ -230,7 +234,7 @@ def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path):
     assert twice["depth_lsb_mm"] == report["depth_lsb_mm"]
 
 
-def test_dark_pixels_are_reported_and_warned_of(tmp_path, capsys):
+def test_dark_pixels_are_reported_and_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     given = _press(tmp_path)
     assert run(tmp_path, *given)["dark_pixels"] == [0]
     background = io.imread(tmp_path / "background.png")
@@ -242,7 +246,9 @@ def test_dark_pixels_are_reported_and_warned_of(tmp_path, capsys):
     assert "pixels are dark in REFERENCE" in capsys.readouterr().err
 
 
-def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(tmp_path, capsys):
+def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     given = _press(tmp_path)
     assert run(tmp_path, *given)["slopes_outside_calibration"] == [0]
     replace(sample("ball").sensor, fitted_slope={"quadratic": 0.4}).save(tmp_path / "sensor.npz")
@@ -252,7 +258,7 @@ def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(tmp_path
     assert "steeper than any in the fit" in capsys.readouterr().err
 
 
-def test_flagged_pixels_are_painted():
+def test_flagged_pixels_are_painted() -> None:
     frame = np.full((2, 3, 3), 50, np.uint8)
     dark, outside = np.zeros((1, 2, 3), bool), np.zeros((1, 2, 3), bool)
     dark[0, 0, 0] = outside[0, 1, 2] = True
@@ -264,7 +270,7 @@ def test_flagged_pixels_are_painted():
 
 
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
-def test_a_floor_is_subtracted(tmp_path, solver):
+def test_a_floor_is_subtracted(tmp_path: Path, solver: str) -> None:
     """The mean depth of two frames without contact, in the RTL and in double precision."""
     rest = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
     every = _npy(tmp_path / "every.npy", np.concatenate((rest, rest[:1, ::-1])))
@@ -280,7 +286,7 @@ def test_a_floor_is_subtracted(tmp_path, solver):
     assert np.array_equal(zeroed, auto_zero(solved, captured_floor(solved[:2], config), config))
 
 
-def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path):
+def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path: Path) -> None:
     given = _config(
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
     )
@@ -294,41 +300,41 @@ def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path):
 # Bad input: one line that names what was given, exit status 2, nothing left behind.
 
 
-def _npy(path, array):
+def _npy(path: Path, array: Any) -> Any:
     np.save(path, array)
     return path
 
 
-def _calibration(path, **change):
+def _calibration(path: Path, **change: Any) -> Any:
     camera = {"format_version": 2, "camera_size": (48, 64), "pixel_format": "rgb888", "black_level": 0.0}
     table = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.1, "exposure_us": np.nan, "flat_field": True}
     np.savez(path, **{key: value for key, value in {**camera, **table, **change}.items() if value is not None})
     return path
 
 
-def _picture(path, rows, columns, level=100):
+def _picture(path: Path, rows: int, columns: int, level: int = 100) -> Any:
     io.imsave(path, np.full((rows, columns, 3), level, np.uint8), check_contrast=False)
     return path
 
 
-def _config(path, text):
+def _config(path: Path, text: str) -> str:
     path.write_text(text)
     return f"CONFIG={path}"
 
 
-def _cut(path):
+def _cut(path: Path) -> Any:
     path.write_bytes(path.read_bytes()[:300])
     return path
 
 
-def _mixed(folder):
+def _mixed(folder: Path) -> Any:
     folder.mkdir()
     for name, rows in (("1.png", 16), ("2.png", 20)):
         io.imsave(folder / name, np.zeros((rows, 16, 3), np.uint8), check_contrast=False)
     return folder
 
 
-BAD_INPUT = {
+BAD_INPUT: dict[str, Any] = {
     "shape": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16), np.uint8))} CALIBRATION=synthetic",
     "type": lambda t: f"FRAMES={_npy(t / 'a.npy', np.zeros((2, 16, 16, 3), np.float32))} CALIBRATION=synthetic",
     "truncated frames": lambda t: (
@@ -399,7 +405,9 @@ BAD_INPUT = {
 
 
 @pytest.mark.parametrize("case", BAD_INPUT)
-def test_bad_input(tmp_path, monkeypatch, capsys, case):
+def test_bad_input(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
+) -> None:
     given = BAD_INPUT[case](tmp_path).split()
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
@@ -415,7 +423,7 @@ def test_bad_input(tmp_path, monkeypatch, capsys, case):
     assert list(out.parent.rglob("*")) == [out], "something was left behind"
 
 
-def test_missing_simulator(tmp_path, monkeypatch, capsys):
+def test_missing_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr("sys.argv", ["sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}"])
     with pytest.raises(SystemExit) as stop:

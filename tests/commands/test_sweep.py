@@ -9,7 +9,9 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -26,12 +28,12 @@ SMALL = [{"columns": 16, "solver": solver, "data_width": width} for solver in CO
 ]
 
 
-def table(folder):
+def table(folder: Path) -> Any:
     with (folder / "sweep.csv").open(newline="") as file:
         return list(csv.DictReader(file))
 
 
-def test_the_plan_is_the_issue_s():
+def test_the_plan_is_the_issue_s() -> None:
     rows = [sweep.configuration_cells(choices) for choices in sweep.plan()]
     assert len({tuple(row.values()) for row in rows}) == len(rows)
     default = sweep.configuration_cells({})
@@ -54,7 +56,7 @@ def test_the_plan_is_the_issue_s():
         assert Counter(row["boundary"] for row in others)["neumann"] == 1
 
 
-def test_a_range_that_nothing_leaves():
+def test_a_range_that_nothing_leaves() -> None:
     row, default = (accuracy.measure({"columns": 32, "depth_range_px": limit}) for limit in (accuracy.WORST, None))
     assert (row["depth_range"], default["depth_range"]) == ("worst", "default")
     assert float(row["depth_range_mm"]) > float(default["depth_range_mm"])
@@ -62,7 +64,7 @@ def test_a_range_that_nothing_leaves():
     assert float(row["rms_percent_mean"]) > float(default["rms_percent_mean"])
 
 
-def test_a_row_holds_what_was_measured():
+def test_a_row_holds_what_was_measured() -> None:
     row = accuracy.measure({"columns": 32, "solver": "tridiagonal", "data_width": 20})
     config = Configuration(columns=32, solver="tridiagonal", data_width=20)
     assert list(row) == list(sweep.HEADER)
@@ -75,7 +77,7 @@ def test_a_row_holds_what_was_measured():
     assert sum(bits) == int(row["memory_bits"])
 
 
-def test_wider_words_err_less_and_the_sensor_s_share_stays():
+def test_wider_words_err_less_and_the_sensor_s_share_stays() -> None:
     narrow, wide = (accuracy.measure({"columns": 32, "data_width": width}) for width in (16, 24))
     assert float(wide["rms_percent_mean"]) < float(narrow["rms_percent_mean"]) / 100
     for row in (narrow, wide):  # 4 bits of each colour leave a hundredth of a millimetre
@@ -84,7 +86,7 @@ def test_wider_words_err_less_and_the_sensor_s_share_stays():
 
 # The bars of the accuracy over the bench.
 @pytest.mark.parametrize("solver", COLUMNS)
-def test_bench_at_the_default_and_at_twenty_bits(solver):
+def test_bench_at_the_default_and_at_twenty_bits(solver: str) -> None:
     row = accuracy.measure({"solver": solver})
     assert float(row["rms_percent_mean"]) <= 0.005
     assert float(row["rms_percent_worst"]) <= 0.015
@@ -99,11 +101,13 @@ def test_bench_at_the_default_and_at_twenty_bits(solver):
         pytest.param("spectral", 14, 10, "neumann", marks=pytest.mark.regress),
     ],
 )
-def test_a_row_is_what_the_rtl_does(tmp_path, solver, data_width, coefficient_width, boundary):
+def test_a_row_is_what_the_rtl_does(
+    tmp_path: Path, solver: str, data_width: int, coefficient_width: int, boundary: str
+) -> None:
     given = [f"SOLVER={solver}", f"DATA_WIDTH={data_width}", f"COEFF_WIDTH={coefficient_width}", f"BOUNDARY={boundary}"]
     assert sim.run(sim.parse(["N=32", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *given])) == 0
     seen = json.loads((tmp_path / "out" / "report.json").read_text())
-    choices = {"solver": solver, "data_width": data_width, "coefficient_width": coefficient_width}
+    choices: dict[str, Any] = {"solver": solver, "data_width": data_width, "coefficient_width": coefficient_width}
     row = accuracy.measure({"columns": 32, "neumann": boundary == "neumann", **choices})
     for name in ("rms", "max"):
         percent = seen[f"{name}_percent_of_peak"]
@@ -114,19 +118,21 @@ def test_a_row_is_what_the_rtl_does(tmp_path, solver, data_width, coefficient_wi
     assert int(row["saturations"]) == sum(seen["saturations"].values())
 
 
-def test_a_configuration_that_cannot_be_built_is_a_row(tmp_path):
+def test_a_configuration_that_cannot_be_built_is_a_row(tmp_path: Path) -> None:
     (row,) = sweep.sweep([{"columns": 512, "data_width": 12}], tmp_path)
     assert "data_width=12 cannot hold the formats" in row["problem"]
     assert row["rms_percent_mean"] == ""
     assert table(tmp_path) == [row]
 
 
-def test_nothing_is_measured_twice(tmp_path, monkeypatch):
+def test_nothing_is_measured_twice(tmp_path: Path, monkeypatch: Any) -> None:
     first = sweep.sweep(SMALL[:3], tmp_path)
     before = (tmp_path / "sweep.csv").read_bytes()
     measured = []
     monkeypatch.setattr(
-        sweep, "on_all_cores", lambda rows: (measured.append(row) or accuracy.measure(row) for row in rows)
+        sweep,
+        "on_all_cores",
+        lambda rows: (measured.append(row) or accuracy.measure(row) for row in rows),  # type: ignore[func-returns-value]
     )
     rows = sweep.sweep(SMALL, tmp_path)
     assert measured == SMALL[3:]
@@ -136,7 +142,7 @@ def test_nothing_is_measured_twice(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("torn", [b"spectral,dirichlet,16,16,2", b'tridiagonal,dirichlet,16,16,24,18,default,"DATA'])
-def test_a_torn_last_line_is_mended(tmp_path, torn):
+def test_a_torn_last_line_is_mended(tmp_path: Path, torn: Any) -> None:
     rows = sweep.sweep(SMALL[:2], tmp_path)
     path = tmp_path / "sweep.csv"
     whole = path.read_bytes()
@@ -146,14 +152,14 @@ def test_a_torn_last_line_is_mended(tmp_path, torn):
 
 
 @pytest.mark.parametrize("length", [0, 10])
-def test_a_torn_header_is_mended(tmp_path, length):
+def test_a_torn_header_is_mended(tmp_path: Path, length: int) -> None:
     path = tmp_path / "sweep.csv"
     path.write_bytes(b"solver,boundary,rows,columns"[:length])
     assert table(tmp_path) == [] and sweep.sweep(SMALL[:1], tmp_path) == table(tmp_path)  # noqa: PT018
 
 
 @pytest.mark.parametrize("moment", ["SIGKILL", "SIGINT"])
-def test_an_interrupted_sweep_goes_on(tmp_path, moment):
+def test_an_interrupted_sweep_goes_on(tmp_path: Any, moment: Any) -> None:
     rows = [{"columns": 64, "data_width": width, "coefficient_width": c} for width in (20, 22) for c in range(10, 20)]
     script = (
         "import json, sys; from commands.study import sweep; "
@@ -189,13 +195,13 @@ def test_an_interrupted_sweep_goes_on(tmp_path, moment):
 
 
 @pytest.fixture
-def dask_scheduler(tmp_path):
+def dask_scheduler(tmp_path: Path) -> Iterator[Any]:
     """Address of a cluster whose one worker runs elsewhere and has not got the models."""
     pytest.importorskip("distributed", reason="Dask is not installed: run `make setup`")
     away = tmp_path / "away"
     away.mkdir()
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    said = {"cwd": away, "env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    said: dict[str, Any] = {"cwd": away, "env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     dask = [sys.executable, "-m", "dask"]
     where = ["--scheduler-file", "scheduler.json"]
     scheduler = [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", *where]
@@ -214,7 +220,7 @@ def dask_scheduler(tmp_path):
             process.wait()
 
 
-def test_a_dask_cluster_measures_the_same(tmp_path, dask_scheduler):
+def test_a_dask_cluster_measures_the_same(tmp_path: Path, dask_scheduler: Any) -> None:
     here = sweep.sweep(SMALL, tmp_path / "here")
     assert sweep.sweep(SMALL, tmp_path / "there", dask_scheduler) == here
 
@@ -222,14 +228,14 @@ def test_a_dask_cluster_measures_the_same(tmp_path, dask_scheduler):
 # Bad input: one line that names what was given, exit status 2, earlier results untouched.
 
 
-def _table(folder, change):
+def _table(folder: Path, change: Any) -> str:
     folder.mkdir()
     row = accuracy.measure(SMALL[0])
     (folder / "sweep.csv").write_bytes(change(sweep._line(sweep.HEADER) + sweep._line(tuple(row.values()))))
     return f"OUT={folder}"
 
 
-BAD_INPUT = {
+BAD_INPUT: dict[str, Any] = {
     "unknown variable": lambda t: "GRID=64",
     "no scheduler": lambda t: "DASK_SCHEDULER=127.0.0.1:1",
     "no address": lambda t: "DASK_SCHEDULER=cluster",
@@ -245,7 +251,9 @@ BAD_INPUT = {
 
 
 @pytest.mark.parametrize("case", BAD_INPUT)
-def test_bad_input(tmp_path, monkeypatch, capsys, case):
+def test_bad_input(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
+) -> None:
     given = BAD_INPUT[case](tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     arguments = [given] if given.startswith("OUT=") else [given, f"OUT={tmp_path / 'out'}"]

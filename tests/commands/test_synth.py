@@ -5,7 +5,10 @@ import json
 import sys
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from commands.common import repository
@@ -19,11 +22,11 @@ TINY = Configuration(columns=16, rows=8, solver="tridiagonal", bits_per_channel=
 XCZU7EV = synth.TARGETS["xczu7ev"]
 
 
-def memory(depth, width, style="block"):
+def memory(depth: Any, width: Any, style: Any = "block") -> Any:
     return Memory("u_ram", depth, width, style, rom=False)
 
 
-def test_memories_and_cores_are_those_of_the_rtl(tmp_path):
+def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path) -> None:
     _, modules = synth.elaborate(TINY, synthetic(TINY.bits_per_channel), tmp_path)
     arrays = memories(tmp_path / "design.json")
     behind_wrapper = Counter((memory.width, memory.depth) for memory in arrays if memory.style)
@@ -34,7 +37,7 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path):
     assert "u_solver" not in cores
 
 
-def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_path):
+def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_path: Any) -> None:
     """The mapping to logic on dot_product alone: two DSPs, and nothing beside them."""
     for source in repository.sources(["dot_product.sv", "multiply.sv"]):
         (tmp_path / source.name).write_text(source.read_text().replace("module dot_product", f"module {synth.TOP}"))
@@ -63,30 +66,32 @@ def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_pat
         (65536, 24, 16, 48),
     ],
 )
-def test_the_plain_rule(depth, width, ultras, blocks):
+def test_the_plain_rule(depth: np.ndarray, width: int, ultras: Any, blocks: Any) -> None:
     assert memory(depth, width).ultras == ultras
     assert memory(depth, width).blocks == blocks
 
 
-def test_style_decides_what_a_memory_takes():
+def test_style_decides_what_a_memory_takes() -> None:
     assert memory(4096, 72, "ultra").plain() == {"UltraRAM": 1, "BRAM36": 0}
     assert memory(4096, 72, "block").plain() == {"UltraRAM": 0, "BRAM36": 8}
     assert memory(16, 72, "distributed").plain() == {"UltraRAM": 0, "BRAM36": 0}
 
 
-def test_a_cell_that_nobody_counts_is_an_error():
+def test_a_cell_that_nobody_counts_is_an_error() -> None:
     with pytest.raises(RuntimeError, match="RAMS64E"):
         synth.logic_counts(Counter({"LUT2": 1, "RAMS64E": 1}), [])
 
 
-def test_what_does_not_fit_is_named_with_how_much():
+def test_what_does_not_fit_is_named_with_how_much() -> None:
     assert synth.misfit({"UltraRAM": 96, "BRAM36": 312.0}, XCZU7EV) == ""
     assert synth.misfit({"UltraRAM": 128, "BRAM36": 312.5}, XCZU7EV) == (
         "BRAM36 312.5 of 312, 0.5 too many; UltraRAM 128 of 96, 32 too many"
     )
 
 
-def test_a_design_too_large_ends_with_a_line(tmp_path, monkeypatch, capsys):
+def test_a_design_too_large_ends_with_a_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     small = replace(XCZU7EV, has={**XCZU7EV.has, "BRAM36": 10})
     monkeypatch.setattr(synth, "TARGETS", {"xczu7ev": small})
     assert synth.run(["N=16", "SOLVER=tridiagonal", f"OUT={tmp_path}"]) == 1
@@ -97,7 +102,7 @@ def test_a_design_too_large_ends_with_a_line(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.glob(".work*"))
 
 
-def test_a_grid_that_one_solver_has_is_built_with_that_solver():
+def test_a_grid_that_one_solver_has_is_built_with_that_solver() -> None:
     """The other one is named with the reason."""
     _, _, grids, request = synth.parse(["GRIDS=1024"])
     reasons = {each.solver: reason for each, reason in synth.designs(request, grids)}
@@ -116,7 +121,7 @@ def test_a_grid_that_one_solver_has_is_built_with_that_solver():
         (["OUT=README.md"], "OUT=README.md is a file"),
     ],
 )
-def test_bad_input(arguments, message, capsys, monkeypatch):
+def test_bad_input(arguments: Any, message: str, capsys: pytest.CaptureFixture[str], monkeypatch: Any) -> None:
     """Refused before Yosys runs."""
     monkeypatch.chdir(repository.ROOT)
     monkeypatch.setattr(synth.yosys, "run", None)
@@ -129,7 +134,7 @@ def test_bad_input(arguments, message, capsys, monkeypatch):
     assert error.count("\n") == 1
 
 
-def test_a_missing_tool(capsys, monkeypatch):
+def test_a_missing_tool(capsys: pytest.CaptureFixture[str], monkeypatch: Any) -> None:
     monkeypatch.setattr(synth.yosys, "YOSYS", "/nowhere/yosys")
     monkeypatch.setattr(sys, "argv", ["synth"])
     with pytest.raises(SystemExit) as ended:

@@ -5,6 +5,8 @@ import json
 import math
 from functools import cache
 from itertools import product
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,18 +22,18 @@ NONE = math.inf
 
 
 @cache
-def built(at):
+def built(at: Any) -> Any:
     if at.solver == "spectral" and at.data < 14:  # as on large grids
         return None
     return Configuration(columns=16, solver=at.solver, data_width=at.data, coefficient_width=at.coefficient)
 
 
 @cache
-def cost_of(at):
+def cost_of(at: Any) -> Any:
     return cost(built(at))
 
 
-def falling(solver_bits):
+def falling(solver_bits: Any) -> Any:
     """An error that falls with both widths, of each solver by another law."""
     by_configuration = {}
     for at in all_points():
@@ -41,7 +43,7 @@ def falling(solver_bits):
 
 
 @cache
-def all_points():
+def all_points() -> list[Any]:
     widths = product(range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1), range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1))
     return [at for d, c in widths for s in COLUMNS if built(at := Widths(s, d, c)) is not None]
 
@@ -51,25 +53,27 @@ def all_points():
     ("latency", "multipliers", "memory"), [(NONE, NONE, NONE), (NONE, NONE, 20), (NONE, 30, NONE), (2.2, 40, 26)]
 )
 @pytest.mark.parametrize("bits", [{"spectral": 17, "tridiagonal": 17}, {"spectral": 15, "tridiagonal": 21}])
-def test_the_search_finds_the_cheapest_of_all(tolerance, latency, multipliers, memory, bits):
+def test_the_search_finds_the_cheapest_of_all(
+    tolerance: Any, latency: Any, multipliers: Any, memory: Any, bits: int
+) -> None:
     limits = Limits(tolerance, latency, 166, multipliers, memory)
     search = Search(built, falling(bits), limits, tolerance)
     within = [at for at in all_points() if not limits.broken(cost_of(at))]
     enough = [at for at in within if search.measure(built(at)) <= tolerance]
     found = search.cheapest(list(COLUMNS))
     if enough:
-        assert search.rank(found) == min(map(search.rank, enough))
+        assert search.rank(found) == min(map(search.rank, enough))  # type: ignore[arg-type]
     else:
         assert found is None
         nearest = search.nearest(list(COLUMNS))
         if within:
-            assert search.error(nearest) == min(search.measure(built(at)) for at in within)
+            assert search.error(nearest) == min(search.measure(built(at)) for at in within)  # type: ignore[arg-type]
         else:
             assert nearest is None
     assert len(search.tried) <= len(all_points()) / 5
 
 
-def test_frames_are_tuned_on_or_proven_on_never_both():
+def test_frames_are_tuned_on_or_proven_on_never_both() -> None:
     frames = load_frames("bench", (16, 16))
     peaks = np.ones(15)
     peaks[3] = 0
@@ -81,7 +85,7 @@ def test_frames_are_tuned_on_or_proven_on_never_both():
     assert tune.split(frames, peaks, seed=2)[1].labels != proving.labels
 
 
-def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise():
+def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise() -> None:
     frames = load_frames("ball", (32, 32))
     tuning, proving, said = tune.split(frames, np.ones(1), seed=1)
     assert (len(tuning.pixels), len(proving.pixels)) == (4, 2)
@@ -91,12 +95,14 @@ def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise():
     assert "noise" in said
 
 
-def run(tmp_path, *given):
+def run(tmp_path: Any, *given: Any) -> Any:
     return tune.run(*tune.parse(["SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *given]))
 
 
 @pytest.mark.parametrize("given", [[], ["BOUNDARY=neumann", "SOLVER=spectral", "TOLERANCE=0.02"], ["FRAMES=ball"]])
-def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(tmp_path, capsys, given):
+def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any
+) -> None:
     assert run(tmp_path, *given) == 0
     said = capsys.readouterr().out
     out = tmp_path / "out"
@@ -130,7 +136,9 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(tmp_path, capsys, g
         (["MAX_MEMORY_KBIT=1"], "beyond MAX_MEMORY_KBIT=1"),
     ],
 )
-def test_no_configuration_meets_it(tmp_path, capsys, given, expected):
+def test_no_configuration_meets_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any, expected: Any
+) -> None:
     assert run(tmp_path, *given) == 1
     assert expected in capsys.readouterr().out.splitlines()[-1]
     assert [*tmp_path.rglob("*.json")] == []
@@ -144,7 +152,9 @@ def test_no_configuration_meets_it(tmp_path, capsys, given, expected):
         "OUT=/proc/tune",
     ],
 )
-def test_bad_input(tmp_path, monkeypatch, capsys, given):
+def test_bad_input(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], given: Any
+) -> None:
     earlier = tmp_path / "out" / "config.json"
     earlier.parent.mkdir()
     earlier.write_text("{}")

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A sample of the soft errors that `make upsets` counts: no hang, and the frames sent after one are right."""
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from commands.verify.upsets import CASES, run
@@ -10,7 +13,7 @@ from tests.conftest import SEED
 
 @pytest.mark.seeds
 @pytest.mark.parametrize("case", CASES if REGRESS else list(CASES)[-1:])
-def test_sample(case, tmp_path):
+def test_sample(case: Any, tmp_path: Path) -> None:
     results = run(case, upsets=1, seed=SEED, folder=tmp_path)  # of each module
     assert len(results) > 20
     for result in results:

@@ -4,6 +4,7 @@
 import errno
 import math
 import warnings
+from typing import Any
 
 import pytest
 
@@ -11,14 +12,14 @@ from commands.common import variables
 from tactile_depth.errors import InputError, InputWarning
 
 
-def test_given():
+def test_given() -> None:
     assert variables.given(["N=64", "OUT=", "AT=a=b"], ("N", "OUT", "AT")) == {"N": "64", "AT": "a=b"}
     for word in ("M=64", "N"):
         with pytest.raises(InputError, match=f"^{word}: unknown variable: accepted is N$"):
             variables.given([word], ("N",))
 
 
-def test_number():
+def test_number() -> None:
     assert variables.number({}, "N", 7, 1, 9) == 7
     assert variables.number({"N": "2.5"}, "N", 7, 1, 9, float) == 2.5
     for word in ("2.5", "x", "0", "10"):
@@ -27,12 +28,12 @@ def test_number():
 
 
 @pytest.mark.parametrize("word", ["nan", "inf", "-inf", "1e999"])
-def test_a_number_is_finite_even_where_the_range_is_not(word):
+def test_a_number_is_finite_even_where_the_range_is_not(word: Any) -> None:
     with pytest.raises(InputError, match=f"^N={word}: accepted is a number"):
         variables.number({"N": word}, "N", 7, -math.inf, math.inf, float)
 
 
-def test_a_command_without_variables_refuses_all():
+def test_a_command_without_variables_refuses_all() -> None:
     with pytest.raises(InputError, match=r"^CORE=ram: unknown variable: accepted is none$"):
         variables.given(["CORE=ram"], ())
 
@@ -49,15 +50,17 @@ def test_a_command_without_variables_refuses_all():
         (KeyboardInterrupt(), 130, "make sim: interrupted; nothing was written\n"),
     ],
 )
-def test_an_exception_gives_a_line_and_a_status(error, status, line, capsys):
+def test_an_exception_gives_a_line_and_a_status(
+    error: Any, status: Any, line: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(SystemExit) as ended, variables.reported("sim", "nothing was written"):
         raise error
     assert ended.value.code == status
     assert capsys.readouterr().err == line
 
 
-def test_errors_and_warnings_of_the_package_name_variables(capsys):
-    def command():
+def test_errors_and_warnings_of_the_package_name_variables(capsys: pytest.CaptureFixture[str]) -> None:
+    def command() -> None:
         warnings.warn("columns=64: an old file", InputWarning, stacklevel=1)
         raise InputError("columns=100 with data_width=24: give camera_size=(rows, columns), or another solver=x")
 
@@ -69,7 +72,7 @@ def test_errors_and_warnings_of_the_package_name_variables(capsys):
     ]
 
 
-def test_an_unexpected_exception_shows_its_traceback_and_is_no_mismatch(capsys):
+def test_an_unexpected_exception_shows_its_traceback_and_is_no_mismatch(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended, variables.reported("sim"):
         raise KeyError("fault")
     assert ended.value.code == variables.FAILURE

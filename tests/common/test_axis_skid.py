@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """axis_skid: RTL against the model."""
 
+from collections.abc import Callable
 
-def test_rtl(run_tb):
+
+def test_rtl(run_tb: Callable[..., None]) -> None:
     run_tb("axis_skid", ["axis_skid.sv"], {"Width": 26})

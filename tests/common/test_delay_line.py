@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """delay_line: RTL against the model, as registers (up to 4) and as memory."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,12 +14,12 @@ from tactile_depth.common.delay_line import delay_line
 @pytest.mark.structures(
     "width delay", both=[(54, 65)], icarus=[(1, 1), (9, 2), (8, 4), (8, 5), (70, 8), (12, 33), (70, 128)]
 )
-def test_rtl(run_tb, width, delay):
+def test_rtl(run_tb: Callable[..., None], width: int, delay: Any) -> None:
     run_tb("delay_line", ["delay_line.sv", "ram.sv"], {"Width": width, "Delay": delay})
 
 
 @given(st.lists(st.integers()), st.integers(1, 9))
-def test_a_word_leaves_its_delay_later(words, delay):
+def test_a_word_leaves_its_delay_later(words: Any, delay: Any) -> None:
     out = delay_line(words, delay)
     assert len(out) == len(words)
     assert all(word is None for word in out[:delay])

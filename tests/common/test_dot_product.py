@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """dot_product: RTL against the model, the model against Python's integers."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,10 +15,10 @@ A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the
 
 
 @pytest.mark.structures("a_width b_width", both=[(27, 18)], icarus=[(15, 10), (35, 24), (4, 3)])
-def test_rtl(run_tb, a_width, b_width):
+def test_rtl(run_tb: Callable[..., None], a_width: int, b_width: int) -> None:
     run_tb("dot_product", ["dot_product.sv", "multiply.sv"], {"AWidth": a_width, "BWidth": b_width})
 
 
 @given(A, B, A, B)
-def test_model_is_exact(a0, b0, a1, b1):
+def test_model_is_exact(a0: Any, b0: Any, a1: Any, b1: Any) -> None:
     assert dot_product(*map(np.array, (a0, b0, a1, b1))) == a0 * b0 + a1 * b1

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """multiply: RTL against the model, the model against Python's integers."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,10 +13,10 @@ from tactile_depth.common.multiply import multiply
 
 
 @pytest.mark.structures("a_width b_width", both=[(27, 18)], icarus=[(35, 24), (15, 10), (2, 3)])
-def test_rtl(run_tb, a_width, b_width):
+def test_rtl(run_tb: Callable[..., None], a_width: int, b_width: int) -> None:
     run_tb("multiply", ["multiply.sv"], {"AWidth": a_width, "BWidth": b_width})
 
 
 @given(st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1))  # the widest that occur
-def test_model_is_exact(a, b):
+def test_model_is_exact(a: Any, b: Any) -> None:
     assert multiply(np.array(a), np.array(b)) == a * b

@@ -2,6 +2,9 @@
 """ram: RTL against the model in every style, with and without contents at power-up."""
 
 import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 from cocotb_tools.runner import as_sv_literal
@@ -19,8 +22,8 @@ DISTRIBUTED, BLOCK, ULTRA = range(3)
     both=[(24, 64, BLOCK, "contents.hex")],
     icarus=[(5, 16, DISTRIBUTED, None), (9, 24, DISTRIBUTED, "contents.hex"), (70, 32, ULTRA, None)],
 )
-def test_rtl(run_tb, width, depth, style, file):
-    def contents(folder):
+def test_rtl(run_tb: Callable[..., None], width: int, depth: Any, style: str, file: Any) -> None:
+    def contents(folder: Path) -> None:
         if file:
             chance = random.Random(depth)
             write_words(folder / file, [chance.getrandbits(width) for _ in range(depth)], width)
@@ -33,11 +36,11 @@ def test_rtl(run_tb, width, depth, style, file):
 
 
 @given(st.lists(st.tuples(st.integers(0, 7), st.integers(0, 255)), max_size=40))
-def test_a_word_is_the_last_one_written_there(writes):
+def test_a_word_is_the_last_one_written_there(writes: Any) -> None:
     words, _ = ram([None] * 8, [(True, place, word, False, 0) for place, word in writes])
     assert {place: word for place, word in enumerate(words) if word is not None} == dict(writes)
 
 
-def test_read_data_stays_between_reads():
+def test_read_data_stays_between_reads() -> None:
     clocks = [(True, 0, 5, False, 0), (False, 0, 0, True, 0), (True, 0, 6, False, 0), (False, 0, 0, True, 0)]
     assert ram([None], clocks)[1] == [None, 5, 5, 6]

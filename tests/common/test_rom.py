@@ -2,6 +2,9 @@
 """rom: RTL against the file it reads, small enough for LUTs and not."""
 
 import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,7 +13,7 @@ from tactile_depth.rom_files import pack, write_words
 
 
 @pytest.mark.structures("width depth", both=[(54, 128)], icarus=[(10, 36), (72, 33)])
-def test_rtl(run_tb, width, depth):
+def test_rtl(run_tb: Callable[..., None], width: int, depth: Any) -> None:
     chance = random.Random(depth)
     words = [chance.getrandbits(width) for _ in range(depth)]
     run_tb(
@@ -21,14 +24,14 @@ def test_rtl(run_tb, width, depth):
     )
 
 
-def test_addresses_read_their_words():
+def test_addresses_read_their_words() -> None:
     assert rom([7, 8, 9], [2, 0, 2, 1]) == [9, 7, 9, 8]
 
 
-def test_fields_are_packed_first_on_top_in_two_s_complement():
-    assert pack(([-1, 3], [1, -8]), 4) == [0xF1, 0x38]
+def test_fields_are_packed_first_on_top_in_two_s_complement() -> None:
+    assert pack(([-1, 3], [1, -8]), 4) == [0xF1, 0x38]  # type: ignore[arg-type]
 
 
-def test_words_are_one_line_each_with_all_their_digits(tmp_path):
+def test_words_are_one_line_each_with_all_their_digits(tmp_path: Path) -> None:
     write_words(tmp_path / "words.hex", [0, 0x1FF], 9)
     assert (tmp_path / "words.hex").read_text() == "000\n1ff\n"

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """contact_events: RTL against the model, and the model's division against exact fractions."""
 
+from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,26 +26,28 @@ PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
     icarus=[(6, 5, 8, 1)],
     regress=[(24, 5, 8, 0), (32, 5, 16, 1), (12, 9, 4, 0), (24, 8, 16, 0)],
 )
-def test_rtl(run_tb, width, rows, columns, bottom_first):
+def test_rtl(run_tb: Callable[..., None], width: int, rows: int, columns: int, bottom_first: Any) -> None:
     parameters = {"Width": width, "Rows": rows, "Columns": columns, "BottomFirst": bottom_first}
     run_tb("contact_events", SOURCES, parameters)
 
 
 @given(st.lists(st.integers(0, 1023), min_size=1, max_size=300))
-def test_centroid_is_the_nearest(places):
+def test_centroid_is_the_nearest(places: Any) -> None:
     mean = Fraction(sum(places), len(places))
     assert centroid(sum(places), len(places), 10) == round(mean * 2**FRACTION)  # of a Fraction: ties to even
 
 
 @given(*(st.integers(0, 2**32 - 1) for _ in range(4)), st.integers(-(2**31), 2**31 - 1), PLACE, PLACE, PLACE, PLACE)
-def test_words_are_read_as_they_were_written(status, frame, time, area, peak, place, least, greatest, middle):
+def test_words_are_read_as_they_were_written(
+    status: Any, frame: Any, time: Any, area: Any, peak: Any, place: Any, least: Any, greatest: Any, middle: Any
+) -> None:
     given = Record(status, frame, time, area, peak, place, least, greatest, area, frame, peak << 21, middle)
     assert len(given.words) == WORDS
     assert record(given.words) == given
 
 
 @pytest.mark.parametrize("solver", COLUMNS)
-def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver):
+def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver: str) -> None:
     """Neumann: what is not above has the mean -volume / (pixels - area)."""
     config = Configuration(columns=32, solver=solver, neumann=True)
     frames = load_frames("bench", (32, 32))

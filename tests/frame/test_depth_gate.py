@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """depth_gate: RTL against the model."""
 
+from collections.abc import Callable
 
-def test_rtl(run_tb):
+
+def test_rtl(run_tb: Callable[..., None]) -> None:
     run_tb("depth_gate", ["axis_skid.sv", "depth_gate.sv"], {"Width": 12})

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_tags: RTL against the model."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 
@@ -8,5 +11,5 @@ import pytest
 @pytest.mark.structures(
     "width latency pixels", both=[(33, 37, 24)], icarus=[(4, 9, 16), (33, 32, 16), (33, 50, 13), (4, 9, 6)]
 )
-def test_rtl(run_tb, width, latency, pixels):
+def test_rtl(run_tb: Callable[..., None], width: int, latency: Any, pixels: int) -> None:
     run_tb("frame_tags", ["frame_tags.sv"], {"Width": width, "Latency": latency, "Pixels": pixels})

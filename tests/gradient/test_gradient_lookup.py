@@ -2,6 +2,8 @@
 """gradient_lookup: RTL against the model, the model against the calibration it was made from."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +18,8 @@ SOURCES = ["gradient_lookup.sv", "ram.sv"]
 
 
 @pytest.mark.structures("bits data_width", both=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24)])
-def test_rtl(run_tb, bits, data_width):
-    choices = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
+def test_rtl(run_tb: Callable[..., None], bits: int, data_width: int) -> None:
+    choices: dict[str, Any] = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
     config = Configuration(**choices)
     width = config.gradient.width
     run_tb(
@@ -30,7 +32,7 @@ def test_rtl(run_tb, bits, data_width):
 
 
 @pytest.mark.parametrize("bits", [1, 4, 6])
-def test_codes_are_the_slopes_within_half_a_step(bits):
+def test_codes_are_the_slopes_within_half_a_step(bits: int) -> None:
     """The bins of a random table differ everywhere, so a wrong order of colours or bits shows."""
     gradient = np.random.default_rng(bits).uniform(-0.9, 0.9, (*[1 << bits] * 3, 2))
     calibration = Sensor("random", gradient, 0.1)
@@ -43,7 +45,7 @@ def test_codes_are_the_slopes_within_half_a_step(bits):
 
 
 @pytest.mark.parametrize("gradient_limit", [0.25, 1.0, 4.0])
-def test_codes_of_slopes_up_to_the_limit_fit_their_width(gradient_limit):
+def test_codes_of_slopes_up_to_the_limit_fit_their_width(gradient_limit: Any) -> None:
     largest = gradient_limit / (1 + 2.0**-8)  # what Sensor.gradient_limit leaves room for
     gradient = np.full((2, 2, 2, 2), largest)
     gradient[0] *= -1
@@ -54,7 +56,7 @@ def test_codes_of_slopes_up_to_the_limit_fit_their_width(gradient_limit):
     assert codes.min() == -codes.max()
 
 
-def test_a_gel_at_rest_has_slope_zero():
+def test_a_gel_at_rest_has_slope_zero() -> None:
     config = Configuration(columns=16)
     flat = np.full((16, 16, 3), 128, np.uint8)
     assert not np.any(gradient_lookup(flat, gradient_codes(synthetic(), config), config.bits_per_channel))

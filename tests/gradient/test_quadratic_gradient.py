@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """quadratic_gradient: RTL against the model, the model against the additions that the RTL makes."""
 
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -15,7 +19,7 @@ SOURCES = ["quadratic_gradient.sv", "ram.sv", "multiply.sv", "round_saturate.sv"
 WORDS = (2, 3, 6)
 
 
-def any_words(width, seed=1):
+def any_words(width: int, seed: int = 1) -> Any:
     return np.random.default_rng(seed).integers(-(1 << width - 1), 1 << width - 1, WORDS)
 
 
@@ -33,7 +37,7 @@ def any_words(width, seed=1):
         (12, 4, 5, 9, -2),
     ],
 )
-def test_rtl(run_tb, width, deviation, coefficient, word, drop):
+def test_rtl(run_tb: Callable[..., None], width: int, deviation: Any, coefficient: Any, word: Any, drop: int) -> None:
     run_tb(
         "quadratic_gradient",
         SOURCES,
@@ -43,7 +47,7 @@ def test_rtl(run_tb, width, deviation, coefficient, word, drop):
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 7), st.sampled_from([6, 32]))
-def test_polynomials_run_along_the_raster_by_additions(seed, rows, columns, width):
+def test_polynomials_run_along_the_raster_by_additions(seed: int, rows: int, columns: int, width: int) -> None:
     words = any_words(width, seed)
     kept = coefficients(words, rows, columns, width, 4)
     a, b, d, e, f, h = (words[..., term] for term in range(6))
@@ -57,7 +61,7 @@ def test_polynomials_run_along_the_raster_by_additions(seed, rows, columns, widt
         a, e, b = a + e, e + f, b + h
 
 
-def test_a_sum_of_products_is_rounded_once_to_even_and_saturated():
+def test_a_sum_of_products_is_rounded_once_to_even_and_saturated() -> None:
     factors = np.array([[3, 1, -2], [1, 1, 1]])[..., None, None]
     deviation = np.array([[[2, 0, 0]], [[0, 1, 0]], [[3, 1, 2]], [[100, 100, -100]]])[None]
     monitor = Monitor()
@@ -67,7 +71,7 @@ def test_a_sum_of_products_is_rounded_once_to_even_and_saturated():
     assert monitor.saturations["quadratic_gradient"] == 2
 
 
-def test_files_hold_every_word_once_for_each_bank(tmp_path):
+def test_files_hold_every_word_once_for_each_bank(tmp_path: Path) -> None:
     words = np.arange(36).reshape(WORDS) - 18
     write_quadratic(tmp_path, words, 8)
     whole = [int(line, 16) for line in (tmp_path / "quadratic.hex").read_text().split()]

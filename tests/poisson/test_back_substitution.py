@@ -2,6 +2,8 @@
 """back_substitution: RTL against the model; the model is tested with the whole solver."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -24,7 +26,7 @@ CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
     ],
     regress=[(CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24},)],
 )
-def test_rtl(run_tb, choices):
+def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     parameters = solver_parameters(config)
     run_tb(

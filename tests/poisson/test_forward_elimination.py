@@ -2,6 +2,8 @@
 """forward_elimination: RTL against the model; the model is tested with the whole solver."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -11,8 +13,8 @@ from tactile_depth.rom_files import write_thomas
 from tests.poisson.test_thomas_table import THOMAS_SOURCES
 
 SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "forward_elimination.sv"]
-NAMES = ("Width", "CoeffWidth", "Rows", "Size", "StoreDrop", "Neumann", "TableWords", "SettledWidth")
-NAMES += ("LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop")
+NAMES = ["Width", "CoeffWidth", "Rows", "Size", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
+NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
@@ -26,7 +28,7 @@ CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
     ],
     regress=[(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24},)],
 )
-def test_rtl(run_tb, choices):
+def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     parameters = solver_parameters(config)
     run_tb(

@@ -2,6 +2,8 @@
 """spectral_divide: RTL against the model, the model against the eigenvalues of the reference."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,7 +32,7 @@ SOURCES = ["burst_counter.sv", "rom.sv", "multiply.sv", "round_saturate.sv", "sp
         ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0},),
     ],
 )
-def test_rtl(run_tb, choices):
+def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     table = reciprocals(config)
     run_tb(
@@ -48,7 +50,7 @@ def test_rtl(run_tb, choices):
     )
 
 
-def divided(modes, config):
+def divided(modes: Any, config: Configuration) -> Any:
     """What the model should say, in codes, unrounded."""
     k = config.columns - bit_reversed(config.columns)
     eigenvalue = reference.eigenvalues(config.columns)[k - 1]
@@ -69,7 +71,7 @@ CONFIGURATIONS = [
 
 
 @pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda c: f"{c.columns}-{c.coefficient_width}")
-def test_model_divides_by_the_eigenvalues(config):
+def test_model_divides_by_the_eigenvalues(config: Configuration) -> None:
     """Half a step for the rounding; a mantissa of w bits, at least 2^(w - 2), errs by half its last bit."""
     shape = (config.columns, config.columns)
     limit = 2.0 ** (config.arithmetic_width - 1)
@@ -83,7 +85,7 @@ def test_model_divides_by_the_eigenvalues(config):
 
 
 @pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda c: f"{c.columns}-{c.coefficient_width}")
-def test_mantissas_are_normalised_and_at_least_one_bit_is_dropped(config):
+def test_mantissas_are_normalised_and_at_least_one_bit_is_dropped(config: Configuration) -> None:
     table = reciprocals(config)
     top = 2 ** (config.coefficient_width - 1)
     assert np.all((table.mantissa >= -top) & (table.mantissa <= -top // 2))
@@ -92,7 +94,7 @@ def test_mantissas_are_normalised_and_at_least_one_bit_is_dropped(config):
     assert table.shift.max() < 2**table.shift_width
 
 
-def test_rom_is_the_lower_triangle():
+def test_rom_is_the_lower_triangle() -> None:
     config = Configuration(columns=16)
     table, rom = reciprocals(config), reciprocal_rom(config)
     assert len(rom) == 16 * 17 // 2
@@ -108,7 +110,7 @@ def test_rom_is_the_lower_triangle():
 
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_negation_and_transposition_go_through(seed):
+def test_negation_and_transposition_go_through(seed: int) -> None:
     config = Configuration(columns=16)
     modes = np.random.default_rng(seed).integers(-(2**20), 2**20, (16, 16))
     out = spectral_divide(modes, config)
@@ -116,5 +118,5 @@ def test_negation_and_transposition_go_through(seed):
     np.testing.assert_array_equal(spectral_divide(modes.T, config), out.T)
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     assert not np.any(spectral_divide(np.zeros((16, 16), np.int64), Configuration(columns=16)))

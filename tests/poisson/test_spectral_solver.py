@@ -2,6 +2,8 @@
 """spectral_solver: RTL against the model, the model against the double-precision reference."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,7 +41,7 @@ SOLVER_SOURCES = [
         ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5},),
     ],
 )
-def test_rtl(run_tb, choices):
+def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     run_tb(
         "spectral_solver",
@@ -53,7 +55,7 @@ def test_rtl(run_tb, choices):
 PEAKS = np.linspace(3, 18, 6) / 128  # of the domes, over N: those of the accuracy bar (3 to 18 pixels at 128)
 
 
-def error_percent(config):
+def error_percent(config: Configuration) -> Any:
     """RMS error of each dome's depth in % of its peak; the reference is fed with the same slope codes."""
     slopes = np.stack([slopes_of(dome(config.columns, share * config.columns)) for share in PEAKS])
     f = divergence(np.rint(slopes / config.gradient.lsb).astype(np.int64))
@@ -78,7 +80,9 @@ def error_percent(config):
         (128, 32, 24, 0.000012, 0.000025),
     ],
 )
-def test_depth_is_near_the_reference(size, data_width, coefficient_width, mean, largest):
+def test_depth_is_near_the_reference(
+    size: int, data_width: int, coefficient_width: int, mean: bool, largest: int
+) -> None:
     config = Configuration(columns=size, data_width=data_width, coefficient_width=coefficient_width)
     error = error_percent(config)
     assert error.mean() < mean
@@ -89,7 +93,7 @@ CONFIG = Configuration(columns=16)
 NOISE = 6 * 5  # codes: six times the RMS error of a frame of 16 x 16, 5 codes
 
 
-def random_frame(seed):
+def random_frame(seed: int) -> Any:
     """Divergence whose depth stays within half of the range."""
     limit = 2.0 ** (CONFIG.divergence.width - 1) * 0.01
     return np.rint(np.random.default_rng(seed).uniform(-limit, limit, (16, 16))).astype(np.int64)
@@ -100,14 +104,14 @@ SEED = st.integers(0, 2**32 - 1)
 
 @settings(max_examples=30, deadline=None)
 @given(SEED)
-def test_negation_goes_through(seed):
+def test_negation_goes_through(seed: int) -> None:
     f = random_frame(seed)
     np.testing.assert_array_equal(spectral_solver(-f, CONFIG), -spectral_solver(f, CONFIG))
 
 
 @settings(max_examples=30, deadline=None)
 @given(SEED)
-def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed):
+def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed: int) -> None:
     f = random_frame(seed)
     z = spectral_solver(f, CONFIG)
     assert np.abs(spectral_solver(f.T, CONFIG) - z.T).max() < NOISE
@@ -116,16 +120,16 @@ def test_a_transposed_or_turned_frame_gives_its_depth_within_rounding(seed):
 
 @settings(max_examples=30, deadline=None)
 @given(SEED, SEED)
-def test_sums_go_through_within_rounding(seed, other):
+def test_sums_go_through_within_rounding(seed: int, other: Any) -> None:
     f, g = random_frame(seed), random_frame(other)
     error = spectral_solver(f + g, CONFIG) - spectral_solver(f, CONFIG) - spectral_solver(g, CONFIG)
     assert np.abs(error).max() < 2 * NOISE
 
 
-def test_frames_do_not_mix():
+def test_frames_do_not_mix() -> None:
     f = np.stack([random_frame(seed) for seed in range(3)])
     np.testing.assert_array_equal(spectral_solver(f, CONFIG), [spectral_solver(frame, CONFIG) for frame in f])
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     assert not np.any(spectral_solver(np.zeros((16, 16), np.int64), CONFIG))

@@ -3,6 +3,8 @@
 
 import json
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +24,7 @@ CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
     both=[(CHOICES | {"neumann": True},)],
     icarus=[(CHOICES,), (CHOICES | {"columns": 32, "rows": 50, "neumann": True},)],
 )
-def test_rtl(run_tb, choices):
+def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     parameters = solver_parameters(config)
     taken = ("CoeffWidth", "Rows", "Size", "SettledWidth", "LastShiftWidth")
@@ -37,7 +39,7 @@ def test_rtl(run_tb, choices):
 
 @pytest.mark.parametrize("neumann", [False, True])
 @pytest.mark.parametrize(("columns", "rows"), [(16, 8), (64, 64), (128, 100), (256, 240)])
-def test_entries_solve_the_system(columns, rows, neumann):
+def test_entries_solve_the_system(columns: int, rows: int, neumann: bool) -> None:
     config = Configuration(columns=columns, rows=rows, solver="tridiagonal", neumann=neumann)
     table = thomas_table(config)
     scale = 2.0 ** (1 - config.coefficient_width)
@@ -64,7 +66,7 @@ def test_entries_solve_the_system(columns, rows, neumann):
 
 
 @pytest.mark.parametrize(("size", "words"), [(64, 607), (128, 1379), (256, 3038), (512, 6473), (1024, 13822)])
-def test_size_is_near_the_estimate(size, words):
+def test_size_is_near_the_estimate(size: int, words: Any) -> None:
     table = thomas_table(Configuration(columns=size, solver="tridiagonal"))
     assert len(table.words) == words
     # 2 N / k rows to settle, for each mode k: 2 N (1 + ln(N / 2)) words; measured 18 % above that at 64, 0 % at 1024.

@@ -2,6 +2,8 @@
 """tridiagonal_solver: RTL against the model, the model against the double-precision reference."""
 
 import json
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +23,7 @@ SOURCES = sorted(
     {*SOLVER_SOURCES, *THOMAS_SOURCES, "tridiagonal_solver.sv", "frame_stack.sv"}
     | {"forward_elimination.sv", "back_substitution.sv"}
 )
-CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/configuration.py
 
 
@@ -38,7 +40,7 @@ PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, mo
         (CHOICES | {"columns": 32, "rows": 11}, PACKED),
     ],
 )
-def test_rtl(run_tb, choices, store):
+def test_rtl(run_tb: Callable[..., None], choices: Any, store: Any) -> None:
     config = Configuration(**choices)
     run_tb(
         "tridiagonal_solver",
@@ -49,13 +51,13 @@ def test_rtl(run_tb, choices, store):
     )
 
 
-def divergence_codes(slopes, config):
+def divergence_codes(slopes: np.ndarray, config: Configuration) -> tuple[Any, ...]:
     """Slopes (..., rows, columns, 2) as divergence codes, and the divergence they stand for."""
     f = divergence(np.rint(slopes / config.gradient_lsb).astype(np.int64), config.neumann)
     return f, f * config.gradient_lsb
 
 
-def error_percent(config, solver, slopes, in_stream_order):
+def error_percent(config: Any, solver: Any, slopes: np.ndarray, in_stream_order: Any) -> Any:
     f, exact = divergence_codes(slopes, config)
     monitor = Monitor()
     depth = solver(f, config, monitor) * config.depth_lsb_px
@@ -68,9 +70,9 @@ def error_percent(config, solver, slopes, in_stream_order):
 # Bars: 0.005 % at 128 with 24-bit words; with 27 bits 0.001 % at 128, 0.01 % at 512; Neumann twice that.
 @pytest.mark.parametrize("neumann", [False, True])
 @pytest.mark.parametrize(("size", "data_width", "mean"), [(64, 24, 0.002), (128, 24, 0.005), (128, 27, 0.001)])
-def test_depth_is_near_the_reference(size, data_width, mean, neumann):
+def test_depth_is_near_the_reference(size: int, data_width: int, mean: bool, neumann: bool) -> None:
     slopes = np.stack([slopes_of(dome(size, share * size)) for share in PEAKS])
-    choices = {"columns": size, "data_width": data_width, "neumann": neumann}
+    choices: dict[str, Any] = {"columns": size, "data_width": data_width, "neumann": neumann}
     bound = mean * (2 if neumann else 1)
     config = Configuration(**choices, solver="tridiagonal")
     error = error_percent(config, tridiagonal_solver, slopes, True)
@@ -84,7 +86,7 @@ def test_depth_is_near_the_reference(size, data_width, mean, neumann):
 
 @pytest.mark.parametrize("neumann", [False, True])
 @pytest.mark.parametrize(("columns", "rows"), [(16, 8), (64, 48), (64, 100), (256, 240)])
-def test_rectangles(columns, rows, neumann):
+def test_rectangles(columns: int, rows: int, neumann: bool) -> None:
     config = Configuration(columns=columns, rows=rows, solver="tridiagonal", neumann=neumann)
     size = max(columns, rows)
     height = dome(2 * size, size / 16)[size - rows // 2 :, size - columns // 2 :][:rows, :columns]
@@ -92,14 +94,14 @@ def test_rectangles(columns, rows, neumann):
     assert error.max() < 0.02
 
 
-def test_neumann_has_zero_mean():
+def test_neumann_has_zero_mean() -> None:
     config = Configuration(columns=32, rows=20, solver="tridiagonal", neumann=True)
     slopes = np.random.default_rng(1).uniform(-0.1, 0.1, (20, 32, 2))
     depth = tridiagonal_solver(divergence_codes(slopes, config)[0], config)
     assert abs(depth.mean() * config.depth_lsb_px) < 1e-4 * np.abs(depth).max() * config.depth_lsb_px
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     for neumann in (False, True):
         config = Configuration(**CHOICES, neumann=neumann)
         assert not np.any(tridiagonal_solver(np.zeros((8, 16), np.int64), config))

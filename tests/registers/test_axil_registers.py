@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """hdl/registers/axil_registers.sv against models/tactile_depth/registers/axil_registers.py."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from tactile_depth.configuration import Configuration
@@ -42,5 +45,5 @@ BUILDS = {"128": built(Configuration(columns=128)), "extremes": EXTREMES, "witho
     both=[("128",), *([("extremes",), ("without-gradient-table",)] if REGRESS else [])],
     icarus=[] if REGRESS else [("extremes",), ("without-gradient-table",)],
 )
-def test_axil_registers(run_tb, build):
+def test_axil_registers(run_tb: Callable[..., None], build: Any) -> None:
     run_tb("axil_registers", SOURCES, parameters=BUILDS[build])

@@ -3,6 +3,8 @@
 
 import shutil
 import subprocess
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,28 +18,28 @@ RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) fo
 
 
 @pytest.fixture(scope="module")
-def root():
+def root() -> Any:
     return registers.compiled()
 
 
-def test_written_files_are_up_to_date(root):
+def test_written_files_are_up_to_date(root: Any) -> None:
     for path, text in registers.generated(root).items():
         assert path.read_text() == text, f"{path.relative_to(ROOT)} is not what the map says: run make registers"
 
 
-def test_offsets_are_words_of_their_own():
+def test_offsets_are_words_of_their_own() -> None:
     offsets = [register.offset for register in MAP]
     assert len(set(offsets)) == len(offsets) == len(REGISTERS)
     assert all(offset % (WORD_BITS // 8) == 0 for offset in offsets)
     assert all(0 <= offset < 1 << ADDRESS_WIDTH for offset in offsets)
 
 
-def test_accesses_are_known():
+def test_accesses_are_known() -> None:
     for register in MAP:
         assert {field.access for field in register.fields} <= set(ACCESSES), register.name
 
 
-def test_an_access_that_no_register_has_is_refused(tmp_path):
+def test_an_access_that_no_register_has_is_refused(tmp_path: Path) -> None:
     source = tmp_path / "other.rdl"
     source.write_text("addrmap a { reg { field { sw = rw; onread = rclr; } value[31:0] = 0; } R @ 0; };\n")
     node = next(iter(registers.compiled(source).top.registers()))
@@ -45,26 +47,26 @@ def test_an_access_that_no_register_has_is_refused(tmp_path):
         registers.register_of(node)
 
 
-def test_a_table_has_the_bit_of_its_number_in_the_commit_register():
+def test_a_table_has_the_bit_of_its_number_in_the_commit_register() -> None:
     """hdl/registers/axil_registers.sv takes the one for the other."""
     assert {field.name: field.low for field in REGISTERS["TABLE_COMMIT"].fields} == dict(TABLES)
     assert sorted(TABLES.values()) == list(range(len(TABLES)))
 
 
 @pytest.mark.parametrize("register", MAP, ids=lambda register: register.name)
-def test_pack_is_the_inverse_of_unpack(register):
-    fields = {field.name: (n + 1) % (1 << field.width) for n, field in enumerate(register.fields)}
+def test_pack_is_the_inverse_of_unpack(register: Any) -> None:
+    fields: dict[str, Any] = {field.name: (n + 1) % (1 << field.width) for n, field in enumerate(register.fields)}
     assert register.unpack(register.pack(**fields)) == fields
 
 
-def test_a_value_too_large_for_its_field_is_refused():
+def test_a_value_too_large_for_its_field_is_refused() -> None:
     with pytest.raises(ValueError, match=r"STATUS\.busy=2 does not fit: accepted are 0 to 1"):
         REGISTERS["STATUS"].pack(busy=2)
     with pytest.raises(KeyError, match="it has rows, columns"):
         REGISTERS["GRID"].field("cols")
 
 
-def test_the_c_header(tmp_path):
+def test_the_c_header(tmp_path: Path) -> None:
     """A program that includes it finds every register where the map has it, and every field's bits and reset value."""
     compiler = shutil.which("gcc")
     if compiler is None:
@@ -89,21 +91,21 @@ def test_the_c_header(tmp_path):
     assert subprocess.run([tmp_path / "program"]).returncode == 0
 
 
-def test_the_python_layer(tmp_path, monkeypatch):
+def test_the_python_layer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It reads and writes fields by name; behind it the model of the registers in place of a device."""
     registers.python_layer(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    from tactile_depth_registers.lib import NormalCallbackSet
-    from tactile_depth_registers.reg_model import RegModel
+    from tactile_depth_registers.lib import NormalCallbackSet  # type: ignore[import-not-found]
+    from tactile_depth_registers.reg_model import RegModel  # type: ignore[import-not-found]
 
     model = AxilRegisters(BUILD, entry=lambda table, index: (0x1000 + index, 0x2000 + index))
 
-    def read(addr, **_):
+    def read(addr: int, **_: Any) -> Any:
         data, response = model.read(addr, Live(busy=True, in_use=model.bank, record=RECORD_WORDS))
         assert response == 0
         return data
 
-    def write(addr, data, **_):
+    def write(addr: Any, data: Any, **_: Any) -> None:
         assert model.write(addr, data, live=Live(in_use=model.bank)) == 0
 
     device = RegModel(callbacks=NormalCallbackSet(read_callback=read, write_callback=write))

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """dst_forward: RTL against the model, the model against scipy."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -29,17 +32,27 @@ SOURCES = [*FFT_SOURCES, "dst_forward.sv"]
     ],
     regress=[(64, 32, 1, 35, 24, 0, 35, 1)],
 )
-def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width, alternate):
+def test_rtl(
+    run_tb: Callable[..., None],
+    size: int,
+    in_width: int,
+    input_drop: int,
+    width: int,
+    coeff: int,
+    output_drop: int,
+    out_width: int,
+    alternate: bool,
+) -> None:
     parameters = transform_parameters(size, in_width, input_drop, width, coeff, output_drop, out_width, alternate)
     run_tb("dst_forward", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
 
 
-def transform(x, coeff, width=40):
+def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:
     """Of rows in natural order, at full precision but for the coefficients."""
     return dst_forward(x[..., makhoul(x.shape[-1])], 0, width, coeff, 0, width)
 
 
-def ideal(x):
+def ideal(x: Any) -> Any:
     """scipy's DST-II (twice the sum, modes from 1) in the order and with the halvings of the hardware."""
     size = x.shape[-1]
     return dst(x, type=2)[..., size - 1 - bit_reversed(size)] / 2 * 2.0 ** -halvings(size, inverse=False)
@@ -47,7 +60,7 @@ def ideal(x):
 
 @pytest.mark.parametrize("coeff", [18, 24])
 @pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
-def test_model_is_the_dst_but_for_rounded_coefficients(size, coeff):
+def test_model_is_the_dst_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     x = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     want = ideal(x) * coefficient_gain(coeff) ** (twiddle_stages(size) + 1)
     error = np.std(transform(x, coeff) - want) / np.std(want)
@@ -61,7 +74,7 @@ def test_model_is_the_dst_but_for_rounded_coefficients(size, coeff):
     ("size", "rms", "largest"),
     [(8, 0.6, 2), (16, 0.65, 2.5), (32, 0.9, 4), (64, 0.8, 4), (128, 1.1, 5), (256, 0.95, 5), (512, 1.3, 6)],
 )
-def test_rounding_stays_within_steps(size, rms, largest):
+def test_rounding_stays_within_steps(size: int, rms: Any, largest: int) -> None:
     x = np.random.default_rng(size).integers(-(2**12), 2**12, (200, size))
     error = transform(x, 30, 30) - ideal(x)
     assert np.std(error) < rms
@@ -74,14 +87,14 @@ SIZE = st.sampled_from([8, 16, 32, 64])
 
 @settings(max_examples=40, deadline=None)
 @given(SEED, SIZE)
-def test_negation_goes_through(seed, size):
+def test_negation_goes_through(seed: int, size: int) -> None:
     x = np.random.default_rng(seed).integers(-(2**20), 2**20, size)
     np.testing.assert_array_equal(transform(-x, 18, 30), -transform(x, 18, 30))
 
 
 @settings(max_examples=40, deadline=None)
 @given(SEED, SIZE, st.integers(-3, 3))
-def test_sums_go_through_within_their_rounding(seed, size, factor):
+def test_sums_go_through_within_their_rounding(seed: int, size: int, factor: int) -> None:
     x, y = np.random.default_rng(seed).integers(-(2**16), 2**16, (2, size))
     error = transform(factor * x + y, 30) - factor * transform(x, 30) - transform(y, 30)
     assert np.abs(error).max() <= (1 + abs(factor) + 1) * 4  # each transform is within 4 steps, see above
@@ -89,7 +102,7 @@ def test_sums_go_through_within_their_rounding(seed, size, factor):
 
 @settings(max_examples=40, deadline=None)
 @given(SEED, SIZE)
-def test_a_reversed_row_negates_every_second_mode(seed, size):
+def test_a_reversed_row_negates_every_second_mode(seed: int, size: int) -> None:
     """Sines about the middle: odd modes are even, even modes odd."""
     x = np.random.default_rng(seed).integers(-(2**16), 2**16, size)
     sign = 1 - 2 * (bit_reversed(size) % 2)  # position of mode N - k, so modes and k are of one parity
@@ -97,5 +110,5 @@ def test_a_reversed_row_negates_every_second_mode(seed, size):
     assert np.abs(error).max() <= 2 * 4
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     assert not np.any(transform(np.zeros(16, np.int64), 18))

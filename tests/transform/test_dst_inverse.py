@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """dst_inverse: RTL against the model, the model against dst_forward and scipy."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -30,18 +33,28 @@ SOURCES = [*FFT_SOURCES, "dst_inverse.sv", "mode_pairs.sv"]
     ],
     regress=[(64, 35, 0, 35, 24, -1, 32, 1)],
 )
-def test_rtl(run_tb, size, in_width, input_drop, width, coeff, output_drop, out_width, alternate):
+def test_rtl(
+    run_tb: Callable[..., None],
+    size: int,
+    in_width: int,
+    input_drop: int,
+    width: int,
+    coeff: int,
+    output_drop: int,
+    out_width: int,
+    alternate: bool,
+) -> None:
     parameters = transform_parameters(size, in_width, input_drop, width, coeff, output_drop, out_width, alternate)
     run_tb("dst_inverse", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
 
 
-def inverse(modes, coeff, width=40):
+def inverse(modes: Any, coeff: int, width: int = 40) -> Any:
     return dst_inverse(modes, 0, width, coeff, 0, width)
 
 
 @pytest.mark.parametrize("coeff", [18, 24])
 @pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
-def test_inverse_of_forward_is_the_gain_but_for_rounded_coefficients(size, coeff):
+def test_inverse_of_forward_is_the_gain_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     x = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     transforms = 2 * (twiddle_stages(size) + 1)
     back = inverse(dst_forward(x, 0, 40, coeff, 0, 40), coeff)
@@ -51,7 +64,7 @@ def test_inverse_of_forward_is_the_gain_but_for_rounded_coefficients(size, coeff
 
 @pytest.mark.parametrize("coeff", [18, 24])
 @pytest.mark.parametrize("size", [8, 16, 32, 64, 128, 256, 512])
-def test_model_is_the_inverse_dst_but_for_rounded_coefficients(size, coeff):
+def test_model_is_the_inverse_dst_but_for_rounded_coefficients(size: int, coeff: int) -> None:
     modes = np.random.default_rng(size).integers(-(2**30), 2**30, (20, size))
     natural = np.empty_like(modes)
     natural[:, size - 1 - bit_reversed(size)] = modes  # scipy's order, from mode 1
@@ -67,7 +80,7 @@ def test_model_is_the_inverse_dst_but_for_rounded_coefficients(size, coeff):
     ("size", "rms", "largest"),
     [(8, 0.7, 3), (16, 1.0, 4), (32, 1.1, 5), (64, 1.35, 6), (128, 1.4, 7), (256, 1.6, 7), (512, 1.65, 8)],
 )
-def test_there_and_back_stays_within_steps(size, rms, largest):
+def test_there_and_back_stays_within_steps(size: int, rms: Any, largest: int) -> None:
     x = np.random.default_rng(size).integers(-(2**12), 2**12, (200, size))
     error = inverse(dst_forward(x, 0, 30, 30, 0, 30), 30, 30) - x
     assert np.std(error) < rms
@@ -76,18 +89,18 @@ def test_there_and_back_stays_within_steps(size, rms, largest):
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([8, 16, 32, 64]))
-def test_negation_goes_through(seed, size):
+def test_negation_goes_through(seed: int, size: int) -> None:
     modes = np.random.default_rng(seed).integers(-(2**20), 2**20, size)
     np.testing.assert_array_equal(inverse(-modes, 18, 30), -inverse(modes, 18, 30))
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([8, 16, 32, 64]), st.integers(-3, 3))
-def test_sums_go_through_within_their_rounding(seed, size, factor):
+def test_sums_go_through_within_their_rounding(seed: int, size: int, factor: int) -> None:
     x, y = np.random.default_rng(seed).integers(-(2**16), 2**16, (2, size))
     error = inverse(factor * x + y, 30) - factor * inverse(x, 30) - inverse(y, 30)
     assert np.abs(error).max() <= (1 + abs(factor) + 1) * 5  # each transform is within 5 steps, see above
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     assert not np.any(inverse(np.zeros(16, np.int64), 18))

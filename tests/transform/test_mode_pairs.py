@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """mode_pairs: RTL against the model, the model against the definition."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -11,12 +13,12 @@ SOURCES = ["burst_counter.sv", "delay_line.sv", "mode_pairs.sv", "ram.sv"]
 
 
 @pytest.mark.structures("size width", both=[(32, 24)], icarus=[(8, 27), (16, 12), (64, 24), (8, 4)])
-def test_rtl(run_tb, size, width):
+def test_rtl(run_tb: Callable[..., None], size: int, width: int) -> None:
     run_tb("mode_pairs", SOURCES, {"Size": size, "Width": width})
 
 
 @pytest.mark.parametrize("size", [8, 16, 128, 512])
-def test_mode_k_meets_mode_n_minus_k_and_mode_n_is_zero(size):
+def test_mode_k_meets_mode_n_minus_k_and_mode_n_is_zero(size: int) -> None:
     by_mode = np.append(np.arange(1, size + 1), 0)  # mode k holds k + 1, and mode N nothing
     k = bit_reversed(size)
     mode, mirrored = mode_pairs(by_mode[k])
@@ -25,6 +27,6 @@ def test_mode_k_meets_mode_n_minus_k_and_mode_n_is_zero(size):
 
 
 @pytest.mark.parametrize("size", [8, 64, 512])
-def test_orders_are_their_own_inverses(size):
+def test_orders_are_their_own_inverses(size: int) -> None:
     for order in (bit_reversed(size), mirror(size)):
         np.testing.assert_array_equal(order[order], np.arange(size))

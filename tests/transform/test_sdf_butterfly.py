@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """sdf_butterfly: RTL against the model, the model against complex sums."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -28,7 +31,9 @@ SOURCES = ["burst_counter.sv", "delay_line.sv", "ram.sv", "round_saturate.sv", "
         (64, 32, 64, 0, 0, 27),
     ],
 )
-def test_rtl(run_tb, size, delay, rotate_block, inverse, halve, width):
+def test_rtl(
+    run_tb: Callable[..., None], size: int, delay: Any, rotate_block: Any, inverse: bool, halve: Any, width: int
+) -> None:
     parameters = {
         "Size": size,
         "Delay": delay,
@@ -44,7 +49,7 @@ WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)
 
 
 @given(WORDS, st.booleans(), st.sampled_from([Stage(16, delay=8, rotate=True), Stage(16, delay=4, rotate=True)]))
-def test_model_is_the_complex_sum_and_difference(words, inverse, stage):
+def test_model_is_the_complex_sum_and_difference(words: Any, inverse: bool, stage: Any) -> None:
     re, im = np.array(words).reshape(2, 16)
     z = re + 1j * im
     z[12:] *= 1j if inverse else -1j
@@ -57,7 +62,7 @@ def test_model_is_the_complex_sum_and_difference(words, inverse, stage):
 
 
 @given(WORDS, st.booleans())
-def test_negation_goes_through(words, inverse):
+def test_negation_goes_through(words: Any, inverse: bool) -> None:
     re, im = np.array(words).reshape(2, 16)
     stage = Stage(16, delay=4, rotate=True, halve=True)
     forward, backward = (sdf_butterfly(s * re, s * im, stage, inverse, 40) for s in (1, -1))
@@ -65,14 +70,14 @@ def test_negation_goes_through(words, inverse):
 
 
 @given(WORDS)
-def test_twice_is_twice_unless_it_halves(words):
+def test_twice_is_twice_unless_it_halves(words: Any) -> None:
     re, im = np.array(words).reshape(2, 16)
     stage = Stage(16, delay=8)
     twice = sdf_butterfly(*sdf_butterfly(re, im, stage, False, 40), stage, False, 40)
     np.testing.assert_array_equal(twice, 2 * np.stack((re, im)))
 
 
-def test_full_scale_sums_saturate_and_halved_ones_do_not():
+def test_full_scale_sums_saturate_and_halved_ones_do_not() -> None:
     full = np.full(16, 127)
     for halve, clipped in ((False, 16), (True, 0)):  # the sums of both parts; the differences are 0
         monitor = Monitor()
@@ -80,6 +85,6 @@ def test_full_scale_sums_saturate_and_halved_ones_do_not():
         assert monitor.saturations.total() == clipped
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     zero = np.zeros(16, np.int64)
     assert not np.any(sdf_butterfly(zero, zero, Stage(16, 8, rotate=True, halve=True), True, 8))

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """transpose: RTL against the model, the model against numpy."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -21,14 +24,14 @@ SOURCES = ["burst_counter.sv", "ram.sv", "transpose.sv"]
         (4, 5, 0, 1),
     ],
 )
-def test_rtl(run_tb, size, width, makhoul_in, makhoul_out):
+def test_rtl(run_tb: Callable[..., None], size: int, width: int, makhoul_in: int, makhoul_out: int) -> None:
     parameters = {"Size": size, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
     run_tb("transpose", SOURCES, parameters)
 
 
 @pytest.mark.parametrize("makhoul_out", [False, True])
 @pytest.mark.parametrize("makhoul_in", [False, True])
-def test_rows_become_columns(makhoul_in, makhoul_out):
+def test_rows_become_columns(makhoul_in: Any, makhoul_out: Any) -> None:
     size = 16
     frames = np.arange(3 * size * size).reshape(3, size, size)
     order = makhoul(size)
@@ -40,6 +43,6 @@ def test_rows_become_columns(makhoul_in, makhoul_out):
             np.testing.assert_array_equal(columns[c], column[order] if makhoul_out else column)
 
 
-def test_twice_is_the_frame():
+def test_twice_is_the_frame() -> None:
     frame = np.arange(64).reshape(8, 8)
     np.testing.assert_array_equal(transpose(transpose(frame, False, True), True, False), frame)

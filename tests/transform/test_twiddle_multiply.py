@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """twiddle_multiply: RTL against the model, the model against complex products."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -33,7 +36,17 @@ MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
         ("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0),
     ],
 )
-def test_rtl(run_tb, factors, size, block, in_width, out_width, coeff, drop, real_only):
+def test_rtl(
+    run_tb: Callable[..., None],
+    factors: Any,
+    size: int,
+    block: Any,
+    in_width: int,
+    out_width: int,
+    coeff: int,
+    drop: int,
+    real_only: bool,
+) -> None:
     kind, direction = factors.split("_")
     run_tb(
         "twiddle_multiply",
@@ -56,7 +69,7 @@ def test_rtl(run_tb, factors, size, block, in_width, out_width, coeff, drop, rea
 
 @pytest.mark.parametrize("inverse", [False, True])
 @pytest.mark.parametrize(("block", "coeff"), [(8, 10), (64, 18), (512, 24)])
-def test_factors_are_roots_of_unity_within_half_a_bit(block, coeff, inverse):
+def test_factors_are_roots_of_unity_within_half_a_bit(block: Any, coeff: int, inverse: bool) -> None:
     n = np.arange(block // 4)
     exponent = np.concatenate((0 * n, 2 * n, n, 3 * n))  # the butterflies leave the quarters in order 0, 2, 1, 3
     want = np.exp((2j if inverse else -2j) * np.pi * exponent / block) * (2 ** (coeff - 1) - 1)
@@ -65,7 +78,7 @@ def test_factors_are_roots_of_unity_within_half_a_bit(block, coeff, inverse):
 
 
 @pytest.mark.parametrize(("size", "coeff"), [(16, 10), (128, 18), (512, 24)])
-def test_phases_are_those_of_makhoul_within_half_a_bit(size, coeff):
+def test_phases_are_those_of_makhoul_within_half_a_bit(size: int, coeff: int) -> None:
     forward = np.exp(-0.5j * np.pi * bit_reversed(size) / size)
     for inverse, want in ((False, forward), (True, forward.conj() / 1j)):
         error = phase_factors(size, inverse, coeff) / (2 ** (coeff - 1) - 1)
@@ -74,7 +87,7 @@ def test_phases_are_those_of_makhoul_within_half_a_bit(size, coeff):
 
 
 @pytest.mark.parametrize("coeff", [10, 18, 24])
-def test_a_factor_of_one_is_the_gain_and_no_factor_is_the_lowest_code(coeff):
+def test_a_factor_of_one_is_the_gain_and_no_factor_is_the_lowest_code(coeff: int) -> None:
     top = 2 ** (coeff - 1) - 1
     assert coefficient(np.array([1.0, -1.0, 0.0]), coeff).tolist() == [top, -top, 0]
     assert top / 2 ** (coeff - 1) == coefficient_gain(coeff)
@@ -84,7 +97,7 @@ WORDS = st.lists(st.integers(-(2**26), 2**26 - 1), min_size=64, max_size=64)
 
 
 @given(WORDS, st.booleans())
-def test_model_is_the_complex_product_rounded_once(words, inverse):
+def test_model_is_the_complex_product_rounded_once(words: Any, inverse: bool) -> None:
     re, im = np.array(words).reshape(2, 32)
     factors = twiddle_factors(16, inverse, 18)
     out_re, out_im = twiddle_multiply(re, im, factors, 17, 40)
@@ -94,14 +107,14 @@ def test_model_is_the_complex_product_rounded_once(words, inverse):
 
 
 @given(WORDS, st.booleans())
-def test_negation_goes_through(words, real_only):
+def test_negation_goes_through(words: Any, real_only: bool) -> None:
     re, im = np.array(words).reshape(2, 32)
     factors = phase_factors(32, False, 18)
     forward, backward = (twiddle_multiply(s * re, s * im, factors, 17, 40, real_only=real_only) for s in (1, -1))
     np.testing.assert_array_equal(np.negative(forward), backward)
 
 
-def test_a_turned_corner_saturates():
+def test_a_turned_corner_saturates() -> None:
     """(A, A) turned by an eighth is (1.41 A, 0): it needs the guard bit that formats leave it."""
     full = np.full(8, 2**26 - 1)
     monitor = Monitor()
@@ -111,6 +124,6 @@ def test_a_turned_corner_saturates():
     assert monitor.saturations["twiddle.re"] > 0
 
 
-def test_zero_gives_zero():
+def test_zero_gives_zero() -> None:
     zero = np.zeros(16, np.int64)
     assert not np.any(twiddle_multiply(zero, zero, phase_factors(16, True, 18), 17, 27))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sources, parameters and error bounds that the tests of the FFT and of both sine transforms share."""
 
+from typing import Any
+
 import numpy as np
 
 FFT_SOURCES = [
@@ -30,12 +32,12 @@ TRANSFORM_PARAMETERS = (
 )
 
 
-def transform_parameters(*values):
+def transform_parameters(*values: Any) -> dict[Any, Any]:
     """Return the parameters of a sine transform by name."""
     return dict(zip(TRANSFORM_PARAMETERS, values, strict=True))
 
 
-def coefficient_noise(stages, coeff):
+def coefficient_noise(stages: Any, coeff: int) -> Any:
     """RMS error, relative to the RMS of the result, of a chain of multiplications by rounded factors.
 
     Both parts of a factor err by up to half a step of 2**(1 - coeff), evenly: sqrt(2 / 12) of it together,
