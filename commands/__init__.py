@@ -1,1 +1,1 @@
-"""What the make targets run."""
+"""Commands behind the make targets."""

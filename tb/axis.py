@@ -216,7 +216,7 @@ def positions(kind: str, rows: int, columns: int) -> list[int]:
 
 
 def faults_of(kind: str, position: int, columns: int) -> tuple[str, ...]:
-    """What a frame so broken is flagged as, between whole frames."""
+    """Return the faults that a frame broken in this way raises between whole frames."""
     return BREAKS[kind](position % columns > 0)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What of the fault list a run of tactile_depth comes by: bins, and the monitor that counts them.
+"""Bins of the fault list, and the monitor that counts them in a run of tactile_depth.
 
 A bin is "cover point: value, value, ..". The monitor watches; it drives and compares nothing. It looks inside the
 device only for what pins do not tell (where the guard stands, filler, frames in flight). With HDL_COVERAGE=1 it leaves

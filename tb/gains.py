@@ -24,7 +24,7 @@ def first_gains(rows: int, columns: int, channels: int, width: int) -> Any:
 
 
 def random_gains(config: Configuration, chance: random.Random, channels: int = 3, width: int = GAIN_WIDTH) -> Any:
-    """Of the nodes: anything, the limits alone, or like those of a sensor, by chance."""
+    """Return random gains of the nodes: anything, the limits alone, or like those of a sensor."""
     generator = np.random.default_rng(chance.getrandbits(32))
     shape = (*config.reference_nodes, channels)
     largest = (1 << width) - 1
@@ -40,7 +40,7 @@ def random_gains(config: Configuration, chance: random.Random, channels: int = 3
 
 @dataclass(frozen=True)
 class Grid:
-    """What the models need of a configuration, which cannot be as small."""
+    """Grid smaller than a configuration allows, with the fields that the models read."""
 
     rows: int
     columns: int
@@ -84,13 +84,15 @@ class Gains:
         return random_gains(self.config, chance)
 
     def entries(self, words: Any) -> Any:
-        """What the bus writes: index to word."""
+        """Return the words that the bus writes, by index."""
         return table_entries(words)
 
     async def settle(self, written: bool) -> None:
-        """What a test before this one has `written` is written over, with the gains at power-up. On Verilator always:
-        it begins with random pins, so that a first edge may have written a word. What the banks hold at power-up is
-        tested on Icarus, which begins with X, and by the top."""
+        """Write the gains at power-up into both banks if an earlier test has `written` others, and always on Verilator.
+
+        Verilator starts with random pins, so its first edge may write a word. Icarus, which starts with X, and the top
+        test the content at power-up.
+        """
         if written or cocotb.SIM_NAME.lower().startswith("verilator"):
             for _ in range(2):
                 await self.write(self.at_power_up())
@@ -101,7 +103,7 @@ class Gains:
                 await RisingEdge(self.dut.clk)
 
     def begin_frame(self) -> Any:
-        """What the head of the pipeline does with a frame's first pixel; the gains of that frame."""
+        """Do what the head of the pipeline does at a frame's first pixel; return the gains of that frame."""
         if self.due:
             self.change()
         return self.banks[self.bank]

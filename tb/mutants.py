@@ -46,7 +46,7 @@ class Child:
 
 
 def end_with_the_first_failure(pipe: Any) -> None:
-    """Of this process: leave as soon as a test fails, or when all have passed."""
+    """End this process as soon as a test fails, or when all have passed."""
     manager: Any = cocotb.regression.RegressionManager
 
     def failed(self: Any, *_: Any, result: Any = None, **__: Any) -> None:

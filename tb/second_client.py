@@ -80,7 +80,7 @@ class SecondSink:
         self.sink.set_pause_generator(not accept for accept in accepts)
 
     def words(self) -> list[Word]:
-        """What was taken since the last call."""
+        """Return the words taken since the last call."""
         out: list[Any] = []
         while not self.sink.empty():
             frame = self.sink.recv_nowait(compact=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What runs in the simulator of frame_bench: writes registers, starts it, waits for its end, reads the registers."""
+"""Driver of frame_bench in the simulator: writes registers, starts it, waits for its end, reads the registers."""
 
 import json
 import os

@@ -493,7 +493,7 @@ async def a_sink_that_waits_for_long(dut: Any) -> None:
 
 @TEST
 async def capture(dut: Any) -> None:
-    """Of two frames, with a broken one before them: colours of the frames after it are relative to their mean."""
+    """Capture two frames after a broken one: the colours of later frames are relative to their mean."""
     pipeline = await started(dut)
     start = CAPTURE.pack(start=1, log2_frames=1)
     if not pipeline.config.flat_field:
@@ -519,8 +519,11 @@ async def capture(dut: Any) -> None:
 
 @TEST
 async def floor_captured(dut: Any) -> None:
-    """Of two frames, a broken one between them, while frames go on: those that begin before it is there have the floor
-    of before from first depth to last, those that begin later the new one; both are in the pipeline at once."""
+    """Capture the floor from two frames with a broken one between them, while more frames stream.
+
+    Frames that begin before the capture ends keep the old floor from first depth to last. Later frames use the new
+    one. Both kinds are in the pipeline at once.
+    """
     pipeline = await started(dut, offers="random")
     start = FLOOR_CAPTURE.pack(start=1, log2_frames=1)
     if not pipeline.config.auto_zero:

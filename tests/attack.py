@@ -142,7 +142,7 @@ class Attack:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What was compared, and nothing differed."""
+    """Counts of an attack in which nothing differed."""
 
     cases: int
     kinds: dict[str, int]
@@ -198,7 +198,7 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
 
 
 def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: int, stalled: bool) -> int:
-    """What the bench saw with what the models say: how many whole frames left."""
+    """Compare the recording of the bench with the models; return the number of whole frames that left."""
     flagged = [FAULTS[numbers[0]] for letter, numbers in played.events if letter == "f"]
     assert flagged == guarded.faults, "faults, in their order"
     good = [frame for frame in guarded.frames if not frame.bad]

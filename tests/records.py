@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a test did, for the table of `make regress`."""
+"""Records of tests for the table of `make regress`."""
 
 import json
 import os

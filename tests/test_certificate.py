@@ -116,7 +116,7 @@ def laplacian(z: np.ndarray, neumann: bool) -> Any:
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 @pytest.mark.parametrize("depth_range_px", [0.25, 1.0, 4.0])
 def test_depths_at_their_bounds_saturate_no_node(solver: str, depth_range_px: Any) -> None:
-    """Of each node the depths that drive it furthest, from limit to limit: only the widest slope limit lets them in."""
+    """Depths that drive each node furthest, from limit to limit; only the widest slope limit lets them in."""
     config = Configuration(columns=16, solver=solver, depth_range_px=depth_range_px, gradient_limit=64.0)
     words, depth = whole_map(config)
     from_depth = np.linalg.inv(depth)

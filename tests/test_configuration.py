@@ -40,7 +40,7 @@ class Nodes(Monitor):
 
 
 def responses(size: Any) -> Any:
-    """Of a row's transforms to each sample: nodes forward (N, nodes), inverse (N, nodes), modes (N, N)."""
+    """Return responses of a row's transforms to each sample: forward (N, nodes), inverse (N, nodes), modes (N, N)."""
     wide: dict[str, Any] = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
     forward, inverse = Nodes(), Nodes()
     modes = dst_forward(np.eye(size)[:, makhoul(size)], monitor=forward, **wide)
@@ -79,7 +79,7 @@ def depth_patterns(size: int) -> Any:
 
 
 def ideal(frames: Any) -> Any:
-    """What nodes see when the transforms work on floats: modes of both directions, then back again."""
+    """Return the values at the nodes when the transforms work on floats, in both directions."""
     wide: dict[str, Any] = {"input_drop": 0, "width": 62, "coefficient_width": 50, "output_drop": 0, "output_width": 62}
     nodes = Nodes()
     rows = dst_forward(row_reorder(frames, True), monitor=nodes, node="row_forward", **wide)
@@ -104,7 +104,7 @@ def laplacian(z: np.ndarray) -> Any:
 
 
 def saturations(z: np.ndarray, config: Configuration) -> Any:
-    """Of depth fields in pixels, by node, in the bit-accurate solver."""
+    """Count saturations by node for depth fields in pixels, in the bit-accurate solver."""
     monitor = Monitor()
     f = np.rint(laplacian(z) / config.divergence.lsb).astype(np.int64)
     limit = 2 ** (config.divergence.width - 1)

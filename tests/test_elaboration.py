@@ -56,7 +56,7 @@ CASES = [(core, change) for core, changes in INVALID.items() for change in chang
 
 
 def refused(core: Any, change: Any, folder: Path) -> str:
-    """What Icarus says: it does not elaborate, or the simulation ends with $fatal at time 0."""
+    """Return the message with which Icarus refuses: at elaboration, or by $fatal at time 0."""
     changes = [f"-P{core}.{parameter}" for parameter in change.split()]
     sources = [str(path) for path in repository.sources()]
     built = folder / "built"

@@ -465,7 +465,7 @@ def decoded(video: Any) -> list[Any]:
 
 
 def read_back(path: Path) -> Any:
-    """What an .rrd holds: entity and component to the values by frame number, (None) for static ones."""
+    """Return the content of an .rrd: entity and component to values by frame number, (None) for static ones."""
     from rerun.chunk import RrdReader  # type: ignore[import-not-found]
 
     values: dict[Any, Any] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What holds of the models on any input: of those whose own tests state no property of this kind."""
+"""Properties of the models that hold on any input, for models whose own tests state none."""
 
 from typing import Any
 

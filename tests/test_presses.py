@@ -89,7 +89,7 @@ def test_no_circle_is_found_where_nothing_touches(seed: int) -> None:
 
 
 def test_circles_of_the_pictures_take_the_place_of_the_tables(folder: Path) -> None:
-    """Of a table with radii two pixels too large; those found lie within the contact, where the gel is on the ball."""
+    """A table with radii two pixels too large: the circles found lie within the contact, where gel touches ball."""
     write_table(folder, [{**row, "contact_radius_px": row["contact_radius_px"] + 2} for row in table_rows()])
 
     def error(find: Any) -> Any:

@@ -109,7 +109,7 @@ def test_rtl(run_tb: Callable[..., None], simulator: str, name: str) -> None:
 
 @pytest.mark.parametrize("simulator", ["icarus"], indirect=True)
 def test_words_side_by_side_in_the_frame_store(run_tb: Callable[..., None], simulator: str) -> None:
-    """As on grids too large for the tests of each beat."""
+    """Run the frame store as on grids too large for the tests of each beat."""
     choices: dict[str, Any] = {"columns": 32, "solver": "tridiagonal", "bits_per_channel": 2}
     config = Configuration(**choices)
     run_tb(

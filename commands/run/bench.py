@@ -52,7 +52,7 @@ def frame_entries(frames: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Played:
-    """What the bench wrote down.
+    """Recording of the bench.
 
     Attributes
     ----------

@@ -141,7 +141,7 @@ def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
 
 @dataclass(frozen=True)
 class Decision:
-    """What the pins showed in one trial, in clocks.
+    """Decision of one trial as seen at the pins, in clocks.
 
     Attributes
     ----------
@@ -174,7 +174,7 @@ class Loop:
 
 
 def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
-    """What the bench plays, and how many clocks that takes at least."""
+    """Return the entries for the bench and the smallest number of clocks they take."""
     gap, period = spacing(request)
     parts: list[np.ndarray] = []
     clocks = 0
@@ -385,7 +385,7 @@ def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
 
 
 def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
-    """What would have to differ for the published mean and spread of contact to command."""
+    """Return the changes that would give the published mean and spread of contact to command."""
     mean, spread = published.REFLEX["near"]["command"]
     middle = near["parts"]["indentation grows to the threshold, and the next exposure comes"]["mean"]
     growth = middle - setup.frame / 2

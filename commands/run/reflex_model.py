@@ -105,13 +105,13 @@ class Setup:
         return self.exposed(phase, frame) - self.exposure * self.frame / 2
 
     def depth(self, phase: float, frame: int) -> float:
-        """How deep the pin is then, mm."""
+        """Return the depth of the pin at that time, mm."""
         return min(max(self.speed * self.middle(phase, frame) / 1000, 0.0), STOP_MM)
 
 
 @dataclass(frozen=True)
 class Draws:
-    """What chance decides in the trials of a path; one entry a trial.
+    """Random draws for the trials of a path, one entry per trial.
 
     Attributes
     ----------
@@ -139,7 +139,7 @@ def draw(trials: int, seed: int, path: str) -> Draws:
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for."""
+    """Request of the user."""
 
     size: int
     clock_mhz: float
@@ -153,7 +153,7 @@ class Request:
 
 
 def picture(setup: Setup, draws: Draws, trial: int, frame: int, size: int) -> np.ndarray:
-    """What the sensor sees of a trial in one of its frames: uint8 (size, size, 3)."""
+    """Return one frame of a trial as the sensor sees it: uint8 (size, size, 3)."""
     depth = setup.depth(draws.phase[trial], frame)
     seed = int(np.random.SeedSequence([int(draws.noise[trial]), frame + 1]).generate_state(1)[0])
     name, press = (PIN, Press(depth)) if depth else ("flat", Press())
@@ -172,7 +172,7 @@ def spacing(request: Request) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Times:
-    """Of each trial of a path, ms; `parts` add up to contact to motion."""
+    """Times of each trial of a path in ms; `parts` add up to contact to motion."""
 
     command: np.ndarray
     motion: np.ndarray

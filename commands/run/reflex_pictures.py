@@ -96,7 +96,7 @@ class Film:
 
 
 def _came(begin: float, duration: float, now: float, count: int) -> int:
-    """How many of `count` things that come evenly have come."""
+    """Return the number of `count` evenly spaced events that have happened."""
     return int(np.clip((now - begin) / duration, 0, 1) * count)
 
 

@@ -37,7 +37,7 @@ def sub_frame_rows(document: dict[str, Any]) -> list[tuple[str, ...]]:
 
 
 def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """What the command prints and the report shows: title, head and rows of each table."""
+    """Return title, head and rows of each table that the command prints and the report shows."""
     near, host, published = document["near"], document["host"], document["published"]
 
     def row(name: str, path: dict[str, Any]) -> tuple[str, ...]:
@@ -106,7 +106,7 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
-    """What the tables say, with their numbers."""
+    """Return sentences that sum up the tables."""
     first, found = next(iter(document["near"].items()))
     earlier, why = document["sub_frame"]["tridiagonal_earlier_clocks"], document["difference"]
     share = 100 * earlier["mean_us"] / 1000 / found["command"]["mean"]

@@ -72,7 +72,7 @@ LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for, checked as far as it can be without reading files."""
+    """Request of the user, checked as far as possible without reading files."""
 
     rows: int
     columns: int
@@ -268,7 +268,7 @@ def untouched(request: Request, frames: Frames) -> np.ndarray | None:
 
 
 def floor_of(rest: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray | None:
-    """What a capture of those frames measures, codes (node rows, node columns)."""
+    """Return the zero offset that a capture of these frames measures, codes (node rows, node columns)."""
     if rest is None:
         return None
     return captured_floor(tactile_depth(rest, calibration, replace(config, auto_zero=False)), config)

@@ -35,7 +35,7 @@ def measure(played: bench.Played) -> dict[str, list[int | None]]:
 
 
 def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
-    """What the hardware counted against what was seen from outside; one line for each that differs."""
+    """Compare the counters of the hardware with the events seen at the pins; return one line for each difference."""
     total = report["frames"]
     clipped = sum(report["saturations"].values())
     expected = {

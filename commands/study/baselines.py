@@ -184,7 +184,7 @@ def pipeline(sizes: Sequence[int], clock_mhz: float) -> list[dict[str, Any]]:
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for."""
+    """Request of the user."""
 
     grids: tuple[int, ...]
     runs: int

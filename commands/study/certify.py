@@ -112,7 +112,7 @@ def _corners(codes: np.ndarray) -> np.ndarray:
 
 
 def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], peaks: Peaks) -> list[str]:
-    """What the model did with the frames, against the certificate; one line for each that differs."""
+    """Compare the model's words for the frames with the certificate; return one line for each difference."""
     order = [node.name for node in nodes]
     rounding = ROUNDING_STEPS * frames[0, ..., 0].size / (2 * math.pi**2)  # the solve amplifies the lowest mode so much
     faults = []
@@ -150,7 +150,7 @@ def table(nodes: list[Node]) -> str:
 
 
 def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
-    """What the table says, in sentences."""
+    """Return the table as sentences."""
     mm = config.depth_range_px * pixel_pitch_mm  # type: ignore[operator]
     steep = [node for node in nodes if node.slopes_headroom_bits < 0]
     deep = [node for node in nodes if node.depths_headroom_bits < 0]
@@ -180,7 +180,7 @@ def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> 
 
 
 def cost_of_worst(config: Configuration, pixel_pitch_mm: float) -> str:
-    """What a depth range that nothing leaves costs against the default one."""
+    """Return the cost of a depth range that no slopes can leave, against the default one."""
     default = dataclasses.replace(config, depth_range_px=None)
     bits = math.log2(config.depth_lsb_px / default.depth_lsb_px)
     nm = [1e6 * pixel_pitch_mm * each.depth_lsb_px for each in (config, default)]
@@ -189,7 +189,7 @@ def cost_of_worst(config: Configuration, pixel_pitch_mm: float) -> str:
 
 @dataclass(frozen=True)
 class Streamed:
-    """What the RTL made of frames, with the model beside it.
+    """Codes of the RTL for the frames, and those of the model.
 
     Attributes
     ----------
@@ -261,8 +261,9 @@ def run(request: sim.Request, rtl: bool = True) -> int:
 
     frames, attempts = worst_frames(nodes, calibration, config)
     peaks = Peaks({node.name: node.form.width for node in nodes}, len(frames))
-    for peaks.first in tqdm(range(0, len(frames), BATCH), desc="model", leave=False, disable=None, delay=3):
-        tactile_depth(frames[peaks.first : peaks.first + BATCH], calibration, config, peaks)
+    for first in tqdm(range(0, len(frames), BATCH), desc="model", leave=False, disable=None, delay=3):
+        peaks.first = first
+        tactile_depth(frames[first : first + BATCH], calibration, config, peaks)
     faults = check_model(frames, attempts, nodes, peaks)
     clipping = sorted(node for node, clips in peaks.clips.items() if clips.any())
     if rtl:

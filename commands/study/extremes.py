@@ -66,7 +66,7 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Row:
-    """What came of it. Errors against double precision, in % of the peak (None without one) and in codes."""
+    """Result of one case. Errors against double precision, in % of the peak (None without one) and in codes."""
 
     extreme: str
     solver: str
@@ -227,7 +227,7 @@ def _largest(values: list[float | None]) -> float | None:
 
 
 def faults(extreme: Extreme, row: Row) -> list[str]:
-    """What is not as it must be."""
+    """Return one line for each result that is out of bounds."""
     found = []
     if not row.bit_exact:
         found.append("RTL differs from the model, or a frame from its repetition")

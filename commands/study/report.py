@@ -84,7 +84,7 @@ def run_extremes(folder: Path) -> None:
 
 
 def document_of(command: Any, name: str) -> dict[str, Any]:
-    """What make reflex or make baselines left; it is run, as by itself, when it has not left anything."""
+    """Return the results of make reflex or make baselines; run the command first if it left none."""
     file = command.DEFAULT_OUT / f"{name}.json"
     if not file.exists():
         command.run(command.parse([]))
@@ -312,7 +312,7 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
 
 
 def extremes_figures(folder: Path) -> list[Figure]:
-    """Of what `make extremes` left in a folder."""
+    """Return the figures that `make extremes` left in a folder."""
     document = json.loads((folder / "extremes.json").read_text())
 
     def percent(value: float | None) -> str:
@@ -395,7 +395,7 @@ def baselines_figure(document: dict[str, Any]) -> Figure:
 
 
 def latest(flow: str, file: str) -> dict[str, Any] | None:
-    """What a flow left last in build/<flow>/, of any configuration."""
+    """Return the latest result in build/<flow>/, for any configuration."""
     found = sorted((ROOT / "build" / flow).glob(f"*/{file}"), key=lambda path: path.stat().st_mtime)
     return json.loads(found[-1].read_text()) if found else None
 
@@ -425,7 +425,7 @@ def asic_figure(document: dict[str, Any]) -> Figure:
 
 
 def hardware_figures() -> list[Figure]:
-    """Of each flow what it left last; they take minutes, so a page does not run them."""
+    """Return the latest result of each flow; a flow takes minutes, so a page does not run it."""
     flows: list[tuple[str, str, Callable[[dict[str, Any]], Figure]]] = [
         ("synth", "resources.json", synth_figure),
         ("fpga", "fpga.json", fpga_figure),

@@ -65,7 +65,7 @@ def plan() -> list[Choices]:
 
 
 def pixels(choices: Choices) -> int:
-    """Of a frame: what a configuration's time goes by."""
+    """Return the pixels of a frame; the time of a configuration grows with them."""
     return int(choices.get("columns", Configuration().columns)) ** 2
 
 
@@ -248,7 +248,7 @@ def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> li
 
 
 def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
-    """What a depth range that no slopes can leave costs in accuracy, and in bits to have it back."""
+    """Return the accuracy that a depth range costs which no slopes can leave, and the bits that win it back."""
     errors = {}
     for depth_range in ("default", "worst"):
         wanted = configuration_cells({"solver": solver}) | {"depth_range": depth_range}

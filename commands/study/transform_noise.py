@@ -159,7 +159,7 @@ def compliance(config: Configuration, count: int) -> list[Compliance]:
 
 
 def _standard_errors(error: np.ndarray) -> float:
-    """How far the mean error of blocks (blocks, ..) is from zero, in standard errors: a bias shows as many."""
+    """Distance of the mean error of blocks (blocks, ..) from zero, in standard errors; many of them mean a bias."""
     means = error.reshape(len(error), -1).mean(axis=1)
     spread = float(means.std(ddof=1)) / np.sqrt(len(means))
     return float(abs(means.mean())) / spread if spread else 0.0

@@ -56,7 +56,7 @@ NOISE_LEVELS = 1.0  # standard deviation of their noise, grey levels
 
 @dataclass(frozen=True)
 class Limits:
-    """What the user sets; an infinite limit is none."""
+    """Limits of the user; an infinite limit is none."""
 
     tolerance: float
     latency_us: float
@@ -65,7 +65,7 @@ class Limits:
     memory_kbit: float
 
     def broken(self, counted: Cost) -> list[str]:
-        """What a configuration exceeds, apart from the tolerance."""
+        """Return the limits that a configuration exceeds, apart from the tolerance."""
         latency = counted.first_depth_cycles / self.clock_mhz
         checks = (
             ("MAX_LATENCY_US", latency, self.latency_us),
@@ -164,7 +164,7 @@ class Search:
 
 
 def _wider(a: Widths, b: Widths) -> bool:
-    """Whether a has all that b has, and more."""
+    """Return True if a is at least as wide as b in every word, and wider in one."""
     return a != b and a.solver == b.solver and a.data >= b.data and a.coefficient >= b.coefficient
 
 
@@ -274,7 +274,7 @@ def config_file(request: sim.Request, at: Widths) -> dict[str, str | int | float
 
 
 def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:
-    """What a configuration takes, and how much less than another."""
+    """Return the cost of a configuration, and the saving against another."""
 
     def change(quantity: str) -> str:
         return f" ({100 * (getattr(counted, quantity) / getattr(base, quantity) - 1):+.0f} %)" if base else ""

@@ -163,7 +163,7 @@ def table(points: Mapping[Point, int]) -> str:
 
 
 def gate(points: Mapping[Point, int]) -> list[str]:
-    """What is below its gate."""
+    """Return one line for each figure below its gate."""
     below = []
     for kind, least in GATES.items():
         reached, total = share({point: hits for point, hits in points.items() if point.kind == kind})

@@ -185,7 +185,7 @@ def prepare(core: str, sources: Sequence[Path], parameters: dict[str, int], fold
 
 
 def prove(case: Case, folder: Path = FOLDER) -> tuple[str, float]:
-    """What is wrong with a case, in a line, or nothing; and the seconds it took."""
+    """Return one line on what is wrong with a case, or "", and the seconds it took."""
     begin = time.monotonic()
     place = folder / case.name
     shutil.rmtree(place, ignore_errors=True)

@@ -232,7 +232,7 @@ def memory_mb() -> float:
 
 
 def attempt(reader: str, data: bytes, folder: Path) -> str:
-    """What is wrong with what a reader does on an input, or nothing."""
+    """Return what a reader does wrong on an input, or ""."""
     before = memory_mb()
     place = Path(tempfile.mkdtemp(dir=folder))
     try:

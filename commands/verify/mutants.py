@@ -86,7 +86,7 @@ def initialised(names: Mapping) -> set[int]:
 
 
 def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
-    """Whether a mutant says something about the tests.
+    """Return True if a mutant tells something about the tests.
 
     A register without a clock does not, nor a constant in place of itself. Constant pins of a memory say what kind
     it is. Behind a register with an initial value Yosys would put the mutant in the register's place, and lose the
@@ -153,7 +153,7 @@ def make(
 
 
 def ports(core: str, folder: Path) -> dict[str, tuple[str, int]]:
-    """Of the netlist: name to (direction, bits), without the ports of registers outside and the selector."""
+    """Return the ports of the netlist, name to (direction, bits), without the selector and registers outside."""
     module = json.loads((folder / "ports.json").read_text())["modules"][core]
     return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items() if "__" not in name}
 

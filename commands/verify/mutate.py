@@ -41,7 +41,7 @@ CONTROLS = 4  # killed mutants of each structure that are also put to the solver
 
 @dataclass(frozen=True)
 class Core:
-    """How a core is mutated.
+    """Settings for mutating a core.
 
     `structures` are places in the list of those that tests/test_<name>.py builds: small ones, that together have
     every generate branch that matters. `protocol` makes one of a structure's parameters.

@@ -67,7 +67,7 @@ class Result:
 
 
 def cases(names: Sequence[str]) -> list[Case]:
-    """Of the cores named, those of `make mutate`; of the whole, both solvers."""
+    """Return the structures of `make mutate` for each core named, and both solvers for the whole."""
     found = []
     for name in names:
         if name == WHOLE:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How each core may be driven, and when its outputs are looked at: what equivalence.py takes for granted.
+"""Rules for driving each core, and the cycles in which its outputs count: the assumptions of equivalence.py.
 
 They allow at least what the testbenches do, and no more than the headers of hdl/ promise to work.
 """
@@ -220,7 +220,7 @@ def quadratic_gradient(_: Mapping[str, int]) -> Protocol:
 
 
 def bursts(size: int, rows: int | None, out_size: int | None = None, word: str = "") -> Protocol:
-    """Of a core between bursts: `size` words in successive enabled clocks, the first with in_start.
+    """Protocol of a core between bursts: `size` words in successive enabled clocks, the first with in_start.
 
     A frame begins with in_frame_start, at any burst, after less than a frame too; after a reset none has begun.
     `rows`: bursts in a frame, if they are counted. Inputs stay while en is low. `word`: the expression of more words
@@ -262,7 +262,7 @@ OUT_OF_BURSTS |= dict.fromkeys(("out_data", "out_re", "out_im", "out_mode", "out
 
 
 def words(size: int, rows: int | None, whole: bool) -> Protocol:
-    """Of a core with single words going in and bursts of `size` going out.
+    """Protocol of a core with single words going in and bursts of `size` going out.
 
     A frame begins with in_frame_start, at any word, or (`whole`) only after the one before is complete.
     """

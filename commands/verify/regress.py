@@ -179,7 +179,7 @@ def compare(job: Job, seed: int) -> dict[str, Any]:
 
 @dataclass
 class Part:
-    """What came of a part."""
+    """Result of a part."""
 
     name: str
     lines: list[dict[str, Any]] = field(default_factory=list)
@@ -310,7 +310,7 @@ def table(parts: list[Part]) -> str:
 
 
 def matrix(part: Part) -> str:
-    """How often each kind of fault was played on each device."""
+    """Count how often each kind of fault was played on each device."""
     counts: dict[str, Counter[str]] = {}
     for line in part.lines:
         for kind, number in line.get("kinds", {}).items():

@@ -31,7 +31,7 @@ def line_of(data: Any, clocks_a_bit: Any, gaps: Any) -> Any:
 
 
 async def play(dut: Any, levels: Any) -> Any:
-    """What the device makes of the levels, the first of them in a reset."""
+    """Play levels on the pin, the first of them in a reset; return the bytes received."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     edge = RisingEdge(dut.clk)
     found: list[Any] = []

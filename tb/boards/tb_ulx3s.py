@@ -121,7 +121,7 @@ class Board:
         return (ball ^ self.rng.integers(0, 8, ball.shape, np.uint8)).astype(np.uint8)
 
     def records(self) -> Any:
-        """What the models say of the line so far: the words of each record, and whether the light is on."""
+        """Return the records that the models expect on the line so far, and whether the light is on."""
         taken = serial_link(self.line, self.columns)
         guarded = frame_guard(taken.pixels, self.rows, self.columns)
         good = [frame for frame in guarded.frames if not frame.bad]
@@ -147,7 +147,7 @@ class Board:
         return found
 
     def setting(self, name: str, writes: Any, pixels: int) -> Any:
-        """Of a register when a frame whose last pixel is that one leaves; tests write between frames."""
+        """Return the value of a register when the frame with this last pixel leaves; tests write between frames."""
         written = [value for address, value, before in writes if address == REGISTERS[name].offset and before <= pixels]
         value = written[-1] if written else self.threshold
         return value - (value >> 31 << 32)

@@ -22,7 +22,7 @@ MARKS = ("user", "last", "frame_end")
 
 
 def first_floor(config: Configuration) -> Any:
-    """Of floor_0.hex: every node another, (node rows, node columns)."""
+    """Return the zero offset of floor_0.hex, (node rows, node columns); every node differs."""
     rows, columns = config.reference_nodes
     return places(rows * columns, config.depth.width).reshape(rows, columns)
 
@@ -67,7 +67,7 @@ class Zero:
         self.forget()
 
     def forget(self) -> None:
-        """What was sent: words, the places of those that are inside, and what should leave."""
+        """Forget the words sent, those inside, and those due."""
         self.sent: list[Any] = []
         self.taken = 0
         self.expected: list[Any] = []

@@ -123,7 +123,7 @@ class Capture:
     (("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), ("log2", sample([0, 1, 3]))
 )
 async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
-    """Of frames in a row; what came before counts for nothing."""
+    """Capture frames in a row; earlier frames do not count."""
     device = Capture(dut, gap, pause)
     await device.start()
     await device.send()
@@ -138,7 +138,7 @@ async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(high=[False, True])
 async def most_frames(dut: Any, high: bool) -> None:
-    """As many as fit the sum, all at one end of the range; more are asked for. The exponent changes meanwhile."""
+    """Ask for more frames than fit the sum, all at one end of the range, while the exponent changes."""
     device = Capture(dut, 0.0, 0.0)
     if device.size << device.largest > 32 * WORDS:
         return

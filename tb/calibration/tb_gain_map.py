@@ -17,7 +17,7 @@ PLACES = 2048  # that a test sends, at least
 
 
 class Nodes(Gains):
-    """Of any width, one to three channels."""
+    """Node memory of any width with one to three channels."""
 
     def __init__(self, dut: Any, config: Configuration) -> None:
         self.width = config.depth.width
@@ -77,7 +77,7 @@ class Map:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def at_power_up(dut: Any) -> None:
-    """What the files say, in both banks."""
+    """Both banks hold the words of the files."""
     device = Map(dut, 0.0, 0.0)
     await device.start(written=False)
     await device.send()

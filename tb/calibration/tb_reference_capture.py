@@ -132,7 +132,7 @@ class Capture:
         return self.generator.integers(0, 256, shape, dtype=np.uint8)
 
     def row_sums(self, frame: Any, first: Any) -> Any:
-        """What is written for a frame, in order: node, the colours of a block's row, whether they begin a sum."""
+        """Return the writes of a frame in order: node, colours of a block's row, whether they begin a sum."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
         whole = frame[: rows * block, : columns * block].astype(np.int64)
@@ -144,7 +144,7 @@ class Capture:
         ]
 
     def gains_behind_flips(self, frame: Any) -> Any:
-        """Of sums that are what the memory was made to hold and those of the last frame, modulo their word."""
+        """Return the gains of sums: the memory's words plus those of the last frame, modulo their width."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
         whole = frame[: rows * block, : columns * block].astype(np.int64)
@@ -173,7 +173,7 @@ class Capture:
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), ("log2", sample([0, 1, 3])))
 async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
-    """Of frames in a row, without and with broken ones between."""
+    """Capture frames in a row, with and without broken ones between."""
     device = Capture(dut, gap, pause)
     await device.start()
     await device.send()
@@ -187,7 +187,7 @@ async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 async def most_frames(dut: Any) -> None:
-    """As many as fit the sum; more are asked for. The exponent changes while the capture goes on."""
+    """Ask for more frames than fit the sum, and change the exponent during the capture."""
     device = Capture(dut, 0.0, 0.0)
     if len(device.places) << device.largest > 128 * PIXELS:
         return

@@ -51,7 +51,7 @@ def seen_fields(words: Any) -> list[Any]:
 
 
 class Events:
-    """Whether it touches, from the areas of all frames so far."""
+    """State of contact from the areas of all frames so far."""
 
     def __init__(self) -> None:
         self.touching = False
@@ -92,7 +92,7 @@ class Bench:
         self.forget()
 
     def forget(self) -> None:
-        """What is due, in the clock in which it is."""
+        """Forget all outputs that are due."""
         self.touching, self.record = False, (0,) * WORDS
         self.touching_due: dict[Any, Any] = {}
         self.record_due: dict[Any, Any] = {}
@@ -363,7 +363,7 @@ async def debounce(dut: Any, debounce: int) -> None:
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def a_debounce_that_is_lowered(dut: Any) -> None:
-    """What has been counted stays: the next frame that differs turns it."""
+    """A lower debounce keeps the count: the next frame that differs changes the state."""
     bench = Bench(dut)
     await bench.start()
     for frames in (9, 9, 9, 9, 2):

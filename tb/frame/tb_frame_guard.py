@@ -22,7 +22,7 @@ RANDOM_FRAMES = 60
 
 
 class Collector:
-    """What leaves: frames as (pixels, bad), faults by name, checking the place of every flag."""
+    """Collect the output: frames as (pixels, bad), faults by name; check the place of every flag."""
 
     def __init__(self, dut: Any) -> None:
         self.dut = dut

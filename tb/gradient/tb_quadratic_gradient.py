@@ -289,7 +289,7 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
-    """Of pixels that are all clipped: none may be counted after it."""
+    """Reset among pixels that all clip; none may be counted after it."""
     device = Gradient(dut)
     await device.start()
     lowest = [[-1 << device.deviation_width - 1] * 3]

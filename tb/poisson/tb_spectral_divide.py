@@ -49,7 +49,7 @@ async def limits(dut: Any) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
-    """As the first words enter and leave; in the midst of a second frame."""
+    """Reset as the first words enter and leave, and in the middle of a second frame."""
     size, width = parameters(dut, "Size", "Width")
     first = 3 * size * size // 2 + size // 2 if late else 1
     await check(dut, uniform((size, size, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))

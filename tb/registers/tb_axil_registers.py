@@ -194,8 +194,10 @@ class Checker:
 
 
 class Tables:
-    """What stands behind the table ports: the words of an entry come as late as they may, other words before; a table
-    changes over `lag` clocks after the frame start."""
+    """Tables behind the table ports. The words of an entry come as late as allowed, after other words.
+
+    A table changes its bank `lag` clocks after the frame start.
+    """
 
     def __init__(self, dut: Any, lag: int = 0) -> None:
         self.dut, self.lag = dut, lag
@@ -314,7 +316,7 @@ def master_of(dut: Any) -> AXI4LiteMaster:
 
 
 async def response_of(transaction: Awaitable) -> Response:
-    """How a master's transaction ends; it raises on errors."""
+    """Return the response that ends a master's transaction; errors raise."""
     try:
         await transaction
     except AXIProtocolError as error:
@@ -395,7 +397,7 @@ def tables_present(build: Build) -> int:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def outputs(dut: Any) -> None:
-    """What the pipeline gets of the registers, through the bus master."""
+    """A second bus master writes registers; the outputs to the pipeline and the words read back are right."""
     async with checked(dut):
         master = master_of(dut)
         for name in ("THRESHOLD", "OFF_THRESHOLD"):

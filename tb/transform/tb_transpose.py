@@ -31,7 +31,7 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
-    """As the first words enter, or as the last row does, when reading begins; with a third frame half in."""
+    """Reset as the first words enter, as the last row enters, as reading begins, and with a third frame half in."""
     (size,) = parameters(dut, "Size")
     first = (size - 1) * size if late else 1
     await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])

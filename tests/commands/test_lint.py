@@ -80,7 +80,7 @@ DEFECTS = {
 
 
 def said(tool: str, folder: Path, body: str) -> str:
-    """What a tool says of a module."""
+    """Return the output of a tool on a module."""
     files = [folder / "seeded.sv"]
     files[0].write_text(HEADER + body + ("" if "endmodule" in body else "\nendmodule\n"))
     structure = lint.Structure("seeded")

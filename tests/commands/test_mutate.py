@@ -18,7 +18,7 @@ SMALL = "burst_counter"
 
 @pytest.fixture
 def outcome(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
-    """Of a few mutants of the small core, with some of its tests."""
+    """Return the outcome of a few mutants of the small core, with some of its tests."""
 
     def run(**changes: Any) -> Any:
         monkeypatch.setattr(mutate, "OUT", tmp_path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the suite chooses of a testbench must be there."""
+"""A filter that the suite gives a testbench must match a test."""
 
 from commands.common import simulator as simulation
 

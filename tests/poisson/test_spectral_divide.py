@@ -51,7 +51,7 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
 
 
 def divided(modes: Any, config: Configuration) -> Any:
-    """What the model should say, in codes, unrounded."""
+    """Return the exact result in codes, unrounded."""
     k = config.columns - bit_reversed(config.columns)
     eigenvalue = reference.eigenvalues(config.columns)[k - 1]
     pixels = modes * config.column_forward.lsb / (eigenvalue[:, None] + eigenvalue)

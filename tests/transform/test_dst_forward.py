@@ -48,7 +48,7 @@ def test_rtl(
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:
-    """Of rows in natural order, at full precision but for the coefficients."""
+    """Transform rows in natural order, at full precision but for the coefficients."""
     return dst_forward(x[..., makhoul(x.shape[-1])], 0, width, coeff, 0, width)
 
 

@@ -38,7 +38,7 @@ def test_rtl(run_tb: Callable[..., None], size: int, width: int, coeff: int, inv
 
 
 def transform(z: np.ndarray, inverse: bool, coeff: int, width: int = 40) -> Any:
-    """Of complex integers (..., N), both sides in natural order."""
+    """Transform complex integers (..., N), both sides in natural order."""
     order = bit_reversed(z.shape[-1])
     z_in = z[..., order] if inverse else z
     re, im = sdf_fft(z_in.real.astype(np.int64), z_in.imag.astype(np.int64), inverse, width, coeff)
