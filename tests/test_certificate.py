@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from commands.common import run_request
 from commands.run import sim
 from commands.study import certify as command
 from tactile_depth import reference
@@ -168,7 +169,7 @@ def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
     colours = np.stack([index >> 2 * bits, index >> bits & 15, index & 15], axis=-1) << (8 - bits)
     np.save(tmp_path / "field.npy", colours.astype(np.uint8))
     given = [f"FRAMES={tmp_path / 'field.npy'}", f"CALIBRATION={tmp_path / 'c.npz'}", f"OUT={tmp_path / 'out'}"]
-    assert sim.run(sim.parse([f"N={size}", f"SOLVER={solver}", "SIM=icarus", *given])) == 0
+    assert sim.run(run_request.parse([f"N={size}", f"SOLVER={solver}", "SIM=icarus", *given])) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     assert report["saturations"] == {}
     assert report["registers"]["saturations"] == 0
@@ -244,7 +245,7 @@ def test_every_node_has_its_format() -> None:
 
 def run(tmp_path: Any, *arguments: Any, rtl: bool = True) -> Any:
     out = tmp_path / "out"
-    assert command.run(sim.parse([*arguments, f"OUT={out}"]), rtl) == 0
+    assert command.run(run_request.parse([*arguments, f"OUT={out}"]), rtl) == 0
     return json.loads((out / "certificate.json").read_text())
 
 

@@ -14,14 +14,14 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 from tb.stream import REGRESS
 from tests.attack import PROFILES
 
-# What is run in other formats than the first of each solver, and on a larger grid; on the first everything is.
+# Tests for formats other than the first of each solver, and for a larger grid.
 FORMATS = (
     "configuration|back_to_back|contact.*=none|every_fault|saturation|"
     "gaps_and_stalls/offers=random/accepts=(one_in_4|random)"
 )
 FLAT = f"{FORMATS}|capture|floor|dark_pixels|depth_frames|resets.*=2.*full"
-# On the first of each solver everything, but of the pairs of gaps and stalls each with one solver, every gap and every
-# stall with both. `make regress` runs all, but on Icarus for the spectral solver.
+# `make test` runs every test on the tridiagonal solver, FORMATS on the spectral one, and each pair of gaps and stalls
+# on one of them. `make regress` runs all on both, but on Icarus for the spectral solver.
 PAIRS = {
     solver: "|".join(
         f"gaps_and_stalls/offers={gap}/accepts={stall}$"
@@ -30,17 +30,16 @@ PAIRS = {
     )
     for odd, solver in enumerate(COLUMNS)
 }
-# What is long: with a sink that never waits in Verilator, tridiagonal, alone; with one that does everywhere.
+# Long tests. With a sink that never waits they run on Verilator with the tridiagonal solver alone.
 LONG = "(malformed|random_streams|gradient_table_rewritten|registers_written_in).*accepts=none"
-# Every test, but of those that are repeated for each disturbance one: of the spectral solver, and on Icarus.
+# Tests that repeat for each disturbance.
 REPEATED = f"gaps_and_stalls|records_at_the_limits|{LONG}|random_streams|side_by_side|every_fault_in_a_row/.*random"
-ONCE = f"^(?!.*({REPEATED}))"
 EVERY = "^(?!.*gaps_and_stalls)"
-# What one solver tells of both, and takes a quarter of the time.
+# Tests in which the solver does not matter.
 OF_ONE = "registers_written_in_every|committed_at_the_first|table_rewritten"
 SPECTRAL = f"^(?!.*({REPEATED}|{OF_ONE}))"
 DISTURBED = "gaps_and_stalls/offers=random/accepts=random"
-# Of the spectral solver on Icarus, which takes four times as long for it as for the other; of other formats there.
+# A shorter choice for other formats on Icarus.
 FIRST_OF_THEM = ("every_fault", "every_fault_in_a_row/accepts=none")
 PACKED = "back_to_back"
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=random"
@@ -93,7 +92,7 @@ def test_rtl(run_tb: Callable[..., None], simulator: str, name: str) -> None:
     spectral, slow = config.solver == "spectral", simulator == "icarus"
     if not REGRESS:
         if not tests:
-            tests = f"{SPECTRAL if spectral else EVERY}|{PAIRS[config.solver]}"
+            tests = f"{FORMATS if spectral else EVERY}|{PAIRS[config.solver]}"
         elif slow:
             tests = LARGER_SLOW if tests == LARGER else tests.replace(*FIRST_OF_THEM)
     elif slow and spectral and not tests:

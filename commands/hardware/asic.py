@@ -26,13 +26,13 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, results, variables
+from commands.common import repository, results, run_request, variables
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
 from commands.hardware.gates import Netlist, from_yosys, verilog
 from commands.hardware.liberty import Library, read
-from commands.run import bench, sim
+from commands.run import bench
 from tactile_depth.errors import InputError
 from tactile_depth.latency import first_depth_latency
 from tactile_depth.tactile_depth import tactile_depth
@@ -64,18 +64,18 @@ class Options:
     clock_mhz: float
 
 
-def parse(arguments: list[str]) -> tuple[sim.Request, Options]:
+def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
     """Return KEY=VALUE arguments as a request and options; an empty value means the default.
 
     Raises
     ------
     InputError
     """
-    values = variables.given(arguments, (*OWN, *sim.ACCEPTED))
+    values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
     others = {key: value for key, value in values.items() if key not in OWN}
     if not others.keys() & {"SOLVER", "CONFIG"}:
         others["SOLVER"] = "tridiagonal"
-    request = sim.parse([f"{key}={value}" for key, value in others.items()])
+    request = run_request.parse([f"{key}={value}" for key, value in others.items()])
     node_nm = variables.number(values, "NODE_NM", 180.0, 1, 1000, float)
     clock_mhz = variables.number(values, "CLOCK_MHZ", 75.0, 0.001, 10_000, float)
     file = Path(values.get("LIB", DEFAULT_LIB))
@@ -280,7 +280,7 @@ def text(report: Mapping[str, Any]) -> str:
     )
 
 
-def measure(request: sim.Request, options: Options, work: Path) -> dict[str, Any]:
+def measure(request: run_request.Request, options: Options, work: Path) -> dict[str, Any]:
     """Return the report of a configuration."""
     frames, calibration, config = synthesis.design(request)
     library, period_ns = options.library, 1000 / options.clock_mhz
@@ -332,7 +332,7 @@ def measure(request: sim.Request, options: Options, work: Path) -> dict[str, Any
     }
 
 
-def run(request: sim.Request, options: Options, command: str) -> int:
+def run(request: run_request.Request, options: Options, command: str) -> int:
     """Run the flow and return the exit status."""
     check_tools()
     shape = f"{request.rows}x{request.columns}"

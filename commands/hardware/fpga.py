@@ -25,11 +25,10 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import results, variables
+from commands.common import results, run_request, variables
 from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import ecp5, synthesis, yosys
-from commands.run import sim
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import Sensor
@@ -70,7 +69,7 @@ class Request:
 
     target: str
     seeds: tuple[int, ...]
-    design: sim.Request
+    design: run_request.Request
 
 
 def parse(arguments: list[str]) -> Request:
@@ -93,7 +92,7 @@ def parse(arguments: list[str]) -> Request:
         raise InputError(f"SEEDS={seeds}: accepted are different whole numbers with commas between, as 1,2,3")
     if "CONFIG" not in values:
         values.setdefault("SOLVER", "tridiagonal")
-    return Request(target, numbers, sim.parse([f"{key}={value}" for key, value in values.items()]))
+    return Request(target, numbers, run_request.parse([f"{key}={value}" for key, value in values.items()]))
 
 
 def check() -> None:
@@ -113,7 +112,7 @@ def primitives() -> Path:
 
 def threshold(config: Configuration) -> int:
     """Return the code above which a depth is a contact after a reset, as `make sim` sets it."""
-    return round(sim.CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
+    return round(run_request.CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
 
 
 def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:

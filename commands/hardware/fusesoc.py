@@ -14,8 +14,8 @@ import yaml
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 
+from commands.common import run_request  # noqa: E402
 from commands.hardware import synth  # noqa: E402
-from commands.run import sim  # noqa: E402
 from tactile_depth.errors import InputError  # noqa: E402
 from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
 
@@ -32,7 +32,7 @@ def generate(description: Path, folder: Path) -> None:
     for key in values:
         if key not in synth.CONFIGURING:
             raise InputError(f"{key}: unknown variable: accepted are {', '.join(synth.CONFIGURING)}")
-    config, calibration = synth.configured(sim.parse([f"{key}={value}" for key, value in values.items()]))
+    config, calibration = synth.configured(run_request.parse([f"{key}={value}" for key, value in values.items()]))
     write_roms(folder, calibration, config)
     parameters = top_parameters(config)
     core = {

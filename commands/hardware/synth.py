@@ -28,12 +28,11 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import published, repository, results, variables
+from commands.common import published, repository, results, run_request, variables
 from commands.common.markdown import table
 from commands.common.signals import threads
 from commands.hardware import synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
-from commands.run import sim
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import REST_SCENE
@@ -128,7 +127,7 @@ class Design:
     seconds: float
 
 
-def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
+def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Request]:
     """Return target, its name, grids and request; the grids are empty without GRIDS.
 
     Raises
@@ -144,10 +143,10 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], sim.Request]:
         sizes = [int(size) for size in grids.split(",")] if grids else []
     except ValueError as error:
         raise InputError(f"GRIDS={grids}: accepted are whole numbers with commas, as 64,128,256") from error
-    return TARGETS[name], name, sizes, sim.parse([f"{key}={value}" for key, value in values.items()])
+    return TARGETS[name], name, sizes, run_request.parse([f"{key}={value}" for key, value in values.items()])
 
 
-def configured(request: sim.Request) -> tuple[Configuration, Sensor]:
+def configured(request: run_request.Request) -> tuple[Configuration, Sensor]:
     """Return the configuration of a request, and the calibration on its grid.
 
     Raises
@@ -155,12 +154,12 @@ def configured(request: sim.Request) -> tuple[Configuration, Sensor]:
     InputError
     """
     # A reference frame gives the width of the camera's pixels on the grid, so it is read as a frame too.
-    source = sim.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
+    source = run_request.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
     _, calibration, config = synthesis.design(request, source)
     return config, calibration
 
 
-def designs(request: sim.Request, grids: Sequence[int]) -> list[tuple[sim.Request, str]]:
+def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[run_request.Request, str]]:
     """Return the designs to build, each with the reason why it cannot be built, which is empty for most.
 
     Raises
@@ -171,7 +170,7 @@ def designs(request: sim.Request, grids: Sequence[int]) -> list[tuple[sim.Reques
     if not grids:
         configured(request)
         return [(request, "")]
-    every: list[tuple[sim.Request, str]] = []
+    every: list[tuple[run_request.Request, str]] = []
     for size in grids:
         reasons = []
         for solver in COLUMNS:

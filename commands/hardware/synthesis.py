@@ -9,8 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from commands.common import repository, results
-from commands.run import sim
+from commands.common import repository, results, run_request
 from tactile_depth.configuration import Configuration
 from tactile_depth.frames import Frames, load_frames
 from tactile_depth.sensor import Sensor, load
@@ -20,19 +19,19 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 
 
-def design(request: sim.Request, source: str | None = None) -> tuple[Frames, Sensor, Configuration]:
+def design(request: run_request.Request, source: str | None = None) -> tuple[Frames, Sensor, Configuration]:
     """Return frames, calibration on their grid and configuration of a request; `source` replaces its frames.
 
     Raises
     ------
     InputError
     """
-    calibration = sim.load_sensor(request)
+    calibration = run_request.load_sensor(request)
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
     size = (request.rows, request.columns)
     frames = load_frames(source or request.frames, size, request.reference, request.seed, request.press)
     calibration = calibration.on_grid(frames)
-    return frames, calibration, sim.configure(request, calibration)
+    return frames, calibration, run_request.configure(request, calibration)
 
 
 @contextmanager

@@ -32,6 +32,7 @@ from tqdm import tqdm
 from commands.common import markdown, published, repository, results, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
+from commands.common.run_request import CONTACT_THRESHOLD
 from commands.common.signals import threads
 from commands.run import bench, reflex_pictures
 from commands.run.reflex_model import (
@@ -59,7 +60,6 @@ from commands.run.reflex_model import (
     within_published,
 )
 from commands.run.reflex_tables import sentences, tables
-from commands.run.sim import CONTACT_THRESHOLD
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.latency import last_pixel_to_first_depth

@@ -14,7 +14,7 @@ from scipy.stats import mannwhitneyu
 from tqdm import tqdm
 
 from commands.common import published
-from commands.run.sim import CONTACT_THRESHOLD
+from commands.common.run_request import CONTACT_THRESHOLD
 from tactile_depth import reference
 from tactile_depth.scenes import Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands.common import repository, results, variables
+from commands.common import repository, results, run_request, variables
 from commands.common import simulator as simulation
 from commands.run import sim, sim_table
 from tactile_depth.certificate import Node, certify, slope_response
@@ -210,7 +210,7 @@ class Streamed:
     differences: list[str]
 
 
-def stream(request: sim.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:
+def stream(request: run_request.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:
     """Send uint8 frames (frames, rows, columns, 3) through the RTL as often as the request says."""
     labels = tuple(str(index) for index in range(len(frames)))
     monitor = Monitor()
@@ -227,16 +227,16 @@ def stream(request: sim.Request, config: Configuration, calibration: Sensor, fra
     return Streamed(codes, clipped, played.registers, exact, differences)
 
 
-def run(request: sim.Request, rtl: bool = True) -> int:
+def run(request: run_request.Request, rtl: bool = True) -> int:
     """Everything after parsing; returns the exit status."""
     if rtl:
         simulation.check(request.simulator)
-    calibration = sim.load_sensor(request)
+    calibration = run_request.load_sensor(request)
     grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
     # It holds for all slopes, whatever the colours: they are taken as a table without a reference reads them.
     calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
     pixel_pitch_mm = calibration.pixel_pitch_mm
-    config = sim.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
+    config = run_request.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
     shape = f"{config.rows}x{config.columns}"
     name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
     if request.depth_range_mm == math.inf:
@@ -323,10 +323,10 @@ def _record(node: Node, attempts: list[Attempt]) -> dict:
 
 def main() -> None:
     with variables.reported("certify"):
-        given = variables.given(sys.argv[1:], ("RTL", *sim.ACCEPTED))
+        given = variables.given(sys.argv[1:], ("RTL", *run_request.ACCEPTED))
         rtl = bool(variables.number(given, "RTL", 1, 0, 1))
         given.pop("RTL", None)
-        sys.exit(run(sim.parse([f"{key}={value}" for key, value in given.items()]), rtl))
+        sys.exit(run(run_request.parse([f"{key}={value}" for key, value in given.items()]), rtl))
 
 
 if __name__ == "__main__":

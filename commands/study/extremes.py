@@ -20,9 +20,8 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, results, variables
+from commands.common import repository, results, run_request, variables
 from commands.common import simulator as simulation
-from commands.run import sim
 from commands.study import certify as certificate
 from commands.study.transform_noise import BIAS, Compliance, compliance, compliance_table
 from tactile_depth import reference
@@ -190,9 +189,9 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     """Stream it through the RTL, with the model beside it, and measure both against double precision."""
     given = [*([] if any(v.startswith(("N=", "ROWS=")) for v in extreme.variables) else [f"N={size}"])]
     given += [f"SOLVER={solver}", f"SIM={simulator}", f"REPEAT={extreme.repeat}", *extreme.variables]
-    request = sim.parse(given)
+    request = run_request.parse(given)
     calibration = load(CALIBRATION)
-    config = sim.configure(request, calibration)
+    config = run_request.configure(request, calibration)
     frames = np.ascontiguousarray(extreme.draw(config))
     streamed = certificate.stream(request, config, calibration, frames)
     codes = streamed.codes
@@ -380,7 +379,7 @@ def main() -> None:
         given = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
         if given["SHORT"] not in ("", "0", "1"):
             raise InputError(f"SHORT={given['SHORT']}: accepted are 0 and 1")
-        request = sim.parse([f"N={given['N'] or 64}", f"SIM={given['SIM']}"])
+        request = run_request.parse([f"N={given['N'] or 64}", f"SIM={given['SIM']}"])
         out = Path(given["OUT"]) if given["OUT"] else repository.ROOT / "build" / "extremes"
         sys.exit(run(request.columns, request.simulator, out, given["SHORT"] == "1"))
 

@@ -21,7 +21,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands.common import results, variables
+from commands.common import results, run_request, variables
 from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, MEMORY_MBIT, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
@@ -70,7 +70,7 @@ def run_rtl(solver: str, folder: Path) -> Run:
     repeat = -(-CONSECUTIVE // len(BENCH))
     words = [f"SOLVER={solver}", "FRAMES=bench", f"REPEAT={repeat}", f"N={SIZE}"]
     out = folder / solver
-    if sim.run(sim.parse([*words, f"OUT={out}"])):
+    if sim.run(run_request.parse([*words, f"OUT={out}"])):
         raise variables.Mismatch(f"the RTL of the {solver} solver differs from its model: see {out / 'report.json'}")
     report = json.loads((out / "report.json").read_text())
     depth = np.load(out / "depth.npy", mmap_mode="r")[: len(BENCH)] * report["depth_lsb_mm"]

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, repository, results, variables
+from commands.common import published, repository, results, run_request, variables
 from commands.common import simulator as simulation
 from commands.run import sim
 from tactile_depth import reference
@@ -220,7 +220,7 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
     return some(tuning), some(proving), said
 
 
-def parse(arguments: list[str]) -> tuple[sim.Request, Limits, list[str]]:
+def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]:
     """KEY=VALUE arguments to a request of make sim, the limits and the solvers to choose from.
 
     Raises
@@ -247,11 +247,11 @@ def parse(arguments: list[str]) -> tuple[sim.Request, Limits, list[str]]:
         multipliers=above_zero("MAX_DSP", math.inf),
         memory_kbit=above_zero("MAX_MEMORY_KBIT", math.inf),
     )
-    request = sim.parse([f"{key}={value}" for key, value in passed.items()])
+    request = run_request.parse([f"{key}={value}" for key, value in passed.items()])
     return request, limits, [request.solver] if "SOLVER" in passed else list(COLUMNS)
 
 
-def config_file(request: sim.Request, at: Widths) -> dict[str, str | int | float]:
+def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int | float]:
     """The variables of make sim that choose this configuration."""
     square = request.rows == request.columns
     chosen: dict[str, str | int | float] = {
@@ -286,13 +286,13 @@ def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:
     )
 
 
-def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
+def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int:
     """Everything after parsing; returns the exit status."""
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
-    calibration = sim.load_sensor(request)
+    calibration = run_request.load_sensor(request)
 
-    def shaped(at: Widths) -> sim.Request:
+    def shaped(at: Widths) -> run_request.Request:
         return replace(request, solver=at.solver, data_width=at.data, coefficient_width=at.coefficient)
 
     _check_grid(request, solvers)
@@ -306,7 +306,7 @@ def run(request: sim.Request, limits: Limits, solvers: list[str]) -> int:
     def build(at: Widths) -> Configuration | None:
         if at not in built:
             try:
-                built[at] = sim.configure(shaped(at), calibration)
+                built[at] = run_request.configure(shaped(at), calibration)
             except InputError as error:
                 built[at] = None
                 refusals.append(error)
@@ -391,7 +391,7 @@ def _costs(counted: Cost, limits: Limits) -> dict[str, Any]:
     }
 
 
-def _check_grid(request: sim.Request, solvers: list[str]) -> None:
+def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     """Refuse a grid that no solver takes before frames are read."""
     refused = []
     for solver in solvers:

@@ -34,9 +34,9 @@ from tqdm import tqdm
 
 from commands.common import repository
 from commands.common import variables as make_variables
+from commands.common.run_request import Request, parse
 from commands.common.signals import threads
 from commands.run import sim
-from commands.run.sim import Request, parse
 from commands.verify.fuzz_files import GOOD_PNG, MEMORY_MB, Bytes, damaged, good_jpeg, npy, npz, picture
 from tactile_depth import calibration_file, press_folder
 from tactile_depth import frames as pictures

@@ -178,7 +178,7 @@ async def requests_at_any_time(dut: Any, pause: float) -> None:
     waits += [device.chance.randrange(size + CLOCKS) for _ in range(20)]
     if size > WORDS:
         waits = device.chance.sample(waits, 1)
-    elif not REGRESS and pause:
+    elif not REGRESS:
         waits = device.chance.sample(waits, len(waits) // 3)
     await request_after(device, waits, size)
 

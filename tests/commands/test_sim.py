@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from skimage import io  # type: ignore[attr-defined]
 
-from commands.common import published
+from commands.common import published, run_request
 from commands.run import sim
 from commands.run.draw import painted
 from commands.run.flags import Flags
@@ -27,7 +27,7 @@ from tactile_depth.sensor import load
 def run(tmp_path: Any, *arguments: Any) -> Any:
     """Run `make sim` into tmp_path/out; returns the report. It must be bit-exact."""
     out = tmp_path / "out"
-    assert sim.run(sim.parse([*arguments, f"OUT={out}"])) == 0
+    assert sim.run(run_request.parse([*arguments, f"OUT={out}"])) == 0
     assert sorted(p.name for p in out.iterdir()) == ["depth.npy", "depth.png", "report.json"]
     assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
     return json.loads((out / "report.json").read_text())
@@ -57,7 +57,7 @@ def test_every_grid_on_every_simulator(tmp_path: Path, simulator: str, size: int
         assert only(report["last_pixel_to_first_depth_cycles"]) <= 8 * size + 64
 
 
-@pytest.mark.parametrize("boundary", sim.BOUNDARIES)
+@pytest.mark.parametrize("boundary", run_request.BOUNDARIES)
 @pytest.mark.parametrize(
     ("rows", "columns", "chosen"), [(8, 16, "icarus"), pytest.param(240, 256, "verilator", marks=pytest.mark.regress)]
 )
@@ -177,7 +177,7 @@ def test_flat_gel_reads_nothing(tmp_path: Path) -> None:
 @pytest.mark.structures("", icarus=[()], regress_verilator=[()])  # Verilator compiles its whole runtime for it
 def test_waves(tmp_path: Path, simulator: str) -> None:
     out = tmp_path / "out"
-    assert sim.run(sim.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
+    assert sim.run(run_request.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
     assert [p for p in out.iterdir() if p.suffix in (".vcd", ".fst") and p.stat().st_size]
 
 
@@ -290,10 +290,10 @@ def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path: Pa
     given = _config(
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
     )
-    request = sim.parse([given, "DATA_WIDTH=22", "SEED="])
+    request = run_request.parse([given, "DATA_WIDTH=22", "SEED="])
     assert (request.rows, request.columns, request.solver, request.data_width) == (24, 32, "tridiagonal", 22)
     assert request.press.at_mm == (1, 0)
-    square = sim.parse([given, "N=64"])
+    square = run_request.parse([given, "N=64"])
     assert (square.rows, square.columns, square.data_width) == (64, 64, 20)
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from commands.common import run_request
 from commands.run import sim
 from commands.study import tune
 from commands.study.tune import Limits, Search, Widths
@@ -115,7 +116,9 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     assert report["chosen"]["multipliers"] <= report["default"]["multipliers"]
     assert report["chosen"]["memory_bits"] < report["default"]["memory_bits"]
     assert "make sim CONFIG=" in said
-    chosen = sim.parse([f"CONFIG={out / 'config.json'}", "SIM=icarus", f"OUT={tmp_path / 'sim'}", "FRAMES=ball"])
+    chosen = run_request.parse(
+        [f"CONFIG={out / 'config.json'}", "SIM=icarus", f"OUT={tmp_path / 'sim'}", "FRAMES=ball"]
+    )
     assert sim.run(chosen) == 0
     again = json.loads((tmp_path / "sim" / "report.json").read_text())
     for name in ("grid", "solver", "boundary", "data_width", "coeff_width", "depth_range_mm"):

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Path from make variables to a Request, its sensor and the configuration of the pipeline."""
+
+from __future__ import annotations
+
+import errno
+import json
+import math
+import os
+import re
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from commands.common import simulator as simulation
+from commands.common import variables
+from tactile_depth.certificate import deepest
+from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.npy import is_file
+from tactile_depth.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
+from tactile_depth.sensor import BUILT_IN, Sensor, load
+
+DEFAULT_SCENE = "ball"
+WORST = "worst"  # a depth range that no slopes can leave
+SOLVERS = tuple(COLUMNS)
+BOUNDARIES = ("dirichlet", "neumann")
+CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
+ACCEPTED = (
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "FRAMES", "PRESS"),
+    *("AT", "NOISE", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "REPEAT", "SEED", "GAPS"),
+    *("STALLS", "WAVES", "CONFIG", "OUT"),
+)
+LARGEST_CONFIG = 65_536  # bytes of a configuration file
+
+
+@dataclass(frozen=True)
+class Request:
+    """Request of the user, checked as far as possible without reading files."""
+
+    rows: int
+    columns: int
+    solver: str
+    boundary: str
+    simulator: str
+    data_width: int
+    coefficient_width: int
+    depth_range_mm: float | None  # infinite: as deep as any slopes can make it
+    frames: str
+    press: Press
+    reference: str | None
+    floor: str | None
+    calibration: str
+    camera_size: tuple[int, int] | None  # rows, columns
+    gradient: str  # a model; "": the calibration's own
+    repeat: int
+    seed: int
+    gaps: float
+    stalls: float
+    waves: bool
+    out: Path | None
+
+
+def parse(arguments: list[str]) -> Request:
+    """KEY=VALUE arguments to a Request; an empty value means the default.
+
+    Raises
+    ------
+    InputError
+    """
+    given = variables.given(arguments, ACCEPTED)
+    if "CONFIG" in given:
+        given = from_file(Path(given.pop("CONFIG")), given, [name for name in ACCEPTED if name != "CONFIG"]) | given
+
+    number = partial(variables.number, given)
+
+    def choice(key: str, accepted: tuple[str, ...]) -> str:
+        value = given.get(key, accepted[0])
+        if value not in accepted:
+            raise InputError(f"{key}={value} is unknown: accepted are {', '.join(filter(None, accepted))}")
+        return value
+
+    def position(key: str) -> tuple[float, float]:
+        try:
+            x, y = (float(part) for part in given.get(key, "0,0").split(","))
+        except ValueError:
+            x = y = math.nan
+        if not (abs(x) <= SENSOR_WIDTH_MM and abs(y) <= SENSOR_WIDTH_MM):
+            raise InputError(f"{key}={given[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
+        return x, y
+
+    both = number("N", 128, -math.inf, math.inf)
+    return Request(
+        rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration says which
+        columns=int(number("COLS", both, -math.inf, math.inf)),
+        solver=choice("SOLVER", SOLVERS),
+        boundary=choice("BOUNDARY", BOUNDARIES),
+        simulator=choice("SIM", simulation.SIMULATORS),
+        data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
+        coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
+        depth_range_mm=math.inf
+        if given.get("DEPTH_RANGE") == WORST
+        else number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
+        frames=given.get("FRAMES", DEFAULT_SCENE),
+        press=Press(
+            number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
+            position("AT"),
+            number("NOISE", NOISE, 0, 255, float),
+        ),
+        reference=given.get("REFERENCE"),
+        floor=given.get("FLOOR"),
+        calibration=_calibration(given),
+        camera_size=_camera_size(given),
+        gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
+        repeat=int(number("REPEAT", 1, 1, 100_000)),
+        seed=int(number("SEED", 1, 0, 10**9)),
+        gaps=number("GAPS", 0, 0, 0.99, float),
+        stalls=number("STALLS", 0, 0, 0.99, float),
+        waves=bool(number("WAVES", 0, 0, 1)),
+        out=Path(given["OUT"]) if "OUT" in given else None,
+    )
+
+
+def _calibration(given: dict[str, str]) -> str:
+    """The calibration that is named. Scenes are drawn for the synthetic sensor; a picture needs that of its sensor."""
+    if "CALIBRATION" in given:
+        return given["CALIBRATION"]
+    for key in ("FRAMES", "REFERENCE", "FLOOR"):
+        if key in given and given[key] not in SCENES and os.path.exists(given[key]):
+            raise InputError(
+                f"{key}={given[key]} needs CALIBRATION, that of the sensor that took it: {', '.join(BUILT_IN)}, or the "
+                ".npz of `make calibrate`"
+            )
+    return BUILT_IN[0]
+
+
+def _camera_size(given: dict[str, str]) -> tuple[int, int] | None:
+    """Rows and columns of CAMERA_SIZE=320x240, which gives columns first, as cameras do."""
+    if "CAMERA_SIZE" not in given:
+        return None
+    size = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", given["CAMERA_SIZE"])
+    if not size:
+        raise InputError(f"CAMERA_SIZE={given['CAMERA_SIZE']}: accepted is columns x rows in pixels, as 320x240")
+    return int(size[2]), int(size[1])
+
+
+def load_sensor(request: Request) -> Sensor:
+    """The calibration of a request.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        return load(request.calibration, request.camera_size)
+    except InputError as error:
+        if request.camera_size is None:
+            raise
+        rows, columns = request.camera_size
+        given = f"CAMERA_SIZE={columns}x{rows}"
+        raise InputError(str(error).replace(f"camera_size={request.camera_size}", given)) from error
+
+
+def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[str, str]:
+    """Variables of a configuration file, a JSON object; an N that is `given` replaces rows and columns of the file.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        if not is_file(path):
+            raise FileNotFoundError(errno.ENOENT, "no such file")
+        with path.open("rb") as file:
+            text = file.read(LARGEST_CONFIG + 1)
+        if len(text) > LARGEST_CONFIG:
+            raise ValueError
+        values = json.loads(text)
+    except (OSError, ValueError, RecursionError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or "not JSON of a few lines"
+        raise InputError(f"CONFIG={path}: cannot be read ({reason}): give a file of `make tune`") from error
+    if not isinstance(values, dict):
+        raise InputError(f"CONFIG={path}: accepted is one JSON object of variables")
+    for key, value in values.items():
+        if key not in accepted:
+            raise InputError(f"CONFIG={path}: unknown variable {key}: accepted are {', '.join(accepted)}")
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: accepted is a number or a string")
+        if isinstance(value, str) and not variables.usable(value):
+            raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: it holds a character that no path can hold")
+    replaced = ("ROWS", "COLS") if "N" in given else ()
+    return {key: str(value) for key, value in values.items() if key not in replaced}
+
+
+def configure(request: Request, calibration: Sensor) -> Configuration:
+    """The pipeline for a request and a calibration on its grid; the depth range becomes grid pixels."""
+    neumann = request.boundary == "neumann"
+    depth_range = request.depth_range_mm
+    depth_range_px: float | None
+    if depth_range == math.inf:
+        Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
+        depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
+    else:
+        depth_range_px = None if depth_range is None else depth_range / calibration.pixel_pitch_mm
+    return calibration.configuration(
+        request.gradient,
+        columns=request.columns,
+        rows=request.rows,
+        solver=request.solver,
+        neumann=neumann,
+        data_width=request.data_width,
+        coefficient_width=request.coefficient_width,
+        depth_range_px=depth_range_px,
+        auto_zero=request.floor is not None,
+    )
