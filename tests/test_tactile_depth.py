@@ -45,7 +45,6 @@ PACKED = "back_to_back"
 LARGER = "configuration|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=random"
 LARGER_SLOW = "configuration|back_to_back"
 
-
 # Through the second client: here, and in `make regress`.
 SECOND_QUICK = (
     "configuration|one_frame|gaps_and_stalls/offers=random/accepts=random|waits_for_long|contact/accepts=none|"
@@ -56,8 +55,6 @@ SECOND = (
     "registers_written"
 )
 TRIDIAGONAL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-
-
 FLAT_QUADRATIC: dict[str, Any] = {"flat_field": True, "gradient_model": "quadratic"}
 STRUCTURES: dict[str, Any] = {  # choices of the configuration, and which tests run ("": every test)
     "16-24": ({"columns": 16, "bits_per_channel": 2}, ""),

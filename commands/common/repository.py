@@ -85,6 +85,11 @@ def sources(names: Sequence[str] | None = None) -> list[Path]:
     return sorted(found, key=lambda file: (not file.stem.endswith(PACKAGE), file.name))
 
 
+def formal(name: str) -> Path | None:
+    """Return the file of formal/ that holds the module with this name, None if there is none."""
+    return next((ROOT / "formal").rglob(f"{name}.sv"), None)
+
+
 def module(file: Path) -> str:
     """Return the name under which a Python file of the repository is imported."""
     return ".".join(file.relative_to(ROOT).with_suffix("").parts)

@@ -48,7 +48,6 @@ VERILATOR_MAKEFLAGS = (
     "VM_PARALLEL_BUILDS=0"
 )
 
-
 RUNTIME = "runtime.h"
 RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 

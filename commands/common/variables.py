@@ -20,7 +20,6 @@ from tactile_depth.errors import InputError, InputWarning
 
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
-
 # Errors of the package name arguments; a user of make gave variables.
 VARIABLES = {
     r"\bcamera_size=\(rows, columns\)": "CAMERA_SIZE=<columns>x<rows>",

@@ -20,36 +20,17 @@ from tactile_depth.scenes import Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load
 
 PIN = "ball"  # its round tip, of models/tactile_depth/scenes.py
-
-
 STOP_MM = 1.0  # the press ends so deep
-
 
 # What the delays are made of.
 FRAME_MS = {"near": 1000 / 400, "host": 1000 / 25}
-
-
 SPEED_MM_S = 20.0
-
-
 EXPOSURE = 0.5  # of the frame time
-
-
 SERVO_MS, SERVO_SPREAD_MS = 18.1, 3.3
-
-
 USB_BYTES_PER_MS = 8 * 3 * 1024  # high speed: 8 microframes a ms, isochronous, at most 3 transactions of 1,024 bytes
-
-
 CAMERA_BYTES = 640 * 480 * 2  # YUYV
-
-
 DRIVER_BUFFERS = 4
-
-
 ASLEEP_MS = 1.0
-
-
 SCALES = (0.5, 2.0)  # of the sensitivity table
 
 
@@ -340,7 +321,6 @@ NEAR_NAMES = {
     "servo": "servo, ms",
     "servo_spread": "servo's spread, ms",
 }
-
 
 HOST_NAMES = {
     **{name: text for name, text in NEAR_NAMES.items() if name not in ("frame", "read_out", "compute")},

@@ -21,7 +21,6 @@ LOOKS: dict[str, dict[str, Any]] = {
     "tridiagonal": {"color": "#e6550d", "marker": "s", "linestyle": "--"},
 }
 
-
 PUBLISHED_LOOK: dict[str, Any] = {
     "color": "black",
     "marker": "*",

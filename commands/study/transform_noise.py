@@ -17,8 +17,6 @@ from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
 
 BIAS = 5.0  # standard errors that a mean error may be from zero
-
-
 FEWEST = 32  # random blocks: a standard error from three says nothing
 
 

@@ -17,21 +17,25 @@ A mutant that no step settles is open.
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from commands.common import repository
 from commands.verify.mutants import SELECTOR, instance, ports, yosys
 
+FORMAL = repository.ROOT / "formal"
 EQUIVALENT, DIFFERENT, OPEN = "equivalent", "different", "open"
 
 ALWAYS = "1'b1"
 HOLDS = "protocol_holds"
 RESET = "any_rst"
 TO_GRAPH = """read_rtlil mutants.il
+read_rtlil protocol.il
 read_verilog -sv environment.v
 hierarchy -top environment
 proc
@@ -73,23 +77,6 @@ endmodule
 
 
 @dataclass(frozen=True)
-class Protocol:
-    """Rules for driving a core, and the cycles in which its outputs count.
-
-    `registers` is SystemVerilog with declarations, initial values and always blocks. `assume` are expressions of inputs
-    and those registers that hold in every cycle; they must hold in a reset with all other inputs at 0. `compare` maps
-    an output to the expression under which it counts; an output without an entry always counts. `given` maps an input
-    to the expression that replaces its free value. Ports have their own names; outputs are those of the core without a
-    mutant.
-    """
-
-    registers: str = ""
-    assume: Sequence[str] = ()
-    compare: Mapping[str, str] = field(default_factory=dict)
-    given: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
 class Graph:
     """An and-inverter graph in AIGER's numbering: literal 2 v is node v, 2 v + 1 its inverse, 0 is false."""
 
@@ -103,35 +90,65 @@ def across(bits: int) -> str:
     return f"[{bits - 1}:0] " if bits > 1 else ""
 
 
-def environment(core: str, folder: Path, protocol: Protocol) -> str:
-    """Return the core and its protocol as one module of Verilog.
+def environment(core: str, folder: Path, protocol: str, parameters: Mapping[str, int | str]) -> str:
+    """Return the core and its protocol as one module of Verilog; the module of the protocol goes to protocol.il.
 
-    Inputs that break an assumption are replaced, in that cycle, by zeros and a reset. So the module accepts any inputs,
-    and its core sees only allowed ones. Proofs by induction need that.
+    A protocol is a module of formal/, protocol_<name>. Without that file all inputs are allowed, and all outputs count.
+    The inputs of a protocol are ports of the core: inputs as they are offered, outputs as the core without a mutant
+    drives them. Its outputs are
+
+    - `holds`: the inputs are allowed. They must be in a reset with all other inputs at 0;
+    - `given_<input>`: the value that replaces what is offered;
+    - `counts_<output>`: the cycles in which an output counts; `counts` is that of all outputs without their own.
+
+    Inputs that the protocol does not allow are replaced, in that cycle, by zeros and a reset. So the module accepts any
+    inputs, and its core sees only allowed ones. Proofs by induction need that.
     """
     sides = ports(core, folder)
     inputs = {name: bits for name, (side, bits) in sides.items() if side == "input" and name != "clk"}
     outputs = {name: bits for name, (side, bits) in sides.items() if side == "output"}
+    rules = read_protocol(f"protocol_{protocol}", parameters, folder)
     declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
     declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
     declared += [f"output wire looked_at_{name}" for name in outputs] + [f"output wire {HOLDS}"]
     declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
-    names = re.compile(r"(?<!')\b(" + "|".join(inputs) + r")\b")  # 1'b1 is no input b1
-    holds = " & ".join(f"({expression})" for expression in protocol.assume) or ALWAYS
-    holds = names.sub(r"any_\1", holds)
     lines = [f"module environment ({', '.join(declared)});"]
     lines += [f"  wire [{bits - 1}:0] {name};" for name, bits in inputs.items()]
-    lines += [instance(core, folder), protocol.registers, f"  assign {HOLDS} = {holds};"]
+    wires = {name: f"any_{name}" if name in inputs else name for name, (side, _) in rules.items() if side == "input"}
+    wires |= {name: f"rule_{name}" for name, (side, _) in rules.items() if side == "output"}
+    lines += [f"  wire {across(bits)}rule_{name};" for name, (side, bits) in rules.items() if side == "output"]
+    if rules:
+        connections = ", ".join(f".{name}({wire})" for name, wire in wires.items())
+        lines += [f"  protocol_{protocol} protocol ({connections});"]
+    lines += [instance(core, folder), f"  assign {HOLDS} = {wires.get('holds', ALWAYS)};"]
     for name, bits in inputs.items():
-        value = names.sub(r"any_\1", protocol.given.get(name, name))
-        lines += [f"  assign {name} = {HOLDS} ? ({value}) : {bits}'d{int(name == 'rst')};"]
-    lines += [f"  assign looked_at_{name} = {protocol.compare.get(name, ALWAYS)};" for name in outputs]
+        value = wires.get(f"given_{name}", f"any_{name}")
+        lines += [f"  assign {name} = {HOLDS} ? {value} : {bits}'d{int(name == 'rst')};"]
+    otherwise = wires.get("counts", ALWAYS)
+    lines += [f"  assign looked_at_{name} = {wires.get(f'counts_{name}', otherwise)};" for name in outputs]
     return "\n".join([*lines, "endmodule\n"])
 
 
-def graph(core: str, folder: Path, protocol: Protocol) -> Graph:
+def read_protocol(top: str, parameters: Mapping[str, int | str], folder: Path) -> dict[str, tuple[str, int]]:
+    """Write the module of a protocol to protocol.il; returns its ports, name to (direction, bits)."""
+    file = repository.formal(top)
+    if file is None:
+        (folder / "protocol.il").write_text("")
+        return {}
+    declared = re.findall(r"^ +parameter +int +(\w+)", file.read_text(), re.M)
+    chosen = " ".join(f"-G {name}={value}" for name, value in parameters.items() if name in declared)
+    packages = [path for path in repository.sources() if path.stem.endswith(repository.PACKAGE)]
+    protocols = {*FORMAL.rglob("protocol_*.sv"), *(FORMAL / "protocols").glob("*.sv")}
+    files = " ".join(map(str, [*packages, *sorted(protocols)]))
+    read = f"read_slang --threads 1 --top {top} {chosen} {files}\n"
+    yosys(f"{read}write_json protocol.json\nwrite_rtlil protocol.il\n", folder, "protocol")
+    module = json.loads((folder / "protocol.json").read_text())["modules"][top]
+    return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items()}
+
+
+def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int | str]) -> Graph:
     """Return the graph of the netlist with all mutants and its environment; memories become registers."""
-    (folder / "environment.v").write_text(environment(core, folder, protocol))
+    (folder / "environment.v").write_text(environment(core, folder, protocol, parameters))
     (folder / "first_wins.v").write_text(FIRST_WINS)
     yosys(f"{TO_GRAPH}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
     lines = iter((folder / "graph.aag").read_text().splitlines())

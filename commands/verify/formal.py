@@ -23,7 +23,7 @@ from pathlib import Path
 from commands.common import variables
 from commands.common.repository import ROOT, chosen, cores, sources
 from commands.common.signals import threads
-from commands.verify.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL, Proof, Structure
+from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL, Proof, Structure
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import synthetic
@@ -244,7 +244,7 @@ def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[st
 
 
 PREFACE = """<!-- SPDX-License-Identifier: Apache-2.0 -->
-<!-- Written by `python -m commands.verify.formal --document` from commands/verify/proofs.py: change it there. -->
+<!-- Written by `python -m commands.verify.formal --document` from formal/proofs.py: change it there. -->
 # What is proven
 
 `make formal` proves each line below by SymbiYosys, or says that it does not: without a bound on time, from any state at

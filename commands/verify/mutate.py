@@ -5,7 +5,7 @@ CORE=name,.. MUTANTS=200 SEED=1 JOBS=2 SECONDS=60 (of the solver, for each step 
 
 Each core gets MUTANTS mutants, or all there are, in one netlist (mutants.py). Its own testbench runs on each mutant
 up to the first failure (tb/mutants.py). A formal proof (equivalence.py) compares each survivor with the core, for every
-use that the protocol of the core allows (protocols.py). An equivalent mutant does not count. A different one is a hole
+use that the protocol of the core allows (formal/). An equivalent mutant does not count. A different one is a hole
 in the tests, and one that stays open counts as a hole. As a check of the protocols, some killed mutants go to the
 solver, which must not prove them equivalent.
 
@@ -19,19 +19,18 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing.pool import ThreadPool
 from pathlib import Path
-from typing import Any
 
 from tqdm import tqdm
 
 from commands.common import repository, variables
-from commands.verify import equivalence, mutants, protocols
-from commands.verify.equivalence import EQUIVALENT, Protocol, settle
+from commands.verify import equivalence, mutants
+from commands.verify.equivalence import EQUIVALENT, settle
 from commands.verify.structures import structure
 
 OUT = repository.ROOT / "build" / "mutate"
@@ -44,11 +43,12 @@ class Core:
     """Settings for mutating a core.
 
     `structures` are places in the list of those that tests/test_<name>.py builds: small ones, that together have
-    every generate branch that matters. `protocol` makes one of a structure's parameters.
+    every generate branch that matters.
     """
 
-    protocol: Callable[[Mapping[str, Any]], Protocol]
     structures: tuple[int, ...] = (0,)
+    protocol: str = ""  # formal/protocols/protocol_<protocol>.sv; by default protocol_<name>.sv, if there is one
+    rows_are: str = ""  # parameter of the core that the protocol knows as Rows
     # One after the other gets what the one before let live. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
     tests: str = ""  # a filter, where all would take too long
@@ -61,56 +61,50 @@ QUICK_FIRST = ("verilator", "icarus")
 # Of the testbench of the whole, all tests but those that read or set what is inside of a core.
 TOP_TESTS = "^(?!.*(table_rewritten_while|floor_captured|the_clock_comes_round))"
 CORES = {
-    "round_saturate": Core(protocols.round_saturate, (0, 1, 11)),
-    "multiply": Core(protocols.multiply, (2,)),
-    "dot_product": Core(protocols.dot_product, (3,)),
-    "ram": Core(protocols.ram, (1,)),
-    "rom": Core(protocols.rom, (1,)),
-    "delay_line": Core(protocols.delay_line, (4, 3)),
-    "burst_counter": Core(protocols.burst_counter, (1,)),
-    "axis_skid": Core(protocols.axis_skid),
-    "threshold_comparator": Core(protocols.threshold_comparator),
-    "frame_guard": Core(protocols.frame_guard, (1,), outside=("silence",)),
-    "contact_events": Core(protocols.contact_events, (1,), outside=("frame",)),
-    "depth_gate": Core(protocols.depth_gate),
-    "gradient_lookup": Core(protocols.gradient_lookup, (1,)),
-    "quadratic_gradient": Core(protocols.quadratic_gradient, (1,)),
-    "gain_map": Core(protocols.gain_map),
-    "flat_field": Core(protocols.flat_field, (0, 2)),
-    "auto_zero": Core(protocols.auto_zero),
-    "reference_capture": Core(protocols.reference_capture, (1,)),
-    "floor_capture": Core(protocols.floor_capture, (1,)),
-    "thomas_table": Core(protocols.thomas_table),
-    "row_reorder": Core(lambda p: protocols.words(p["Size"], None, whole=False), (2,)),
-    "divergence": Core(protocols.divergence, (5,)),
-    "transpose": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (5,)),
-    "frame_stack": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (4,)),
-    "spectral_divide": Core(lambda p: protocols.bursts(p["Size"], p["Size"]), (2,)),
-    "forward_elimination": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
-    "back_substitution": Core(lambda p: protocols.bursts(p["Size"], p["Rows"]), (2,)),
-    "mode_pairs": Core(lambda p: protocols.bursts(p["Size"], None), (4,)),
-    "sdf_butterfly": Core(lambda p: protocols.bursts(p["Size"], None), (2,)),
-    "twiddle_multiply": Core(lambda p: protocols.bursts(p["Size"], None), (6,)),
-    "sdf_fft": Core(lambda p: protocols.bursts(p["Size"], None), (3,)),
-    "dst_forward": Core(lambda p: protocols.bursts(p["Size"], None), (5,), flat=False),
-    "dst_inverse": Core(lambda p: protocols.bursts(p["Size"], None), (5,), flat=False),
-    "frame_output": Core(protocols.frame_output, (1,)),
-    "frame_tags": Core(protocols.frame_tags, (4,)),
+    "round_saturate": Core((0, 1, 11)),
+    "multiply": Core((2,)),
+    "dot_product": Core((3,)),
+    "ram": Core((1,)),
+    "rom": Core((1,)),
+    "delay_line": Core((4, 3)),
+    "burst_counter": Core((1,)),
+    "axis_skid": Core(),
+    "threshold_comparator": Core(),
+    "frame_guard": Core((1,), outside=("silence",)),
+    "contact_events": Core((1,), outside=("frame",)),
+    "depth_gate": Core(),
+    "gradient_lookup": Core((1,)),
+    "quadratic_gradient": Core((1,)),
+    "gain_map": Core(),
+    "flat_field": Core((0, 2)),
+    "auto_zero": Core(),
+    "reference_capture": Core((1,)),
+    "floor_capture": Core((1,)),
+    "thomas_table": Core(),
+    "row_reorder": Core((2,), "words"),
+    "divergence": Core((5,)),
+    "transpose": Core((5,), "bursts", rows_are="Size"),
+    "frame_stack": Core((4,), "bursts"),
+    "spectral_divide": Core((2,), "bursts", rows_are="Size"),
+    "forward_elimination": Core((2,), "bursts"),
+    "back_substitution": Core((2,), "bursts"),
+    "mode_pairs": Core((4,), "bursts"),
+    "sdf_butterfly": Core((2,), "bursts"),
+    "twiddle_multiply": Core((6,), "bursts"),
+    "sdf_fft": Core((3,), "bursts"),
+    "dst_forward": Core((5,), "bursts", flat=False),
+    "dst_inverse": Core((5,), "bursts", flat=False),
+    "frame_output": Core((1,)),
+    "frame_tags": Core((4,)),
     "axil_registers": Core(
-        protocols.axil_registers,
         outside=(
             *("frames_in", "frames_out", "frames_dropped", "saturations_count"),
             *("dark_pixels", "depth_dropped", "records_lost"),
         ),
     ),
-    "spectral_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Size"], whole=True), (2,), simulators=QUICK_FIRST, flat=False
-    ),
-    "tridiagonal_solver": Core(
-        lambda p: protocols.words(p["Size"], p["Rows"], whole=True), (2,), simulators=QUICK_FIRST, flat=False
-    ),
+    "spectral_solver": Core((2,), "words", rows_are="Size", simulators=QUICK_FIRST, flat=False),
+    "tridiagonal_solver": Core((2,), "words", simulators=QUICK_FIRST, flat=False),
     "tactile_depth": Core(
-        protocols.tactile_depth,
         (2,),
         simulators=("verilator",),
         flat=False,
@@ -205,7 +199,8 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         what = {mutant.number: mutant.what for mutant in made}
         outcome.mutants += len(made)
         outcome.killed += len(killed)
-        graph = equivalence.graph(name, folder, core.protocol(built.parameters))
+        parameters = {**built.parameters, **({"Rows": built.parameters[core.rows_are]} if core.rows_are else {})}
+        graph = equivalence.graph(name, folder, core.protocol or name, parameters)
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:
             verdicts = pool.imap(

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from commands.common.repository import cores, sources
-from commands.verify import formal, proofs
+from commands.verify import formal, mutate
+from formal import proofs
 
 QUICK = ("axis_skid", "burst_counter")
 CORES = list(cores())
@@ -30,9 +31,17 @@ def test_every_core_is_proven_or_says_why_not(core: Any) -> None:
 def test_names_are_those_of_cores_and_benches() -> None:
     assert {entry.core for entry in ENTRIES} | set(proofs.WITHOUT_CONTROL) == set(CORES)
     benches = {f"fv_{entry.core}" for entry in proofs.PROOFS} | set(formal.HELPERS)
-    assert {path.stem for path in formal.BENCHES.rglob("*.sv")} == benches
+    assert {path.stem for path in formal.BENCHES.glob("*.sv")} == set(formal.HELPERS) | {"protocol_tactile_depth"}
+    assert {path.stem for path in formal.BENCHES.rglob("fv_*.sv")} | set(formal.HELPERS) == benches
     names = [entry.name for entry in ENTRIES]
     assert len(set(names)) == len(names)
+
+
+def test_every_protocol_belongs_to_a_core() -> None:
+    used = {f"protocol_{core.protocol or name}" for name, core in mutate.CORES.items()}
+    files = {path.stem for path in formal.BENCHES.rglob("protocol_*.sv")}
+    assert files <= used
+    assert used - files == {"protocol_round_saturate"}, "any input is allowed, and the output always counts"
 
 
 def test_document_is_up_to_date() -> None:

@@ -35,7 +35,6 @@ EXTREMES = {
     "FloorWords": 1250,
 }
 
-
 QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0, "FloorWords": 300}
 BUILDS = {"128": built(Configuration(columns=128)), "extremes": EXTREMES, "without-gradient-table": QUADRATIC}
 

@@ -18,7 +18,6 @@ FFT_SOURCES = [
     "twiddle_multiply.sv",
 ]
 
-
 # Parameters of dst_forward and dst_inverse, in the order of their structures.
 TRANSFORM_PARAMETERS = (
     "Size",

@@ -23,7 +23,6 @@ PROGRAM = "tactile-depth"
 BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 130
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
 
-
 # Errors of the package name arguments; a user of the command gave options.
 OPTIONS = {
     r"\bcamera_size=\(rows, columns\)": "--camera-size <columns>x<rows>",

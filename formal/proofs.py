@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from commands.verify.proof_tables import (
+from formal.tables import (
     factor_rom,
     floor_rom,
     gain_rom,
@@ -85,19 +85,10 @@ class Structure:
 
 
 FULL_WIDTH = "the widths in use"
-
-
 ONE_ORDER = "the order is one formula for every power of two"
-
-
 ROUNDING = "rounding is proven of round_saturate at full width"
-
-
 CONTENTS = "what is in a record is left to simulation against numpy"
-
-
 WORD_FREE = "no word is looked at, so one bit stands for any width"
-
 
 PROOFS: tuple[Proof, ...] = (
     *(
@@ -433,7 +424,6 @@ PROOFS: tuple[Proof, ...] = (
     ),
 )
 
-
 STRUCTURES = tuple(
     Structure(
         "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
@@ -449,7 +439,6 @@ STRUCTURES = tuple(
         (0, {"flat_field": 1, "gradient_model": "quadratic"}),
     )
 )
-
 
 # Cores with nothing that a proof here would add to.
 WITHOUT_CONTROL: Mapping[str, str] = {

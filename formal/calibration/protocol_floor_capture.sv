@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_floor_capture: whole frames of depths.
+
+module protocol_floor_capture #(
+  parameter int Rows    = 128,
+  parameter int Columns = 128
+) (
+  input  logic clk,
+  input  logic rst,
+  input  logic en,
+  input  logic in_valid,
+  input  logic in_user,
+  input  logic in_last,
+  input  logic in_frame_end,
+  input  logic map_write,
+  output logic given_in_user,
+  output logic given_in_last,
+  output logic given_in_frame_end,
+  output logic counts_busy,
+  output logic counts_done,
+  output logic counts_map_write,
+  output logic counts_map_write_node,
+  output logic counts_map_write_floor
+);
+
+  logic live = 1'b0;
+  logic [3:0] place;
+  always_ff @(posedge clk) live <= live | rst;
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset(rst), .en, .in_valid, .place);
+  assign given_in_user = in_valid & ~rst ? &place[1:0] : in_user;
+  assign given_in_last = in_valid & ~rst ? place[3] : in_last;
+  assign given_in_frame_end = in_valid & ~rst ? &place[3:2] : in_frame_end;
+  assign {counts_busy, counts_done} = {2{live & ~rst}};
+  assign counts_map_write = live;
+  assign {counts_map_write_node, counts_map_write_floor} = {2{live & map_write}};
+
+endmodule

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_multiply: any operands; the product counts once 1 enabled clock has passed.
+
+module protocol_multiply (
+  input  logic clk,
+  input  logic en,
+  output logic counts_product
+);
+
+  settled #(.Clocks(1)) u_settled (.clk, .en, .settled(counts_product));
+
+endmodule

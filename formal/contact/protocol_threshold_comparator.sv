@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_threshold_comparator: the first depth after a reset is the first of a frame.
+
+module protocol_threshold_comparator (
+  input  logic clk,
+  input  logic rst,
+  input  logic in_valid,
+  input  logic in_user,
+  output logic holds,
+  output logic counts_contact
+);
+
+  logic reset, live = 1'b0, begun = 1'b0;
+  assign reset = rst | ~holds;
+  assign holds = ~in_valid | rst | begun | in_user;
+  assign counts_contact = live & ~reset;
+  always_ff @(posedge clk) begin
+    live <= live | reset;
+    begun <= ~reset & (begun | (in_valid & in_user));
+  end
+
+endmodule

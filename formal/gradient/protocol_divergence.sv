@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_divergence: pixels in raster order; how many rows a frame has is left open.
+
+module protocol_divergence #(
+  parameter int Columns = 128
+) (
+  input  logic clk,
+  input  logic rst,
+  input  logic en,
+  input  logic in_valid,
+  input  logic in_first_row,
+  input  logic in_first_column,
+  input  logic in_last_row,
+  input  logic in_last_column,
+  input  logic out_valid,
+  output logic holds,
+  output logic counts_out_valid,
+  output logic counts_out_frame_start,
+  output logic counts_out_data
+);
+
+  logic reset, live = 1'b0, first_row = 1'b1, last_row_before, still = 1'b0, valid_before, marks_right;
+  logic [15:0] column = '0;
+  assign reset = rst | ~holds;
+  assign marks_right = (in_first_column == (column == '0)) & (in_last_column == (column == 16'(Columns - 1)))
+      & (in_first_row == first_row) & (column == '0 | in_last_row == last_row_before);
+  assign holds = (~in_valid | rst | marks_right) & (~still | rst | in_valid == valid_before);
+  always_ff @(posedge clk) begin
+    live <= live | reset;
+    still <= ~en & ~reset;
+    valid_before <= in_valid;
+    if (reset) begin
+      column <= '0;
+      first_row <= 1'b1;
+    end else if (en && in_valid) begin
+      column <= in_last_column ? '0 : column + 16'd1;
+      if (in_last_column) first_row <= in_last_row;
+      last_row_before <= in_last_row;
+    end
+  end
+  assign {counts_out_valid, counts_out_frame_start} = {2{live & ~reset & en}};
+  assign counts_out_data = counts_out_valid & out_valid;
+
+endmodule

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// axis_source: what is offered stays until it is taken; nothing is offered in reset and in the clock after it.
+
+module axis_source #(
+  parameter int Width = 26
+) (
+  input  logic             clk,
+  input  logic             rst,
+  input  logic             reset,
+  input  logic             valid,
+  input  logic             ready,
+  input  logic [Width-1:0] word,
+  output logic             holds
+);
+
+  logic was_reset = 1'b1, stays;
+  always_ff @(posedge clk) was_reset <= reset;
+  offer_stays #(.Width(Width)) u_offer (.clk, .rst, .reset, .valid, .ready, .word, .holds(stays));
+  assign holds = stays & ~(valid & (rst | was_reset));
+
+endmodule

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// raster_places: the place of each pixel of whole frames in raster order; only a reset cuts a frame short.
+
+module raster_places #(
+  parameter int Rows    = 4,
+  parameter int Columns = 4
+) (
+  input  logic       clk,
+  input  logic       reset,
+  input  logic       en,
+  input  logic       in_valid,
+  output logic [3:0] place  // in the last column, last row, first column, first row
+);
+
+  logic [15:0] row = '0, column = '0;
+  assign place = {column == 16'(Columns - 1), row == 16'(Rows - 1), column == '0, row == '0};
+  always_ff @(posedge clk) begin
+    if (en && in_valid) begin
+      column <= place[3] ? '0 : column + 16'd1;
+      if (place[3]) row <= place[2] ? '0 : row + 16'd1;
+    end
+    if (reset) begin
+      row <= '0;
+      column <= '0;
+    end
+  end
+
+endmodule

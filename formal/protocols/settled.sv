@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// settled: high once so many clocks with en have passed.
+
+module settled #(
+  parameter int Clocks = 1
+) (
+  input  logic clk,
+  input  logic en,
+  output logic settled
+);
+
+  logic [7:0] passed = '0;
+  assign settled = passed == 8'(Clocks);
+  always_ff @(posedge clk) if (en && !settled) passed <= passed + 8'd1;
+
+endmodule
