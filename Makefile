@@ -39,7 +39,7 @@ override BASELINES := $(VENV)/baselines
 override HARDWARE := $(VENV)/hardware
 override LIVE := .venv-live
 
-.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets frontends fuzz formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth netlists setup clean
+.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets frontends formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth netlists setup clean
 override .DEFAULT_GOAL := sim
 
 # Print this list. docs/commands.md explains the variables.
@@ -102,10 +102,6 @@ extremes: $(STAMP)
 # Prove that two Verilog front ends read every core as the same circuit. CORE=a,b
 frontends: $(TOOLS)
 	@exec $(PY) -m commands frontends $(given)
-
-# Feed damaged input to everything that reads files of a user. MINUTES=10
-fuzz: $(TOOLS)
-	@exec $(PY) -m commands fuzz $(given)
 
 # Prove properties of the cores without a bound on time. CORE=a,b
 formal: $(TOOLS)

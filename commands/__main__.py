@@ -20,7 +20,6 @@ ROOMS = {
         "coverage",
         "formal",
         "frontends",
-        "fuzz",
         "lint",
         "mutate",
         "netlists",

@@ -2,6 +2,7 @@
 """Frames: the way from files to the grid, and what is said of bad ones."""
 
 import struct
+import tracemalloc
 import zlib
 from pathlib import Path
 from typing import Any
@@ -384,3 +385,13 @@ def test_a_scene_fills_the_middle_square_of_a_grid() -> None:
     np.testing.assert_array_equal(height[:, :, 9:41], render("ball", 32).height)
     assert not height[:, :, :9].any()
     assert not height[:, :, 41:].any()
+
+
+def test_a_large_picture_is_averaged_in_little_memory() -> None:
+    image = np.zeros((LARGEST_CAMERA, LARGEST_CAMERA, 3), np.uint8)
+    plan = resampling(image.shape[:2], (128, 128))
+    tracemalloc.start()
+    plan.average(image)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 64 << 20  # float64 of the whole picture would be 400 MB

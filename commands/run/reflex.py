@@ -6,7 +6,7 @@ that the sensor makes of it go through the RTL at the camera's timing, and the c
 the command. The host path is a USB camera and the same reconstruction in software, timed on this machine as it runs.
 Every delay is a `Delay`: a distribution and where it comes from. docs/reflex.md tells what comes of it.
 
-Takes N, CLOCK_MHZ, SPEED (mm/s), TRIALS, HOST_TRIALS, SEED, SIM, VIDEO (a .gif) and OUT as KEY=VALUE arguments. Exit
+Takes N, CLOCK_MHZ, SPEED (mm/s), TRIALS, HOST_TRIALS, SEED, SIM and OUT as KEY=VALUE arguments. Exit
 status: 0 done, 1 the RTL is not as it must be, 2 bad input.
 """
 
@@ -16,7 +16,6 @@ import itertools
 import json
 import math
 import os
-import shutil
 import sys
 import tempfile
 import time
@@ -34,7 +33,7 @@ from commands.common import simulator as simulation
 from commands.common.machine import machine
 from commands.common.run_request import CONTACT_THRESHOLD
 from commands.common.signals import threads
-from commands.run import bench, reflex_pictures
+from commands.run import bench, reflex_picture
 from commands.run.reflex_model import (
     CAMERA_BYTES,
     EXPOSURE,
@@ -63,7 +62,7 @@ from commands.run.reflex_tables import sentences, tables
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.latency import last_pixel_to_first_depth
-from tactile_depth.scenes import SENSOR_WIDTH_MM, scene_pixel_pitch_mm
+from tactile_depth.scenes import SENSOR_WIDTH_MM
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
 
@@ -79,7 +78,7 @@ def parse(arguments: Sequence[str]) -> Request:
     ------
     InputError
     """
-    accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "VIDEO", "OUT")
+    accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "OUT")
     given = variables.given(arguments, accepted)
     number = partial(variables.number, given)
     request = Request(
@@ -90,7 +89,6 @@ def parse(arguments: Sequence[str]) -> Request:
         host_trials=number("HOST_TRIALS", published.REFLEX["host"]["trials"], 2, 10_000),
         seed=number("SEED", 1, 0, 10**9),
         simulator=given.get("SIM", simulation.SIMULATORS[0]),
-        video=Path(given["VIDEO"]) if "VIDEO" in given else None,
         out=Path(given.get("OUT", DEFAULT_OUT)),
     )
     for solver in COLUMNS:
@@ -100,12 +98,6 @@ def parse(arguments: Sequence[str]) -> Request:
         raise InputError(
             f"CLOCK_MHZ={request.clock_mhz:g}: the pixels of {request.size} x {request.size} at "
             f"{1000 / FRAME_MS['near']:g} frames/s come faster: accepted is {least:.4g} and more, or a smaller N"
-        )
-    if request.video is not None and request.video.suffix.lower() != ".gif":
-        raise InputError(f"VIDEO={request.video}: accepted is a file that ends in .gif")
-    if request.video is not None and (request.video.is_dir() or not request.video.parent.is_dir()):
-        raise InputError(
-            f"VIDEO={request.video}: its folder is missing, or it is one: accepted is a file that ends in .gif"
         )
     return request
 
@@ -282,14 +274,8 @@ def threshold_code(config: Configuration) -> int:
     return round(CONTACT_THRESHOLD * config.rows / config.depth_lsb_px)
 
 
-# Trials.
-
-
-# Results.
-
-
-def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]:
-    """Everything: the document that reflex.json holds, and what the video is made of."""
+def measure(request: Request) -> dict[str, Any]:
+    """Measure everything, and return the document that reflex.json holds."""
     gap, _ = spacing(request)
     clocks_per_ms = 1000 * request.clock_mhz
     threshold = CONTACT_THRESHOLD * SENSOR_WIDTH_MM
@@ -362,7 +348,7 @@ def measure(request: Request) -> tuple[dict[str, Any], list[Loop], Setup, Draws]
             "host": sensitivity(host, host_draws, request.size, host_base, HOST_NAMES),
         },
     }
-    return document, loops, near, near_draws
+    return document
 
 
 def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
@@ -410,9 +396,6 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
     }
 
 
-# Tables.
-
-
 def show(document: dict[str, Any]) -> str:
     parts = [f"{title}\n\n{markdown.table(head, rows)}" for title, head, rows in tables(document).values()]
     rows, columns = document["grid"]
@@ -422,7 +405,7 @@ def show(document: dict[str, Any]) -> str:
 
 
 def run(request: Request) -> None:
-    """Measure, print, and write reflex.json, reflex.png and the video, all or none of them.
+    """Measure, print, and write reflex.json and reflex.png, both or neither.
 
     Raises
     ------
@@ -430,36 +413,12 @@ def run(request: Request) -> None:
     """
     simulation.check(request.simulator)
     with results.workspace(request.out, RESULTS) as work:
-        document, loops, setup, draws = measure(request)
+        document = measure(request)
         print(show(document))
         (work / "reflex.json").write_text(json.dumps(document, indent=1) + "\n")
-        reflex_pictures.plot(work / "reflex.png", document)
-        if request.video is not None:
-            print("drawing the video ..", flush=True)
-            reflex_pictures.video(work / "trial.gif", trial_film(loops[0], setup, draws, request))
-            shutil.copy(work / "trial.gif", draft := request.video.with_name(f".{request.video.name}"))
-            os.replace(draft, request.video)
+        reflex_picture.plot(work / "reflex.png", document)
         results.replace(work, RESULTS, request.out)
     print(f"results: {os.path.relpath(request.out)}")
-
-
-def trial_film(one: Loop, setup: Setup, draws: Draws, request: Request) -> reflex_pictures.Film:
-    """The first trial, up to a little after its command."""
-    chosen = [index for index, sent in enumerate(one.sent) if sent.trial == 0 and sent.frame <= one.decisions[0].frame]
-    decision, phase = one.decisions[0], draws.phase[0]
-    per_ms = 1000 * request.clock_mhz
-    return reflex_pictures.Film(
-        frames=one.pixels[chosen],
-        depth_mm=one.codes[chosen] * one.config.depth_lsb_px * scene_pixel_pitch_mm(request.size),
-        begin_ms=np.array([setup.exposed(phase, one.sent[index].frame) for index in chosen]),
-        read_out_ms=setup.read_out * setup.frame,
-        first_depth_ms=setup.read_out * setup.frame + decision.last_pixel_to_first_depth / per_ms,
-        depth_out_ms=request.size**2 / per_ms,
-        command_ms=setup.exposed(phase, decision.frame) + decision.first_pixel_to_contact / per_ms,
-        threshold_mm=setup.threshold,
-        bottom_first=one.config.solver == "tridiagonal",
-        title=f"a pin at {request.speed:g} mm/s, {request.size} x {request.size}, {one.config.solver} solver",
-    )
 
 
 def main() -> None:

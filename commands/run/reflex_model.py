@@ -129,7 +129,6 @@ class Request:
     host_trials: int
     seed: int
     simulator: str
-    video: Path | None
     out: Path
 
 

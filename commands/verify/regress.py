@@ -207,18 +207,8 @@ def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str],
     """Run tests; what they recorded becomes the part's lines."""
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records.jsonl"
-        command = [
-            sys.executable,
-            "-m",
-            "pytest",
-            "-vv",
-            "-n",
-            str(jobs),
-            "--dist",
-            "worksteal",
-            f"--basetemp={folder}/tests",
-            *arguments,
-        ]
+        options = ["-vv", "-n", str(jobs), "--dist", "worksteal", f"--basetemp={folder}/tests"]
+        command = [sys.executable, "-m", "pytest", *options, *arguments]
         process = subprocess.Popen(
             command,
             cwd=ROOT,

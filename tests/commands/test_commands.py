@@ -58,7 +58,6 @@ REFUSED = {
     "tune MAX_DSP=inf": "MAX_DSP=inf: accepted is a number above 0",
     "tune TOLERANCE=nan": "TOLERANCE=nan: accepted is a number above 0",
     "reflex SPEED=nan": "SPEED=nan: accepted is a number from 5 to 200",
-    "fuzz MINUTES=inf": "MINUTES=inf: accepted is a number from 0.01 to 10,000",
     "coverage TESTS=2": "TESTS=2: accepted is a whole number from 0 to 1",
     "regress JOBS=0": "JOBS=0: accepted is a whole number from 1 to 1,000",
     "calibrate PITCH=nan": "PITCH=nan: accepted is a number from 1e-06 to 1,000",

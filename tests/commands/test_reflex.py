@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from commands.common import published
-from commands.run import bench, reflex, reflex_model, reflex_pictures
+from commands.run import bench, reflex, reflex_model
 from commands.study import report
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
@@ -34,8 +33,6 @@ TRIALS = 20_000
         ("HOST_TRIALS=2.5", "a whole number"),
         ("SEED=-1", "a whole number"),
         ("CLOCK_MHZ=1", "come faster: accepted is 6.554"),
-        ("VIDEO=trial.mp4", "ends in .gif"),
-        ("VIDEO=missing/trial.gif", "folder is missing"),
     ],
 )
 def test_bad_input(given: Any, says: str) -> None:
@@ -144,12 +141,9 @@ def test_pins_that_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole command, small: the command time is the pin's clock, and the clocks do not know the camera's pace."""
-    monkeypatch.setattr(reflex_pictures, "STEP_MS", 1.0)
-    out, film = tmp_path / "out", tmp_path / "trial.gif"
-    reflex.run(reflex.parse([*SMALL, "HOST_TRIALS=3", f"OUT={out}", f"VIDEO={film}"]))
+    out = tmp_path / "out"
+    reflex.run(reflex.parse([*SMALL, "HOST_TRIALS=3", f"OUT={out}"]))
     assert sorted(path.name for path in out.iterdir()) == ["reflex.json", "reflex.png"]
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "trial.gif"]
-    assert Image.open(film).n_frames > 10  # type: ignore[attr-defined]
     document = json.loads((out / "reflex.json").read_text())
 
     request = reflex.parse([*SMALL[:2], "CLOCK_MHZ=0.7", SMALL[3]])
