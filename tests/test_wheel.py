@@ -183,7 +183,11 @@ def test_the_command_writes_its_files(environment: Any, pictures: Any, tmp_path:
 
 
 @pytest.mark.parametrize(
-    "picture", [pytest.param(DRAWN, id="drawn"), pytest.param(REAL, id="real", marks=real_data.needs_real_data)]
+    "picture",
+    [
+        pytest.param(DRAWN, id="drawn", marks=pytest.mark.regress),
+        pytest.param(REAL, id="real", marks=real_data.needs_real_data),
+    ],
 )
 def test_the_rtl_has_the_codes_of_the_wheel(
     environment: Any, pictures: Any, tmp_path: Path, picture: np.ndarray

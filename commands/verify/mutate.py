@@ -105,7 +105,7 @@ CORES = {
     "spectral_solver": Core((2,), "words", rows_are="Size", simulators=QUICK_FIRST, flat=False),
     "tridiagonal_solver": Core((2,), "words", simulators=QUICK_FIRST, flat=False),
     "tactile_depth": Core(
-        (2,),
+        (1,),
         simulators=("verilator",),
         flat=False,
         tests=TOP_TESTS,

@@ -19,6 +19,7 @@ QUICK = "^(?!.*broken)"  # `make regress` breaks transfers off as well
 
 
 @pytest.mark.seeds
+@pytest.mark.structures("", verilator=[()], regress=[()])
 def test_rtl(run_tb: Callable[..., None], simulator: str) -> None:
     tests = "wakes|frames" if simulator == "icarus" else "" if REGRESS else QUICK  # 20 times slower there
     choices: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2}

@@ -16,9 +16,15 @@ SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
 
 @pytest.mark.structures(
     "columns rows block_log2 width largest",
-    both=[(16, 8, 1, 24, LARGEST_LOG2 if REGRESS else 5)],
+    verilator=[(16, 8, 1, 24, LARGEST_LOG2 if REGRESS else 5)],
     icarus=[(4, 5, 1, 4, 2), (4, 2, 1, 6, 1)],
-    regress=[(32, 21, 1, 12, 1), (16, 16, 2, 24, 3), (128, 20, 3, 16, 1), (16, 9, 1, 32, 0)],
+    regress=[
+        (32, 21, 1, 12, 1),
+        (16, 16, 2, 24, 3),
+        (128, 20, 3, 16, 1),
+        (16, 9, 1, 32, 0),
+        (16, 8, 1, 24, LARGEST_LOG2),
+    ],
 )
 def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, largest: int) -> None:
     parameters = {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "MaxLog2": largest}

@@ -67,6 +67,7 @@ def test_one_model_alone_is_written_alone(made: Any, tmp_path: Path, model: Any)
         assert sensor.bits_per_channel == 3
 
 
+@pytest.mark.regress  # tests/test_fitting.py has the fits
 def test_presses_held_out_in_turn_are_in_the_file(
     made: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,7 +9,9 @@ import pytest
 from commands.verify import netlists
 
 
-@pytest.mark.parametrize(("core", "dsps"), [("burst_counter", 0), ("twiddle_multiply", 4)])
+@pytest.mark.parametrize(
+    ("core", "dsps"), [("burst_counter", 0), pytest.param("twiddle_multiply", 4, marks=pytest.mark.regress)]
+)
 def test_a_netlist_is_as_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, core: str, dsps: Any) -> None:
     monkeypatch.setattr(netlists, "OUT", tmp_path)
     (case,) = netlists.cases([core])

@@ -124,7 +124,7 @@ def test_accuracy_and_rate(
     assert codes.shape == (8, size, size)
 
 
-@pytest.mark.parametrize("solver", COLUMNS)
+@pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 @pytest.mark.parametrize(
     "disturbance",
     [

@@ -100,7 +100,14 @@ def run(tmp_path: Any, *given: Any) -> Any:
     return tune.run(*tune.parse(["SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *given]))
 
 
-@pytest.mark.parametrize("given", [[], ["BOUNDARY=neumann", "SOLVER=spectral", "TOLERANCE=0.02"], ["FRAMES=ball"]])
+@pytest.mark.parametrize(
+    "given",
+    [
+        pytest.param([], marks=pytest.mark.regress),
+        pytest.param(["BOUNDARY=neumann", "SOLVER=spectral", "TOLERANCE=0.02"], marks=pytest.mark.regress),
+        ["FRAMES=ball"],
+    ],
+)
 def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any
 ) -> None:

@@ -7,12 +7,11 @@ from typing import Any
 import pytest
 
 from commands.verify.upsets import CASES, run
-from tb.stream import REGRESS
 from tests.conftest import SEED
 
 
-@pytest.mark.seeds
-@pytest.mark.parametrize("case", CASES if REGRESS else list(CASES)[-1:])
+@pytest.mark.regress
+@pytest.mark.parametrize("case", CASES)
 def test_sample(case: Any, tmp_path: Path) -> None:
     results = run(case, upsets=1, seed=SEED, folder=tmp_path)  # of each module
     assert len(results) > 20

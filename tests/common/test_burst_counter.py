@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tactile_depth.common.burst_counter import burst_counter
 
 
-@pytest.mark.structures("size", both=[(16,)], icarus=[(8,), (64,)])
+@pytest.mark.structures("size", verilator=[(16,)], icarus=[(8,)], regress=[(64,), (16,)])
 def test_rtl(run_tb: Callable[..., None], size: int) -> None:
     run_tb("burst_counter", ["burst_counter.sv"], {"Size": size})
 

@@ -19,8 +19,9 @@ DISTRIBUTED, BLOCK, ULTRA = range(3)
 
 @pytest.mark.structures(
     "width depth style file",
-    both=[(24, 64, BLOCK, "contents.hex")],
+    verilator=[(24, 64, BLOCK, "contents.hex")],
     icarus=[(5, 16, DISTRIBUTED, None), (9, 24, DISTRIBUTED, "contents.hex"), (70, 32, ULTRA, None)],
+    regress=[(24, 64, BLOCK, "contents.hex")],
 )
 def test_rtl(run_tb: Callable[..., None], width: int, depth: Any, style: str, file: Any) -> None:
     def contents(folder: Path) -> None:

@@ -17,7 +17,7 @@ from tactile_depth.sensor import Sensor, synthetic
 SOURCES = ["gradient_lookup.sv", "ram.sv"]
 
 
-@pytest.mark.structures("bits data_width", both=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24)])
+@pytest.mark.structures("bits data_width", verilator=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24), (2, 24)])
 def test_rtl(run_tb: Callable[..., None], bits: int, data_width: int) -> None:
     choices: dict[str, Any] = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
     config = Configuration(**choices)

@@ -25,17 +25,18 @@ def any_words(width: int, seed: int = 1) -> Any:
 
 @pytest.mark.structures(
     "width deviation coefficient word drop",
-    both=[tuple(gradient_parameters(Configuration(columns=16)).values()), (3, 3, 3, 5, 3)],
-    icarus=[
+    verilator=[tuple(gradient_parameters(Configuration(columns=16)).values())],
+    icarus=[(3, 3, 3, 5, 3)],
+    regress=[
         tuple(gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
         (14, 4, 5, 9, 0),
-    ],
-    regress=[
         tuple(gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
         (6, 4, 4, 4, 1),
         (10, 4, 5, 9, -2),
         (12, 4, 5, 9, -2),
+        tuple(gradient_parameters(Configuration(columns=16)).values()),
     ],
+    regress_verilator=[(3, 3, 3, 5, 3)],
 )
 def test_rtl(run_tb: Callable[..., None], width: int, deviation: Any, coefficient: Any, word: Any, drop: int) -> None:
     run_tb(

@@ -11,9 +11,18 @@ SOURCES = ["burst_counter.sv", "ram.sv", "frame_stack.sv"]
 
 @pytest.mark.structures(
     "size width rows words_per_row",
-    both=[(16, 24, 8, 3)],
-    icarus=[(8, 16, 3, 1), (4, 4, 3, 1), (8, 16, 3, 2), (4, 4, 4, 3), (4, 4, 4, 2), (5, 6, 2, 2), (2, 5, 2, 6)],
-    regress=[(8, 16, 2, 1), (16, 16, 17, 1), (16, 9, 17, 3), (16, 12, 5, 6)],
+    verilator=[(16, 24, 8, 3)],
+    icarus=[(8, 16, 3, 1), (4, 4, 3, 1), (8, 16, 3, 2), (4, 4, 4, 3)],
+    regress=[
+        (4, 4, 4, 2),
+        (5, 6, 2, 2),
+        (2, 5, 2, 6),
+        (16, 24, 8, 3),
+        (8, 16, 2, 1),
+        (16, 16, 17, 1),
+        (16, 9, 17, 3),
+        (16, 12, 5, 6),
+    ],
 )
 def test_rtl(run_tb: Callable[..., None], size: int, width: int, rows: int, words_per_row: Any) -> None:
     run_tb("frame_stack", SOURCES, {"Size": size, "Width": width, "Rows": rows, "WordsPerRow": words_per_row})

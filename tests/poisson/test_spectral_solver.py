@@ -34,11 +34,12 @@ SOLVER_SOURCES = [
 @pytest.mark.seeds
 @pytest.mark.structures(
     "choices",
-    both=[({"columns": 16},)],
+    verilator=[({"columns": 16},)],
     icarus=[({"columns": 16, "data_width": 20, "gradient_limit": 4.0},)],
     regress=[
         ({"columns": 32, "data_width": 12, "coefficient_width": 10},),
         ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5},),
+        ({"columns": 16},),
     ],
 )
 def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:

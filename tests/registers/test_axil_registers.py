@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 from tactile_depth.configuration import Configuration
-from tb.stream import REGRESS
 
 SOURCES = ["register_map_pkg.sv", "axil_registers.sv"]
 
@@ -41,8 +40,10 @@ BUILDS = {"128": built(Configuration(columns=128)), "extremes": EXTREMES, "witho
 
 @pytest.mark.structures(
     "build",
-    both=[("128",), *([("extremes",), ("without-gradient-table",)] if REGRESS else [])],
-    icarus=[] if REGRESS else [("extremes",), ("without-gradient-table",)],
+    verilator=[("128",)],
+    icarus=[("without-gradient-table",)],
+    regress=[("128",), ("extremes",)],
+    regress_verilator=[("extremes",), ("without-gradient-table",)],
 )
 def test_axil_registers(run_tb: Callable[..., None], build: Any) -> None:
     run_tb("axil_registers", SOURCES, parameters=BUILDS[build])

@@ -26,14 +26,17 @@ MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
 
 @pytest.mark.structures(
     "factors size block in_width out_width coeff drop real_only",
-    both=[("twiddle_forward", 32, 32, 27, 27, 18, 17, 0)],
+    verilator=[("twiddle_forward", 32, 32, 27, 27, 18, 17, 0)],
     icarus=[
         ("twiddle_inverse", 32, 8, 12, 12, 10, 9, 0),
         ("twiddle_forward", 16, 8, 35, 35, 24, 23, 0),
         ("phase_forward", 16, 16, 27, 24, 18, 20, 1),
+    ],
+    regress=[
         ("phase_forward", 16, 16, 15, 15, 10, 9, 1),
         ("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
         ("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0),
+        ("twiddle_forward", 32, 32, 27, 27, 18, 17, 0),
     ],
 )
 def test_rtl(
