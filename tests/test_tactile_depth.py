@@ -20,7 +20,7 @@ FORMATS = (
     "gaps_and_stalls/offers=random/accepts=(one_in_4|random)"
 )
 FLAT = f"{FORMATS}|capture|floor|dark_pixels|depth_frames|resets.*=2.*full"
-# `make test` runs every test on the tridiagonal solver, FORMATS on the spectral one, and each pair of gaps and stalls
+# `make test` runs EVERY test on the tridiagonal solver, FORMATS on the spectral one, and each pair of gaps and stalls
 # on one of them. `make regress` runs all on both, but on Icarus for the spectral solver.
 PAIRS = {
     solver: "|".join(
@@ -30,7 +30,7 @@ PAIRS = {
     )
     for odd, solver in enumerate(COLUMNS)
 }
-# Long tests. With a sink that never waits they run on Verilator with the tridiagonal solver alone.
+# Long tests. With a sink that never waits they run in `make regress` alone, on Verilator with the tridiagonal solver.
 LONG = "(malformed|random_streams|gradient_table_rewritten|registers_written_in).*accepts=none"
 # Tests that repeat for each disturbance.
 REPEATED = f"gaps_and_stalls|records_at_the_limits|{LONG}|random_streams|side_by_side|every_fault_in_a_row/.*random"

@@ -56,7 +56,7 @@ def test_the_command_writes_a_calibration_a_picture_and_a_table(
     assert sorted(path.name for path in out.parent.iterdir()) == ["mine.npz", "mine.png"]
 
 
-@pytest.mark.parametrize("model", ["lut", "quadratic"])
+@pytest.mark.parametrize("model", ["lut", pytest.param("quadratic", marks=pytest.mark.regress)])
 def test_one_model_alone_is_written_alone(made: Any, tmp_path: Path, model: Any) -> None:
     out = tmp_path / "one.npz"
     assert run(parse([f"PRESSES={made}", f"OUT={out}", f"GRADIENT={model}", "BITS=3"])) == 0
@@ -131,6 +131,7 @@ def test_bad_input_ends_with_status_2_and_one_line(tmp_path: Path) -> None:
     assert re.fullmatch(r"make calibrate: .*: no presses\.csv in it: .*\n", result.stderr)
 
 
+@pytest.mark.regress  # tests/test_fitting.py compares the fit itself
 def test_the_shipped_calibration_is_what_the_command_makes(tmp_path: Path) -> None:
     out = tmp_path / "gelsight-mini.npz"
     assert run(parse([f"PRESSES={real_folder()}", f"OUT={out}"])) == 0

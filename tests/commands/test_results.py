@@ -249,7 +249,9 @@ def earlier(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capt
 NO_SPACE = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "depth.npy")
 
 
-@pytest.mark.parametrize("failing", range(6))  # three moves aside, three moves in
+@pytest.mark.parametrize(  # three moves aside, three moves in
+    "failing", [0, 5, *(pytest.param(move, marks=pytest.mark.regress) for move in range(1, 5))]
+)
 def test_a_move_that_fails_brings_earlier_results_back(
     tmp_path: Path, monkeypatch: Any, capsys: pytest.CaptureFixture[str], earlier: Any, failing: Any
 ) -> None:
@@ -339,7 +341,12 @@ def test_waveforms_of_an_earlier_run_go_and_other_files_stay(
 
 
 @pytest.mark.parametrize(
-    "report", ['{"waves": ["../outside.vcd", "notes.txt", 3]}', "[]", "no JSON", '{"waves": "mine.vcd"}', "{}"]
+    "report",
+    [
+        '{"waves": ["../outside.vcd", "notes.txt", 3]}',
+        "no JSON",
+        *(pytest.param(report, marks=pytest.mark.regress) for report in ("[]", '{"waves": "mine.vcd"}', "{}")),
+    ],
 )
 def test_a_report_of_something_else_removes_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], earlier: Any, report: Any

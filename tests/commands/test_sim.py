@@ -43,7 +43,7 @@ def only(values: Any) -> Any:
     return values[0]
 
 
-@pytest.mark.parametrize("solver", COLUMNS)
+@pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 @pytest.mark.parametrize("size", [64, *(pytest.param(size, marks=pytest.mark.regress) for size in (128, 256))])
 def test_every_grid_on_every_simulator(tmp_path: Path, simulator: str, size: int, solver: str) -> None:
     report = run(tmp_path, f"N={size}", f"SIM={simulator}", f"SOLVER={solver}")

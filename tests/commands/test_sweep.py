@@ -105,10 +105,10 @@ def test_a_row_is_what_the_rtl_does(
     tmp_path: Path, solver: str, data_width: int, coefficient_width: int, boundary: str
 ) -> None:
     given = [f"SOLVER={solver}", f"DATA_WIDTH={data_width}", f"COEFF_WIDTH={coefficient_width}", f"BOUNDARY={boundary}"]
-    assert sim.run(run_request.parse(["N=32", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *given])) == 0
+    assert sim.run(run_request.parse(["N=16", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *given])) == 0
     seen = json.loads((tmp_path / "out" / "report.json").read_text())
     choices: dict[str, Any] = {"solver": solver, "data_width": data_width, "coefficient_width": coefficient_width}
-    row = accuracy.measure({"columns": 32, "neumann": boundary == "neumann", **choices})
+    row = accuracy.measure({"columns": 16, "neumann": boundary == "neumann", **choices})
     for name in ("rms", "max"):
         percent = seen[f"{name}_percent_of_peak"]
         assert float(row[f"{name}_percent_mean"]) == pytest.approx(sum(percent) / len(percent), rel=1e-5)
