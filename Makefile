@@ -39,7 +39,7 @@ override BASELINES := $(VENV)/baselines
 override HARDWARE := $(VENV)/hardware
 override LIVE := .venv-live
 
-.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets frontends formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth netlists setup clean
+.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth wrap netlists setup clean
 override .DEFAULT_GOAL := sim
 
 # Print this list. docs/commands.md explains the variables.
@@ -62,7 +62,7 @@ quick: $(TOOLS)
 
 # Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
 live-test: $(LIVE)/complete
-	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py
+	@PYTHONPATH=models $(LIVE)/bin/python -m pytest --noconftest tests/test_live.py tests/test_source.py
 
 # Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
 regress: $(HARDWARE)
@@ -98,10 +98,6 @@ certify: $(STAMP)
 # Run scenes at the edges of the input range: error, saturations, status. SHORT=1: short runs.
 extremes: $(STAMP)
 	@exec $(PY) -m commands extremes $(given)
-
-# Prove that two Verilog front ends read every core as the same circuit. CORE=a,b
-frontends: $(TOOLS)
-	@exec $(PY) -m commands frontends $(given)
 
 # Prove properties of the cores without a bound on time. CORE=a,b
 formal: $(TOOLS)
@@ -143,6 +139,10 @@ fpga: $(HARDWARE)
 # Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
 synth: $(TOOLS)
 	@exec $(PY) -m commands synth $(given)
+
+# Write a module with every parameter of a configuration inside, and its table files. NAME=finger OUT=folder
+wrap: $(TOOLS)
+	@exec $(PY) -m commands wrap $(given)
 
 # Run every core after synthesis through its testbench. CORE=a,b
 netlists: $(TOOLS)

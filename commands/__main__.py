@@ -16,19 +16,8 @@ from tactile_depth.errors import InputError
 ROOMS = {
     "run": ("calibrate", "reflex", "sim"),
     "study": ("baselines", "benchmark", "certify", "extremes", "report", "sweep", "tune"),
-    "verify": (
-        "coverage",
-        "formal",
-        "frontends",
-        "lint",
-        "mutate",
-        "netlists",
-        "quick",
-        "regress",
-        "test",
-        "upsets",
-    ),
-    "hardware": ("asic", "fpga", "registers", "synth"),
+    "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "test", "upsets"),
+    "hardware": ("asic", "fpga", "registers", "synth", "wrap"),
 }
 COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}
 

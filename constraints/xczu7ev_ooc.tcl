@@ -21,11 +21,10 @@ set file [open [file join $made parameters.txt]]
 set parameters [split [string trim [read $file]]]
 close $file
 
-# The package first. Tables are looked for where Vivado stands.
-read_verilog -sv [file join $root hdl registers register_map_pkg.sv]
-foreach source [lsort [glob [file join $root hdl *.sv] [file join $root hdl * *.sv]]] {
-  if {[file tail $source] ne "register_map_pkg.sv"} { read_verilog -sv $source }
-}
+# Packages first. Tables are looked for where Vivado stands.
+set sources [lsort [glob [file join $root hdl *.sv] [file join $root hdl * *.sv]]]
+foreach source [lsearch -all -inline $sources *_pkg.sv] { read_verilog -sv $source }
+foreach source [lsearch -all -inline -not $sources *_pkg.sv] { read_verilog -sv $source }
 read_xdc -mode out_of_context [file join $root constraints xczu7ev.xdc]
 cd [file join $made rom]
 

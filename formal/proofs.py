@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
+from collections.abc import Mapping
 
+from commands.common.repository import UNITS
+from formal.camera.proofs import CAMERA_PROOFS, CAMERA_WITHOUT_CONTROL
+from formal.entries import FULL_WIDTH, ONE_ORDER, ROUNDING, WORD_FREE, Proof, Structure
 from formal.tables import (
+    camera_list,
     factor_rom,
     floor_rom,
     gain_rom,
@@ -18,77 +19,9 @@ from formal.tables import (
     thomas_roms,
     transform_roms,
 )
-from tactile_depth.contact import contact_events
+from tactile_depth.common import divide
+from tactile_depth.contact import centroid, contact_events
 from tactile_depth.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
-
-
-@dataclass(frozen=True)
-class Proof:
-    """A bench with its parameters.
-
-    Attributes
-    ----------
-    core : str
-        formal/fv_<core>.sv is a bench around hdl/<core>.sv.
-    claim : str
-        The property, in words.
-    sufficient : str
-        Why these sizes are enough.
-    parameters : mapping
-        Of the bench.
-    depth : int
-        Clocks within which every cover is reached.
-    engine : str
-        Of mode prove.
-    roms : callable
-        Writes the files that $readmemh reads into the folder given.
-    free : tuple of str
-        Wires of the core that take any values instead of their own.
-    """
-
-    core: str
-    claim: str
-    sufficient: str
-    parameters: Mapping[str, int] = field(default_factory=dict)
-    depth: int = 20
-    engine: str = "abc pdr"
-    roms: Callable[[Path], None] | None = None
-    free: tuple[str, ...] = ()
-
-    @property
-    def name(self) -> str:
-        return "-".join([self.core, *(f"{key}{value}" for key, value in self.parameters.items())])
-
-
-@dataclass(frozen=True)
-class Structure:
-    """On the netlist of the whole tactile_depth: no pixel and no memory lies in the cone of a handshake or side-band.
-
-    The cone is that of single bits; a memory passes everything from its inputs to its outputs. What holds of the cone
-    holds of every frame, whatever it shows: the clocks at which words move are a function of the other inputs alone.
-    """
-
-    claim: str
-    sufficient: str
-    choices: Mapping[str, Any]
-    core: str = "tactile_depth"
-    engine: str = "yosys select"
-    depth: int = 0
-
-    @property
-    def parameters(self) -> Mapping[str, int | str]:
-        return self.choices
-
-    @property
-    def name(self) -> str:
-        return "-".join([self.core, *(f"{key}{value}" for key, value in self.choices.items())])
-
-
-FULL_WIDTH = "the widths in use"
-ONE_ORDER = "the order is one formula for every power of two"
-ROUNDING = "rounding is proven of round_saturate at full width"
-CONTENTS = "what is in a record is left to simulation against numpy"
-WORD_FREE = "no word is looked at, so one bit stands for any width"
 
 PROOFS: tuple[Proof, ...] = (
     *(
@@ -109,6 +42,15 @@ PROOFS: tuple[Proof, ...] = (
         )
     ),
     Proof("axis_skid", "no word lost, repeated, reordered or changed; stable under stall; latency 1", WORD_FREE),
+    Proof(
+        "async_fifo",
+        "no word lost, repeated, reordered or changed, for clocks of any ratio and wires of any delay below a period; "
+        "stable under stall; words and room are seen within 4 clocks of a code's arrival",
+        f"codes of three bits, words are only counted; {WORD_FREE}",
+        depth=60,
+        free=("written_code_q", "fetched_code_q"),
+        clocks=2,
+    ),
     *(
         Proof(
             "burst_counter", "position counts the words of a burst, active just as long", why, {"Size": size}, depth=20
@@ -131,14 +73,63 @@ PROOFS: tuple[Proof, ...] = (
         )
     ),
     Proof(
+        "camera_setup",
+        "entries in order; at the end each that is compared was right at last, or one was wrong often in a row; "
+        "pins and waits as the list says",
+        "a list with every kind of entry",
+        {"Bus": 0},
+        depth=40,
+        roms=camera_list,
+        free=("sent", "caught"),
+    ),
+    Proof(
+        "dvp_receive",
+        "a front for each frame, its bytes without a hole up to the first without room; each frame given up counted "
+        "once; out of the queue the same, from the first front after a reset on",
+        "the widths in use; async_fifo is proven by itself",
+        free=("write_ready", "read_valid", "word"),
+        clocks=2,
+    ),
+    Proof(
         "threshold_comparator", "contact within one clock of a depth above the threshold, never otherwise", FULL_WIDTH
+    ),
+    Proof("beat_sums", "sums, limits and peak of an arbitrary beat, 2 clocks later", "sums are exact at any width"),
+    *(
+        Proof(
+            "contact_sums",
+            "area 2 and sums 3 clocks after a frame's last depth; limits and peak enclose what is above, are attained",
+            "positions are only counted; sums are exact at any width; either order of rows",
+            {"BottomFirst": bottom_first},
+            depth=30,
+        )
+        for bottom_first in (0, 1)
+    ),
+    Proof(
+        "contact_debounce",
+        "touching changes after `debounce` frames in a row that speak against it, and for no other reason",
+        "areas are only compared; a count of four frames",
+        depth=20,
+    ),
+    Proof(
+        "centroid",
+        "both means to the nearest, a fixed number of clocks after the last start",
+        f"every area and sum of this width; a bit is found in the same way at any width; {ROUNDING}",
+        {"Latency": centroid.cycles(2)},
+        depth=40,
+    ),
+    Proof(
+        "record_packets",
+        "the newest record kept; whole packets in order, each sent, or lost and said so",
+        "words are sent alike; three of them to a packet",
+        depth=20,
     ),
     Proof(
         "contact_events",
-        "a record at a fixed latency, kept until the next; whole packets, each sent, or lost and said so",
-        f"rows and columns are only counted; {CONTENTS}",
-        {"Rows": 3, "Columns": 4, "Latency": contact_events.latency(3, 4)},
-        depth=80,
+        "a record at a fixed latency, kept until the next, with number and time of its frame",
+        "rows and columns are only counted; whatever sums, area and centroid come out: they have their own proofs",
+        {"Rows": 3, "Columns": 8, "Latency": contact_events.latency(3, 8)},
+        depth=90,
+        free=("sums", "area", "mean_position"),
     ),
     *(
         Proof("ram", "a read returns what was last written to its address", WORD_FREE, {"Style": style})
@@ -148,6 +139,29 @@ PROOFS: tuple[Proof, ...] = (
         "depth_gate",
         "all words of a frame that waits, the first ones of one that does not; each looked at once, in time",
         f"words of a frame are only counted; {WORD_FREE}",
+        depth=30,
+    ),
+    Proof(
+        "banked_table",
+        "a frame reads the bank named when it began; the free bank reads as it was written",
+        WORD_FREE,
+        depth=30,
+    ),
+    *(
+        Proof(
+            "block_sum",
+            "a block's sum written 4 clocks behind its rows; an arbitrary word is added once to its block, to no other",
+            "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+            {"Signed": signed},
+            depth=40,
+        )
+        for signed in (0, 1)
+    ),
+    Proof(
+        "divide",
+        "quotient and remainder, or overflow, a fixed number of clocks after the last start",
+        "every numerator and divisor; a bit is found in the same way at any width",
+        {"DivisorWidth": 3, "QuotientWidth": 4, "Latency": divide.cycles(4)},
         depth=30,
     ),
     Proof("multiply", "the exact product of every enabled clock's operands", "no control but en; no width enters"),
@@ -186,7 +200,7 @@ PROOFS: tuple[Proof, ...] = (
             {"Meets": 0, "GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
             depth=45,
             roms=gain_rom(2),
-            free=("gains", "gain_valid", "gain_place", "colours", "dim"),
+            free=("gains", "gain_valid", "gain_position", "colours", "dim"),
         )
         for offset, width, flat in ((0, 1, 1), (2, 2, 0))
     ),
@@ -274,6 +288,16 @@ PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
+            "corner_turn",
+            "an arbitrary word at its place in its row, rows in turn; latency 3 from the last word of a row",
+            f"{ONE_ORDER}; two lanes, and the fewest with more than one memory for each half; {WORD_FREE}",
+            {"Size": size, "Lanes": lanes},
+            depth=36,
+        )
+        for size, lanes in ((4, 2), (8, 4))
+    ),
+    *(
+        Proof(
             "transpose",
             "an arbitrary word at its place in its column; latency 2 from the first word of the last row",
             f"{ONE_ORDER}; {WORD_FREE}",
@@ -287,11 +311,21 @@ PROOFS: tuple[Proof, ...] = (
             "frame_stack",
             "an arbitrary word at its place, last row first; latency 3 from the first word of the last row",
             "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
-            f"a memory row that divide a burst, and not; {WORD_FREE}",
-            {"Rows": rows, "Size": size, "WordsPerRow": words},
+            f"a memory row that divide a burst, and not; rows that lanes divide, and not, and fewer; {WORD_FREE}",
+            {"Rows": rows, "Size": size, "WordsPerRow": words, "Lanes": lanes},
             depth=3 * rows * size + 5,
         )
-        for rows, size, words in ((3, 4, 1), (4, 4, 1), (3, 4, 2), (3, 4, 3), (3, 5, 3), (2, 3, 3))
+        for rows, size, words, lanes in (
+            (3, 4, 1, 1),
+            (4, 4, 1, 1),
+            (3, 4, 2, 1),
+            (3, 4, 3, 1),
+            (3, 5, 3, 1),
+            (2, 3, 3, 1),
+            (4, 4, 1, 2),
+            (5, 4, 3, 2),
+            (3, 8, 1, 4),
+        )
     ),
     *(
         Proof(
@@ -386,11 +420,29 @@ PROOFS: tuple[Proof, ...] = (
         )
         for inverse in (0, 1)
     ),
+    *(
+        Proof(
+            "axil_registers",
+            "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
+            f"{FULL_WIDTH}; either gradient model, all options",
+            {"Quadratic": quadratic},
+            depth=16,
+        )
+        for quadratic in (0, 1)
+    ),
     Proof(
-        "axil_registers",
-        "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
+        "axil_port",
+        "AXI4-Lite rules; each access reaches the registers once, with its own words, and has its own answer",
         FULL_WIDTH,
-        depth=16,
+    ),
+    *(
+        Proof(
+            "table_banks",
+            "the bank of an arbitrary table changes with a frame alone, after a commit or a capture; closed until then",
+            "all tables, and a build without some",
+            {"Present": present},
+        )
+        for present in (15, 8)
     ),
     *(
         Proof(
@@ -403,13 +455,16 @@ PROOFS: tuple[Proof, ...] = (
         )
         for neumann in (0, 1)
     ),
-    Proof(
-        "back_substitution",
-        "the recursion up an arbitrary column; latency 8",
-        f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
-        {"Rows": 3, "Size": 8, "Words": 16},
-        depth=60,
-        roms=thomas_roms(3, 8, 16, 3, 2, 1),
+    *(
+        Proof(
+            "back_substitution",
+            "the recursion up an arbitrary column, from lane to lane; latency 8",
+            f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
+            {"Rows": 3, "Size": 8 * lanes, "Words": 16 * lanes, "Lanes": lanes},
+            depth=60,
+            roms=thomas_roms(3, 8 * lanes, 16 * lanes, 3, 2, 1),
+        )
+        for lanes in (1, 2)
     ),
     *(
         Proof(
@@ -422,6 +477,7 @@ PROOFS: tuple[Proof, ...] = (
         )
         for core, latency in (("dst_forward", dst_forward_latency), ("dst_inverse", dst_inverse_latency))
     ),
+    *CAMERA_PROOFS,
 )
 
 STRUCTURES = tuple(
@@ -442,9 +498,15 @@ STRUCTURES = tuple(
 
 # Cores with nothing that a proof here would add to.
 WITHOUT_CONTROL: Mapping[str, str] = {
+    **dict.fromkeys(
+        ("setting_registers", "event_registers", "table_access"),
+        "every register and output of it is proven through the port: axil_registers",
+    ),
+    **dict.fromkeys(UNITS, "proven cores in a row; what it adds, the testbench of tactile_depth checks"),
     "rom": "one read register and no other state; its contents and addresses are proven of those that use it",
     **dict.fromkeys(
         ("spectral_solver", "tridiagonal_solver"),
         "a chain of proven cores, each of which takes what the one before it sends; no control of its own",
     ),
+    **CAMERA_WITHOUT_CONTROL,
 }

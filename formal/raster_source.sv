@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// raster_source: assumes that places come in raster order, whole frames but for a reset; says where a pixel is.
+// raster_source: assumes that positions come in raster order, whole frames but for a reset; says where a pixel is.
 
 module raster_source #(
   parameter int Rows    = 4,
@@ -9,25 +9,13 @@ module raster_source #(
   input  logic       rst,
   input  logic       en,
   input  logic       in_valid,
-  input  logic [3:0] in_place,
+  input  logic [3:0] in_position,
   output logic [3:0] row,
   output logic [3:0] column
 );
 
-  logic last_column, last_row;
-  assign last_column = column == 4'(Columns - 1);
-  assign last_row = row == 4'(Rows - 1);
-  always_comb if (in_valid) assume (in_place == {last_column, last_row, column == '0, row == '0});
-
-  always_ff @(posedge clk) begin
-    if (en && in_valid) begin
-      column <= last_column ? '0 : column + 4'd1;
-      if (last_column) row <= last_row ? '0 : row + 4'd1;
-    end
-    if (rst) begin
-      row <= '0;
-      column <= '0;
-    end
-  end
+  logic [3:0] position;
+  raster_counter #(.Rows(Rows), .Columns(Columns)) u_counter (.clk, .rst, .en, .in_valid, .row, .column, .position);
+  always_comb if (in_valid) assume (in_position == position);
 
 endmodule

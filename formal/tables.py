@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_depth.camera.camera_setup import Entry, Kind
+from tactile_depth.camera.register_lists import write_list
 from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
 
 
@@ -32,6 +34,12 @@ def gain_rom(nodes: int) -> Callable[[Path], None]:
 def floor_rom(folder: Path) -> None:
     """Two nodes of two bits."""
     write_floor(folder, np.array([-1, 1]), 2)
+
+
+def camera_list(folder: Path) -> None:
+    """Five entries, every kind; the first and the third are not compared."""
+    kinds = (Kind.PINS, Kind.CHECK, Kind.PLAIN_WRITE, Kind.WRITE, Kind.WRITE)
+    write_list(folder, [Entry(kind, 0x35CA + 77 * place, 3 + 85 * place % 250) for place, kind in enumerate(kinds)])
 
 
 def transform_roms(folder: Path) -> None:

@@ -6,6 +6,8 @@
 
 `timescale 1ns/1ps
 
+`default_nettype none
+
 module asic_part_bench #(
   parameter int  Inputs = 1,
   parameter int  Clocks = 64,    // of one pass
@@ -42,3 +44,5 @@ module asic_part_bench #(
   end
 
 endmodule
+
+`default_nettype wire

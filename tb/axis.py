@@ -164,10 +164,29 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
             held = word
             if ready.value:
                 held = None
-                self.words.append(word)
-                self.taken.append(clock)
-                self.offered.append(since)
+                for part in self.parts(word):
+                    self.words.append(part)
+                    self.taken.append(clock)
+                    self.offered.append(since)
                 self._recv(word)
+
+    def parts(self, word: Any) -> Iterable[Any]:
+        """Return the entries of `words` that a word becomes."""
+        return (word,)
+
+
+class BeatMonitor(AxisMonitor):
+    """AxisMonitor of video with several values in a beat, the first in the lowest bits: `words` has each by itself."""
+
+    def __init__(self, dut: Any, name: str, lanes: int, prefix: str = "") -> None:
+        self.lanes = lanes
+        super().__init__(dut, name, prefix=prefix)
+
+    def parts(self, word: Any) -> Iterable[Any]:
+        width = len(self.bus.data) // self.lanes
+        for lane in range(self.lanes):
+            value = word.data >> lane * width & (1 << width) - 1
+            yield Word(value, int(word.last and lane == self.lanes - 1), int(word.user and not lane))
 
 
 # Video frames.

@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from tb.stream import StreamDriver, send_apart
-
-FIELDS = ["user", "last", "frame_end", "data"]
+from tb.stream import StreamDriver, depth_position, send_apart
 
 
 def depth_words(frame: Any) -> list[Any]:
-    """Depths (rows, columns) as tuples in the order of FIELDS."""
+    """Depths (rows, columns) as tuples: frame_start, row_end, frame_end, data."""
     rows, columns = frame.shape
     end = rows * columns - 1
     data = frame.reshape(-1).tolist()
@@ -34,20 +32,25 @@ def random_depths(shape: Any, width: int, chance: random.Random) -> Any:
 
 
 class DepthDriver(StreamDriver):
-    """Between words, marks and data are anything."""
+    """Between words, marks and data are anything. The device has a position, or those marks that it needs."""
 
     def __init__(self, dut: Any, bench: Any, gap: float) -> None:
         self.bench, self.gap = bench, gap
-        super().__init__(dut, "in", "valid", FIELDS)
+        marks = ["position"] if hasattr(dut, "in_position") else ["frame_start", "frame_end"]
+        super().__init__(dut, "in", "valid", [*marks, "data"])
 
     def idle(self) -> None:
         super().idle()
-        for field in FIELDS:
+        for field in self.fields:
             pin = getattr(self.bus, field)
             pin.value = self.bench.random.getrandbits(len(pin))
 
     async def words(self, words: Any) -> None:
-        """A frame, or part of one."""
+        """A frame, or part of one, of `depth_words`."""
+        if "position" in self.fields:
+            words = [(depth_position(*marks), data) for *marks, data in words]
+        else:
+            words = [(frame_start, frame_end, data) for frame_start, _, frame_end, data in words]
         if self.gap:
             await send_apart(self.bench, self, words, self.gap)
         elif words:

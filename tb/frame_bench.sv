@@ -11,123 +11,73 @@
 //      number comes next, a reset
 // It is played `passes` times. depth.bin receives the codes that leave, four bytes each; events.txt one line per event:
 //   t clock        a pixel with a note was taken
-//   d, e clock     first and last depth of a frame on m_axis
-//   b clock        the frame's first depth above `level` leaves
+//   d, e clock     first and last beat of a frame on m_axis
+//   b clock        the frame's first beat with a depth above `level` leaves
 //   c clock        `contact` is up, the first time since the frame's first depth left
 //   f fault clock  the guard flags a fault, by the number of its name in models/tactile_depth/frame/frame_guard.py
 //   r clock codes  a reset begins; codes written so far
 // A side-band signal out of place, a word that changes before it is taken, an unknown one: the run ends with an error.
-// Registers are reached through the AXI4-Lite ports. Simulation only.
+// Registers are reached through the AXI4-Lite ports. tactile_depth_bench is a wrapper that commands/hardware/wrapper.py
+// writes for each configuration. Simulation only.
+
+`default_nettype none
 
 module frame_bench
   import register_map_pkg::*;
 #(
-  parameter int Tridiagonal      = 0,
-  parameter int Neumann          = 0,
-  parameter int Rows             = 128,
-  parameter int Size             = 128,
-  parameter int BitsPerChannel   = 4,
-  parameter int GradientWidth    = 21,
-  parameter int GradientFraction = 20,
-  parameter int DataWidth        = 24,
-  parameter int Width            = 27,
-  parameter int CoeffWidth       = 18,
-  parameter int RowForwardOut    = 3,
-  parameter int ColumnForwardIn  = 1,
-  parameter int ColumnInverseOut = -1,
-  parameter int RowInverseIn     = -3,
-  parameter int RowInverseOut    = -1,
-  parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 23,
-  parameter int StoreStyle       = 1,
-  parameter int StoreDrop        = 3,
-  parameter int TableWords       = 1379,
-  parameter int SettledWidth     = 7,
-  parameter int LastShiftWidth   = 1,
-  parameter int MomentDrop       = 7,
-  parameter int MeanReciprocal   = 65536,
-  parameter int MeanDrop         = 16,
-  parameter int WordsPerRow      = 1,
-  parameter int FrameLatency     = 17221,
-  parameter int FlatField        = 0,
-  parameter int Quadratic        = 0,
-  parameter int AutoZero         = 0,
-  parameter int BlockLog2        = 3,
-  parameter int FloorLog2        = 8,
-  parameter int GainWidth        = 24,
-  parameter int GainFraction     = 27,
-  parameter int CaptureLog2      = 8,
-  parameter int ColourWidth      = 8,
-  parameter int ColourDrop       = 20,
-  parameter int ColourOffset     = 0,
-  parameter int ColourFlat       = 128,
-  parameter int PolynomialWords  = 36,
-  parameter int PolynomialWidth  = 32,
-  parameter int ColourCoeffWidth = 18,
-  parameter int SlopeDrop        = 6
+  parameter int Rows      = 128,  // of the wrapper
+  parameter int Size      = 128,
+  parameter int DataWidth = 24,
+  parameter int Lanes     = 1
 ) (
-  input  logic                    clk,
-  input  logic                    rst,
-  input  logic                    go,
-  input  logic [31:0]             passes,        // how often the file is played
-  input  logic [31:0]             total_frames,  // done when so many have left, and not before the file has ended
-  input  logic [31:0]             seed,          // not 0
-  input  logic signed [31:0]      level,
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     go,
+  input  wire  [31:0]             passes,        // how often the file is played
+  input  wire  [31:0]             total_frames,  // done when so many have left, and not before the file has ended
+  input  wire  [31:0]             seed,          // not 0
+  input  wire  signed [31:0]      level,
   output logic                    done,
   output logic [31:0]             frames_received,
 
-  input  logic [AddressWidth-1:0] s_axil_awaddr,
-  input  logic                    s_axil_awvalid,
+  input  wire  [AddressWidth-1:0] s_axil_awaddr,
+  input  wire                     s_axil_awvalid,
   output logic                    s_axil_awready,
-  input  logic [31:0]             s_axil_wdata,
-  input  logic [3:0]              s_axil_wstrb,
-  input  logic                    s_axil_wvalid,
+  input  wire  [31:0]             s_axil_wdata,
+  input  wire  [3:0]              s_axil_wstrb,
+  input  wire                     s_axil_wvalid,
   output logic                    s_axil_wready,
   output logic [1:0]              s_axil_bresp,
   output logic                    s_axil_bvalid,
-  input  logic                    s_axil_bready,
-  input  logic [AddressWidth-1:0] s_axil_araddr,
-  input  logic                    s_axil_arvalid,
+  input  wire                     s_axil_bready,
+  input  wire  [AddressWidth-1:0] s_axil_araddr,
+  input  wire                     s_axil_arvalid,
   output logic                    s_axil_arready,
   output logic [31:0]             s_axil_rdata,
   output logic [1:0]              s_axil_rresp,
   output logic                    s_axil_rvalid,
-  input  logic                    s_axil_rready
+  input  wire                     s_axil_rready
 );
 
-  localparam int Pixels = Rows * Size;
+  localparam int Beats = Rows * Size / Lanes;  // of a frame of depth
   localparam int DepthWidth = 8 * ((DataWidth + 7) / 8);
 
   logic [23:0] s_axis_tdata;
   logic s_axis_tvalid, s_axis_tready, s_axis_tlast, s_axis_tuser;
-  logic signed [DepthWidth-1:0] m_axis_tdata;
+  logic [Lanes*DepthWidth-1:0] m_axis_tdata;
   logic m_axis_tvalid, m_axis_tready, m_axis_tlast, m_axis_tuser;
   logic contact, resetting;
   logic [31:0] m_event_tdata;  // records are seen in the testbench of the top
-  logic m_event_tvalid, m_event_tlast, unused_events;
+  logic m_event_tvalid, m_event_tlast, unused_events, unused_irq;
   assign unused_events = ^{m_event_tdata, m_event_tvalid, m_event_tlast};
 
-  tactile_depth #(
-    .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Size(Size),
-    .BitsPerChannel(BitsPerChannel), .GradientWidth(GradientWidth), .GradientFraction(GradientFraction),
-    .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth), .RowForwardOut(RowForwardOut),
-    .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut), .RowInverseIn(RowInverseIn),
-    .RowInverseOut(RowInverseOut), .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop),
-    .StoreStyle(StoreStyle), .StoreDrop(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth),
-    .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
-    .MeanDrop(MeanDrop), .WordsPerRow(WordsPerRow), .FrameLatency(FrameLatency),
-    .FlatField(FlatField), .Quadratic(Quadratic), .AutoZero(AutoZero), .BlockLog2(BlockLog2),
-    .FloorLog2(FloorLog2), .GainWidth(GainWidth),
-    .GainFraction(GainFraction), .CaptureLog2(CaptureLog2), .ColourWidth(ColourWidth), .ColourDrop(ColourDrop),
-    .ColourOffset(ColourOffset), .ColourFlat(ColourFlat), .PolynomialWords(PolynomialWords),
-    .PolynomialWidth(PolynomialWidth), .ColourCoeffWidth(ColourCoeffWidth), .SlopeDrop(SlopeDrop)
-  ) dut (
-    .clk, .rst(rst | resetting),
+  tactile_depth_bench dut (
+    .clk, .rst(rst | resetting), .cold_rst(1'b0),
     .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact,
+    .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(unused_irq),
     .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
-    .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
-    .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid,
+    .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
+    .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arprot('0), .s_axil_arvalid,
     .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready
   );
 
@@ -144,13 +94,15 @@ module frame_bench
   logic [31:0] clock, random_gap, random_stall, passes_left, wait_left, reset_left, deadline, target;
   logic [23:0] source, sink, source_place, sink_place;
   logic note, ended, offers, withdraw, was_resetting;
-  logic [31:0] depths, codes;
+  logic [31:0] beats, codes;
+  logic signed [31:0] depths[Lanes];  // of the beat
+  logic [Lanes-1:0] above;
   logic fresh, open;  // a depth that was not there before; the frame's first depth has left
   logic below;        // no depth above the level has left since the frame began
   logic refused;
   logic started;  // a reset was seen: what registers come up with, in the first clock, is nobody's fault
   logic [4:0] flagged;
-  logic [DepthWidth+1:0] leaving, held;
+  logic [Lanes*DepthWidth+1:0] leaving, held;
   integer entries_file, depth_file, events_file, bytes;
 
   function automatic logic accepts(input logic [23:0] turns, input logic [23:0] place, input logic [31:0] chance);
@@ -222,7 +174,11 @@ module frame_bench
 
   assign offers = accepts(source, source_place, random_gap);
   assign withdraw = deadline == 32'd1;
-  assign flagged = {dut.timed_out, dut.start_early, dut.start_missing, dut.row_long, dut.row_short};
+  assign flagged = dut.u_pipeline.faults;
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    assign depths[lane] = 32'($signed(m_axis_tdata[lane*DepthWidth+:DepthWidth]));
+    assign above[lane] = depths[lane] > level;
+  end
   assign leaving = {m_axis_tuser, m_axis_tlast, m_axis_tdata};
 
   always @(posedge clk) begin
@@ -268,15 +224,15 @@ module frame_bench
       end
       if (m_axis_tvalid) begin
         if (fresh && m_axis_tuser) $fwrite(events_file, "d %0d\n", clock);
-        if (fresh && depths == 32'(Pixels - 1)) $fwrite(events_file, "e %0d\n", clock);
+        if (fresh && beats == 32'(Beats - 1)) $fwrite(events_file, "e %0d\n", clock);
         if (m_axis_tready) begin
-          if ((below || m_axis_tuser) && 32'(m_axis_tdata) > level) $fwrite(events_file, "b %0d\n", clock);
-          below <= (below || m_axis_tuser) && 32'(m_axis_tdata) <= level;
-          $fwrite(depth_file, "%u", 32'(m_axis_tdata));
-          codes <= codes + 32'd1;
-          depths <= depths == 32'(Pixels - 1) ? 32'd0 : depths + 32'd1;
-          if (depths == 32'(Pixels - 1)) frames_received <= frames_received + 32'd1;
-          if (m_axis_tlast != ((depths + 32'd1) % 32'(Size) == 32'd0) || m_axis_tuser != (depths == 32'd0))
+          if ((below || m_axis_tuser) && above != '0) $fwrite(events_file, "b %0d\n", clock);
+          below <= (below || m_axis_tuser) && above == '0;
+          for (int lane = 0; lane < Lanes; lane++) $fwrite(depth_file, "%u", depths[lane]);
+          codes <= codes + 32'(Lanes);
+          beats <= beats == 32'(Beats - 1) ? 32'd0 : beats + 32'd1;
+          if (beats == 32'(Beats - 1)) frames_received <= frames_received + 32'd1;
+          if (m_axis_tlast != ((beats + 32'd1) % 32'(Size / Lanes) == 32'd0) || m_axis_tuser != (beats == 32'd0))
             $fatal(1, "%m: a side-band signal is out of place");
         end
       end
@@ -297,7 +253,7 @@ module frame_bench
     end
 
     if (rst || resetting) begin
-      depths <= '0;
+      beats <= '0;
       fresh <= 1'b1;
       open <= 1'b0;
       refused <= 1'b0;
@@ -321,3 +277,5 @@ module frame_bench
   end
 
 endmodule
+
+`default_nettype wire

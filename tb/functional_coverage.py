@@ -21,6 +21,7 @@ from tactile_depth.configuration import COLUMNS, ROWS, Configuration
 from tactile_depth.frame.frame_guard import FAULTS
 from tactile_depth.latency import frame_latency
 from tactile_depth.registers.register_map import MAP
+from tb import structs
 from tb.axis import PROFILES
 
 FILE = "functional_coverage.json"
@@ -51,6 +52,7 @@ POINTS = {
     "clipped": (("no", "yes"),),
     "contact": (("rises", "is held", "is cleared"),),
     "start in a stall": (("between frames", "inside a frame"),),
+    "depth dropped, word that waits": (("a frame", "the rest of a frame"), ("first of a frame", "another")),
     "frames that wait": (tuple(range(1, max(MOST_WAIT.values()) + 1)),),
 }
 
@@ -104,13 +106,21 @@ class FunctionalCoverage:
     def __init__(self, dut: Any, config: Configuration, offers: str, accepts: str) -> None:
         self.dut, self.config, self.offers, self.accepts = dut, config, offers, accepts
         self.hits: Counter[str] = Counter()
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget what came before a reset."""
+        self.frames: list[str] = []  # their outcomes: "good", or the fault
+        self.since_start = self.pause = self.quiet = 0  # words since a start of frame, clocks without a word
+        self.offered = self.clipped = self.contact = self.answered = False  # in the clock before
+        self.in_phases: list[str] = []
 
     def hit(self, point: str, *values: object) -> None:
         self.hits[label(point, self.config.solver, *values)] += 1
 
     def phases(self, held: bool, taken: bool) -> Iterator[str]:
-        """Those that the pipeline is in: it may take a frame while it puts one out."""
-        filling, inside = self.dut.u_guard.filling.value, not self.dut.u_guard.origin.value
+        """Yield the phases of the pipeline: it may take a frame while it puts one out."""
+        filling, inside = self.dut.u_video.u_guard.filling.value, not self.dut.u_video.u_guard.origin.value
         if filling:
             yield "filling"
         elif inside:
@@ -120,104 +130,115 @@ class FunctionalCoverage:
         elif taken:
             yield "putting out"
         elif not filling and not inside:
-            yield "waiting" if self.dut.busy.value else "idle"
+            yield "waiting" if structs.unpack("levels_t", int(self.dut.u_registers.levels.value))["busy"] else "idle"
 
     async def watch(self) -> None:
+        """Count until the end of the test, then add the counts to those of the file."""
         try:
             while True:
                 await self.watch_until_reset()
-        finally:  # of the test
+        finally:
             file = Path(FILE)
             before = Counter(json.loads(file.read_text()) if file.exists() else {})
             file.write_text(json.dumps(before + self.hits, indent=0, sort_keys=True))
 
     async def watch_until_reset(self) -> None:
+        """Count until a reset, and the clocks of the reset."""
         dut, edge = self.dut, RisingEdge(self.dut.clk)
-        pixels = self.config.rows * self.config.columns
         while dut.rst.value:
             await edge
-        frames: list[str] = []  # what became of them: "good", or the fault
-        since_start, pause, offered = 0, 0, False
-        quiet, clipped, contact, answered = 0, False, False, False
-        phases: list[str] = []
-        while True:
-            await edge
-            if dut.rst.value:
-                break
-            valid, ready = bool(dut.s_axis_tvalid.value), bool(dut.s_axis_tready.value)
+        self.forget()
+        await edge
+        while not dut.rst.value:
             out_valid, out_ready = bool(dut.m_axis_tvalid.value), bool(dut.m_axis_tready.value)
             taken, held = out_valid and out_ready, out_valid and not out_ready
-            phases = list(self.phases(held, taken))
-            self.hit(
-                "input, output",
-                ("accept" if ready else "stalled") if valid else "idle",
-                ("taken" if out_ready else "held") if out_valid else "idle",
-            )
-
-            # Input: pauses, silence, starts.
-            inside = not dut.u_guard.origin.value
-            start = valid and bool(dut.s_axis_tuser.value)
-            if start and held and not offered:
-                self.hit("start in a stall", "inside a frame" if inside else "between frames")
-            if valid and ready:
-                if start and since_start == pixels:
-                    self.hit("pause between frames", PAUSES[min(pause, 2)])
-                since_start, pause = 1 if start else since_start + 1, 0
-            elif not valid:
-                pause += 1
-            offered = valid and not ready
-            if valid:
-                if inside and quiet > self.config.columns:
-                    self.hit("silence inside a frame", "waited for" if int(dut.timeout.value) else "off")
-                quiet = 0
-            elif inside:
-                quiet += 1
-
-            # Frames and faults.
-            fault = next((name for name in FAULTS if getattr(dut, name).value), None)
-            if fault:
-                row, column = int(dut.u_guard.row.value), int(dut.u_guard.column.value)
-                self.hit("fault, place", fault, place_of(row, column, self.config.rows, self.config.columns))
-                if fault == "timed_out":
-                    self.hit("silence inside a frame", "given up")
-                    quiet = 0
-            # A whole frame is told a clock after its last pixel: with a fault of the next one's first.
-            ends = ["good"] * bool(dut.u_registers.event_frame_in.value) + ([fault] if fault else [])
-            for end in ends:
-                frames.append(end)
-                if len(frames) > 2 and frames[-2] != "good":
-                    before, broken, after = frames[-3:]
-                    sides = ("good" if name == "good" else "bad" for name in (before, after))
-                    self.hit("fault, frame before, frame after", broken, *sides)
-            if dut.tags_held.value:
-                self.hit("frames that wait", int(dut.u_tags.full.value).bit_count())
-
-            # Output.
-            clipped |= bool(int(dut.saturations.value))
-            if taken and dut.m_axis_tuser.value:
-                self.hit("gaps, stalls", self.offers, self.accepts)
-                self.hit("clipped", "yes" if clipped else "no")
-                clipped = False
-                if contact and dut.contact.value and dut.hold_contact.value:
-                    self.hit("contact", "is held")
-            was, contact = contact, bool(dut.contact.value)
-            if contact != was:
-                self.hit("contact", "rises" if contact else "is cleared")
-
-            # Registers.
-            answers = bool(dut.s_axil_bvalid.value)
-            if answers and not answered:
-                register = WRITTEN.get(int(dut.u_registers.write_address.value))
-                for phase in phases if register else ():
-                    self.hit("register written, phase", register, phase)
-            answered = answers
-
+            self.in_phases = list(self.phases(held, taken))
+            self.count_input(held, ("taken" if out_ready else "held") if out_valid else "idle")
+            self.count_frames()
+            self.count_output(taken)
+            self.count_registers()
+            await edge
         clocks = 1
         while dut.rst.value:
             await edge
             clocks += bool(dut.rst.value)
-        for phase in phases if clocks in RESETS else ():
+        for phase in self.in_phases if clocks in RESETS else ():
             self.hit("reset clocks, phase", clocks, phase)
+
+    def count_input(self, held: bool, output: str) -> None:
+        """Count pauses, silence and starts of frames on s_axis."""
+        dut = self.dut
+        valid, ready = bool(dut.s_axis_tvalid.value), bool(dut.s_axis_tready.value)
+        self.hit("input, output", ("accept" if ready else "stalled") if valid else "idle", output)
+        inside = not dut.u_video.u_guard.origin.value
+        start = valid and bool(dut.s_axis_tuser.value)
+        if start and held and not self.offered:
+            self.hit("start in a stall", "inside a frame" if inside else "between frames")
+        if valid and ready:
+            if start and self.since_start == self.config.rows * self.config.columns:
+                self.hit("pause between frames", PAUSES[min(self.pause, 2)])
+            self.since_start, self.pause = 1 if start else self.since_start + 1, 0
+        elif not valid:
+            self.pause += 1
+        self.offered = valid and not ready
+        if valid:
+            if inside and self.quiet > self.config.columns:
+                self.hit("silence inside a frame", "waited for" if int(dut.timeout.value) else "off")
+            self.quiet = 0
+        elif inside:
+            self.quiet += 1
+
+    def count_frames(self) -> None:
+        """Count faults, by place and between which frames, and frames that wait in the solver."""
+        dut, guard = self.dut, self.dut.u_video.u_guard
+        fault = next((name for name in FAULTS if getattr(guard, name).value), None)
+        if fault:
+            row, column = int(guard.row.value), int(guard.column.value)
+            self.hit("fault, place", fault, place_of(row, column, self.config.rows, self.config.columns))
+            if fault == "timed_out":
+                self.hit("silence inside a frame", "given up")
+                self.quiet = 0
+        # A whole frame is told a clock after its last pixel: with a fault of the next one's first.
+        whole = structs.unpack("events_t", int(dut.events.value))["frame_in"]
+        ends = ["good"] * whole + ([fault] if fault else [])
+        for end in ends:
+            self.frames.append(end)
+            if len(self.frames) > 2 and self.frames[-2] != "good":
+                before, broken, after = self.frames[-3:]
+                sides = ("good" if name == "good" else "bad" for name in (before, after))
+                self.hit("fault, frame before, frame after", broken, *sides)
+        if dut.u_depth.tags_held.value:
+            self.hit("frames that wait", int(dut.u_depth.u_tags.full.value).bit_count())
+
+    def count_output(self, taken: bool) -> None:
+        """Count frames that leave, frames that are dropped, and changes of `contact`."""
+        dut = self.dut
+        self.clipped |= structs.unpack("events_t", int(dut.events.value))["saturations"] != 0
+        if taken and dut.m_axis_tuser.value:
+            self.hit("gaps, stalls", self.offers, self.accepts)
+            self.hit("clipped", "yes" if self.clipped else "no")
+            self.clipped = False
+            settings = structs.unpack("contact_settings_t", int(dut.contact_settings.value))
+            if self.contact and dut.contact.value and settings["hold_contact"]:
+                self.hit("contact", "is held")
+        was, self.contact = self.contact, bool(dut.contact.value)
+        if self.contact != was:
+            self.hit("contact", "rises" if self.contact else "is cleared")
+        if dut.depth_dropped.value:
+            self.hit(
+                "depth dropped, word that waits",
+                "a frame" if dut.u_contact.depth_starts.value else "the rest of a frame",
+                "first of a frame" if dut.m_axis_tuser.value else "another",
+            )
+
+    def count_registers(self) -> None:
+        """Count writes of registers, by phase."""
+        answers = bool(self.dut.s_axil_bvalid.value)
+        if answers and not self.answered:
+            register = WRITTEN.get(int(self.dut.u_registers.write_offset.value))
+            for phase in self.in_phases if register else ():
+                self.hit("register written, phase", register, phase)
+        self.answered = answers
 
 
 def start(dut: Any, config: Configuration, offers: str, accepts: str) -> None:

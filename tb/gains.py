@@ -14,7 +14,7 @@ from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
 from tactile_depth.configuration import GAIN_WIDTH, Configuration, Format
 from tb.stream import parameters, places
 
-READ_CLOCKS = 3  # from table_read to the gain
+READ_CLOCKS = 2  # from table_read to the gain
 PAUSED = 4  # clocks of a pause before its last
 
 

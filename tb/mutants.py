@@ -109,7 +109,7 @@ def children(numbers: Any, jobs: int, keep: Any) -> Any:
     return None
 
 
-@cocotb.test()
+@cocotb.test(stage=-1)  # before every test of a testbench, whatever their order
 async def every_mutant(dut: Any) -> None:
     numbers = [int(number) for number in os.environ["MUTANT_NUMBERS"].split(",") if number]
     with Path(os.environ["MUTANT_RESULTS"]).open("a", buffering=1) as results:

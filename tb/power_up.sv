@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // power_up: a register and a memory that no reset touches, as seen before anything was written. Simulation only.
 
+`default_nettype none
+
 module power_up (
-  input  logic        clk,
-  input  logic [3:0]  address,
+  input  wire         clk,
+  input  wire  [3:0]  address,
   output logic [31:0] kept,
   output logic [31:0] word
 );
@@ -16,3 +18,5 @@ module power_up (
   );
 
 endmodule
+
+`default_nettype wire

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The AXI ports through cocotbext-axi: a client that shares no code with tb/axis.py and cocotb-bus.
 
-With the methods that tb_tactile_depth calls of its own drivers.
+With the methods that tb/tactile_depth/bench.py calls of its own drivers.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -12,7 +12,7 @@ from cocotb.triggers import RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiStreamBus, AxiStreamFrame, AxiStreamSink, AxiStreamSource
 
 from tactile_depth.frame.frame_guard import Word
-from tactile_depth.registers.axil_registers import BYTES, Response
+from tactile_depth.registers.axil_port import BYTES, Response
 
 
 class SecondSource:
@@ -26,8 +26,8 @@ class SecondSource:
         self.source.set_pause_generator(self.pauses())
 
     def pauses(self) -> Iterator[Any]:
-        for offer in self.offers:
-            yield self.held or not offer
+        while True:
+            yield self.held or not next(self.offers)
 
     def abort(self) -> None:
         self.source.clear()

@@ -81,6 +81,11 @@ def raster(rows: int, columns: int) -> list[Any]:
     ]
 
 
+def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
+    """Pack the position of a depth as depth_position_t of hdl/common/stream_pkg.sv."""
+    return int(frame_start) << 2 | int(row_end) << 1 | int(frame_end)
+
+
 class StreamDriver(BusDriver):
     """Sends words under a qualifier: `start` (with the first word of a burst) or `valid` (with each word).
 
@@ -129,13 +134,12 @@ class StreamMonitor(BusMonitor):
         self.words: list[Any] = []
         self.starts: list[Any] = []
         self.frame_starts: list[Any] = []
-        self.frame_pin = getattr(dut, f"{name}_frame_start", None)
+        self.frame_pin: Any = getattr(dut, f"{name}_frame_start", None)
         super().__init__(dut, name, dut.clk)
 
     async def _monitor_recv(self) -> None:
         left, clock = 0, 0  # `clock` counts clocks with en
-        qualifier = getattr(self.bus, self.qualifier)
-        handles = [(getattr(self.bus, field), field in self.unsigned) for field in self.fields]
+        qualifier, frame_pin, handles = self.pins()
         while True:
             await RisingEdge(self.clock)
             if self.in_reset:
@@ -144,8 +148,8 @@ class StreamMonitor(BusMonitor):
             if not self.entity.en.value:
                 continue
             clock += 1
-            frame_start = self.frame_pin is not None and bool(self.frame_pin.value)
-            if qualifier.value:
+            frame_start = frame_pin is not None and bool(int(frame_pin.value))
+            if int(qualifier.value):
                 assert left == 0, f"burst cut short at clock {clock}"
                 self.starts.append(clock)
                 self.frame_starts.append(frame_start)
@@ -156,6 +160,11 @@ class StreamMonitor(BusMonitor):
                 left -= 1
                 self.words.append(tuple(int(h.value) if unsigned else h.value.to_signed() for h, unsigned in handles))
                 self._recv(self.words[-1])
+
+    def pins(self) -> tuple[Any, Any, Any]:
+        """Return the qualifier, the start of a frame, and each field with whether it is unsigned."""
+        fields = [(getattr(self.bus, field), field in self.unsigned) for field in self.fields]
+        return getattr(self.bus, self.qualifier), self.frame_pin, fields
 
     def forget(self) -> None:
         self.words.clear()
@@ -254,7 +263,8 @@ def check_frame_starts(monitors: Any, frame: Any) -> None:
     """Frames begin with every `frame`-th start that a monitor saw, and nowhere else."""
     for monitor in monitors:
         if monitor.frame_pin is not None:
-            want = [index % frame == 0 for index in range(len(monitor.starts))]
+            marks = getattr(monitor, "marks", 1)  # LanesMonitor: the first burst of each lane
+            want = [index % frame < marks for index in range(len(monitor.starts))]
             assert monitor.frame_starts == want, f"{monitor.name}: frames begin at {monitor.frame_starts}"
 
 
@@ -294,6 +304,7 @@ async def check_bursts(
     interrupts: Any = (),
     strays: int = 0,
     settle: int = 40,
+    sink: Any = None,
 ) -> tuple[Any, ...]:
     """Send bursts (count, size, fields); compare what leaves with the model of what was seen going in.
 
@@ -301,6 +312,7 @@ async def check_bursts(
     number of clocks from each start in to its start out, or None where the core regroups bursts. Up to `gap`
     idle clocks lie between bursts. Every `frame` bursts a frame begins. `interrupts`: see there.
     `strays` bursts, the beginning of a frame that is not completed, come right before; what they give is not looked at.
+    `sink`: monitor of the output where it is none of one lane.
 
     Returns the monitors of both sides.
     """
@@ -308,7 +320,7 @@ async def check_bursts(
     size = bursts.shape[1]
     driver = StreamDriver(dut, "in", "start", in_fields)
     source = StreamMonitor(dut, "in", "start", in_fields, length=size)
-    sink = StreamMonitor(dut, "out", "start", out_fields, length=size)
+    sink = sink or StreamMonitor(dut, "out", "start", out_fields, length=size)
     await bench.start()
 
     async def send(count: int) -> None:
@@ -342,10 +354,13 @@ async def check_bursts(
     return source, sink
 
 
-async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, rows: int, **behaviour: Any) -> None:
+async def check_frame_memory(
+    dut: Any, words: Any, model: Any, latency: Any, *, rows: int, lanes: int = 1, **behaviour: Any
+) -> None:
     """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row.
 
-    `latency` is the number of cycles from the start of the last row in to the first start out.
+    `latency` is the number of cycles from the start of the last row in to the first start out. Several lanes take
+    turns, each a part of a row behind the one before.
     """
     count, size = len(words), words.shape[1] // rows
     source, sink = await check_bursts(
@@ -361,7 +376,7 @@ async def check_frame_memory(dut: Any, words: Any, model: Any, latency: Any, *, 
     last_rows, first_out = source.starts[rows - 1 :: rows], sink.starts[::rows]
     assert [out - row for out, row in zip(first_out, last_rows, strict=True)] == [latency] * count
     apart = np.diff(np.array(sink.starts).reshape(count, rows), axis=1)
-    assert np.all(apart == size), "a frame leaves with a pause between two bursts"
+    assert np.all(apart == size // lanes), "a frame leaves with a pause between two bursts"
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:

@@ -26,6 +26,7 @@ from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth
 from tb.axis import video
+from tb.pixels import pack
 from tb.stream import CLOCK_NS, configuration
 
 FRAMES = 6
@@ -33,22 +34,9 @@ FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency la
 OF_DATA = ("saturation", "contact", "touching")  # bits of STATUS that depend on what a frame shows
 # What holds until software writes it again; an upset there is no matter of frames.
 SETTINGS = {
-    "axil_registers": (
-        "threshold",
-        "timeout",
-        "hold_contact",
-        "off_threshold",
-        "minimum_area",
-        "debounce",
-        "drop_frames",
-        "dark_level",
-        "capture_log2_frames",
-        "table_select",
-        "table_index",
-        "table_high",
-        "bank",
-        "requested",
-    ),
+    "setting_registers": ("settings",),
+    "table_access": ("index", "high"),
+    "table_banks": ("bank", "requested"),
     "gradient_lookup": ("words",),
 }
 
@@ -111,9 +99,7 @@ class Device:
         self.codes = (
             tactile_depth(rgb, synthetic(self.config.bits_per_channel), self.config).reshape(FRAMES, -1).tolist()
         )
-        red, green, blue = (rgb[..., channel].astype(int) for channel in range(3))
-        pixels = (red << 16 | blue << 8 | green).reshape(FRAMES, -1).tolist()
-        self.words = [word for frame in pixels for word in video(frame, self.config.columns)]
+        self.words = [word for frame in pack(rgb) for word in video(frame.ravel(), self.config.columns)]
         self.pixels = self.config.rows * self.config.columns
         self.latency = last_pixel_to_first_depth(self.config)
 
@@ -122,6 +108,7 @@ class Device:
         for pin in ("s_axis_tvalid", "s_axil_awvalid", "s_axil_wvalid", "s_axil_arvalid", "s_axil_bready"):
             getattr(dut, pin).value = 0
         dut.s_axil_rready.value, dut.m_axis_tready.value, dut.m_event_tready.value, dut.rst.value = 1, 1, 1, 1
+        dut.cold_rst.value = 0
         for _ in range(2):
             await RisingEdge(dut.clk)
         dut.rst.value = 0

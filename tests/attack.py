@@ -24,9 +24,10 @@ from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import solve
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, faults_of, positions, video
+from tb.pixels import pack, unpack
 
 FOLLOWS = ("at_once", "one_clock", "many_clocks", "broken")
-"""What comes after a broken frame: a whole one, after so many clocks; or another broken one and then a whole one."""
+"""Words after a broken frame: a whole one, after so many clocks; or another broken one and then a whole one."""
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 
 # As PROFILES of tb/axis.py. `LONGEST`: clocks that each may wait at a time (at random: all but certainly).
@@ -98,13 +99,12 @@ class Attack:
 
     def frame(self, mean: int, spread: int) -> list[Word]:
         """A frame of random colours around a grey."""
-        channels = ([mean + self.random.randint(-spread, spread) for _ in range(3)] for _ in range(self.pixels))
-        return video((red << 16 | blue << 8 | green for red, green, blue in channels), self.columns)
+        colours = [[mean + self.random.randint(-spread, spread) for _ in range(3)] for _ in range(self.pixels)]
+        return video(pack(colours), self.columns)
 
     def model(self, frames: Sequence[Sequence[int]]) -> tuple[np.ndarray, int]:
         """Depth codes of frames, (frames, rows, columns), and how many values were clipped."""
-        words = np.array(frames, np.int64).reshape(-1, self.rows, self.columns)
-        rgb = np.stack([words >> low & 255 for low in (16, 0, 8)], axis=-1).astype(np.uint8)
+        rgb = unpack(frames).reshape(-1, self.rows, self.columns, 3)
         monitor = Monitor()
         slopes = gradient_lookup(rgb, self.slopes, self.config.bits_per_channel)
         return solve(divergence(slopes, self.config.neumann), self.config, monitor), monitor.saturations.total()
@@ -205,8 +205,8 @@ def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: i
     codes, clipped = device.model([frame.pixels for frame in guarded.frames])
     want = codes[[not frame.bad for frame in guarded.frames]]
     assert len(played.codes) == want.size, f"{len(played.codes)} codes left, of {len(good)} whole frames"
-    seen = played.codes.reshape(want.shape)
-    wrong = np.flatnonzero((seen != want).any(axis=(1, 2)))
+    codes = played.codes.reshape(want.shape)
+    wrong = np.flatnonzero((codes != want).any(axis=(1, 2)))
     assert not len(wrong), f"codes differ in {len(wrong)} frames, the first is {wrong[0]}"
 
     depths, taken = played.clocks("d"), played.clocks("t")

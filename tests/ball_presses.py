@@ -49,12 +49,12 @@ def drawn(presses: list[tuple[float, float, float, float]], seed: int) -> np.nda
 
 def places() -> list[tuple[str, float, float, float, float, float]]:
     """Frame, diameter, x, y, contact radius, ball radius of a set of presses, some cut by the middle square."""
-    chance, found = np.random.default_rng(5), []
+    chance, rows = np.random.default_rng(5), []
     for index in range(24):
         diameter = list(BALLS)[index % 2]
         x, y = chance.uniform(30, 130), chance.uniform(12, 100)
-        found.append((f"{index:02}.png", diameter, x, y, BALLS[diameter], diameter / 2 / PITCH))
-    return found
+        rows.append((f"{index:02}.png", diameter, x, y, BALLS[diameter], diameter / 2 / PITCH))
+    return rows
 
 
 @cache
@@ -85,8 +85,8 @@ def write_folder(folder: Path) -> Path:
 
 def read(folder: Path, pitch_mm: float | None = None, **choices: Any) -> GridPresses:
     """Presses of a folder on the grid."""
-    given = gather(folder)
-    return to_grid(given, camera_pitch_mm(given, pitch_mm), **choices)
+    gathered = gather(folder)
+    return to_grid(gathered, camera_pitch_mm(gathered, pitch_mm), **choices)
 
 
 def real_folder() -> Path:

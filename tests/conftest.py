@@ -137,7 +137,7 @@ def first_failure(run_folder: Any, failed: Any, count: int, log: Path) -> Any:
 
 @pytest.fixture
 def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
-    """Build `toplevel` from `sources` (names in hdl/) and run its testbench.
+    """Build `toplevel`, a core of hdl/ or a module in `files`, and run its testbench.
 
     `roms`, called with the folder, writes the files that $readmemh reads there. The first structure of a core with a
     reset is also run from several random power-up states, on Verilator, with the shortest of its tests.
@@ -145,7 +145,6 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
 
     def run(
         toplevel: Any,
-        sources: Any,
         parameters: Any = None,
         test_module: Any = None,
         roms: Any = None,
@@ -156,7 +155,8 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
         flags = zlib.crc32(Path(simulation.__file__).read_bytes())
-        structure = json.dumps([toplevel, [path.name for path in repository.sources(sources)], parameters, flags])
+        sources = repository.sources(toplevel if toplevel in repository.cores() else None)
+        structure = json.dumps([toplevel, [path.name for path in sources], parameters, flags])
         if not stamp.is_file() or stamp.read_text() != structure:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
@@ -166,7 +166,7 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
         simulation.build(
             simulator,
             toplevel,
-            [*repository.sources(sources), *files],
+            [*sources, *files],
             parameters or {},
             folder,
             log=folder / "build.log",
@@ -189,7 +189,7 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
 
         began = time.monotonic()
         play(folder / "run.log", environment)
-        top = next(path for path in [*repository.sources(sources), *files] if path.stem == toplevel)
+        top = next(path for path in [*sources, *files] if path.stem == toplevel)
         if not begins_at_random(request.node) or "rst" not in top.read_text():
             return
         quick = {**(environment or {}), "COCOTB_TEST_FILTER": shortest(folder / "results.xml", QUICK_CLOCKS)}

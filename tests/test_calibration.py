@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calibrations: the built-in ones, files, and what is said of bad files."""
+"""Calibrations: the built-in ones, files, and errors for bad files."""
 
 import io
 import zipfile
@@ -69,8 +69,8 @@ def test_synthetic_inverts_the_colour_model_at_bin_centres() -> None:
 
 
 def test_the_rest_colour_of_the_synthetic_sensor_reads_exactly_flat() -> None:
-    rest = int(REST) >> 4
-    assert not synthetic().gradient[rest, rest, rest].any()  # type: ignore[index]
+    level = int(REST) >> 4
+    assert not synthetic().gradient[level, level, level].any()  # type: ignore[index]
 
 
 def test_a_rounded_slope_never_saturates() -> None:
@@ -140,8 +140,8 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.99])
 def test_a_truncated_file_is_named(tmp_path: Path, share: float) -> None:
     path = saved(tmp_path)
-    whole = path.read_bytes()
-    path.write_bytes(whole[: int(share * len(whole))])
+    content = path.read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
     assert f"{path}: not a readable .npz" in refused(path)
 
 
@@ -167,7 +167,7 @@ def test_an_array_in_place_of_an_npz_is_named(tmp_path: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "part"),
     [
         ({"gradient": None}, "no `gradient` and no `coefficients`"),
         ({"coefficients": np.zeros((2, 3, 6))}, "no `largest_slope`"),
@@ -198,11 +198,11 @@ def test_an_array_in_place_of_an_npz_is_named(tmp_path: Any) -> None:
         ({"pixel_pitch_mm": "0.1"}, "<U3"),
     ],
 )
-def test_wrong_contents_are_named(tmp_path: Path, changed: Any, said: Any) -> None:
+def test_wrong_contents_are_named(tmp_path: Path, changed: Any, part: Any) -> None:
     path = saved(tmp_path, **changed)
     message = refused(path)
     assert str(path) in message
-    assert said in message
+    assert part in message
 
 
 @pytest.mark.parametrize("order", "<>")
@@ -218,14 +218,14 @@ def test_a_file_without_a_part_of_its_camera_is_named(tmp_path: Path, key: str) 
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "part"),
     [
         ({"format_version": 3}, "`format_version` is 3: accepted is 2: a newer file needs a newer package"),
         ({"format_version": 2.0}, "`format_version` is float64"),
         ({"camera_size": np.array((0, 320))}, "(0, 320): accepted are rows and columns"),
         ({"camera_size": np.array((240.0, 320.0))}, "(240.0, 320.0): accepted"),
         ({"camera_size": 240}, "int64 (): accepted"),
-        ({"pixel_format": "raw10"}, "`pixel_format` is raw10: accepted is rgb888"),
+        ({"pixel_format": "raw14"}, "`pixel_format` is raw14: accepted is rgb888, rgb565, yuyv"),
         ({"black_level": 16}, "`black_level` is 16: accepted is 0: subtract it"),
         ({"exposure_us": -1.0}, "`exposure_us` is -1"),
         ({"flat_field": 1}, "`flat_field` is int64 (): accepted is True or False"),
@@ -234,8 +234,8 @@ def test_a_file_without_a_part_of_its_camera_is_named(tmp_path: Path, key: str) 
         ({"lighting": np.zeros((2, 2, 3))}, "`lighting` is float64 (2, 2, 3)"),
     ],
 )
-def test_a_wrong_camera_is_named(tmp_path: Path, changed: Any, said: Any) -> None:
-    assert said in refused(saved(tmp_path, **changed))
+def test_a_wrong_camera_is_named(tmp_path: Path, changed: Any, part: Any) -> None:
+    assert part in refused(saved(tmp_path, **changed))
 
 
 def test_an_old_file_needs_the_size_of_its_camera(tmp_path: Path) -> None:

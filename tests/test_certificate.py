@@ -100,9 +100,9 @@ def test_the_deepest_point_is_where_it_is_looked_for(rows: int, columns: int, ne
 def test_the_bound_of_a_difference_holds_and_is_close(rows: int, neumann: bool) -> None:
     """The configuration computes it without the whole survey: ideal coefficients, the variation of weights as 2."""
     config = Configuration(columns=32, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=24)
-    found = {node.name: node for node in certify(config)}["forward_elimination.difference"].slopes
+    bound = {node.name: node for node in certify(config)}["forward_elimination.difference"].slopes
     by_slopes = difference_bounds(rows, 32, neumann)[0].max() / config.depth_limit_px
-    assert found * (1 - 1e-4) <= by_slopes <= 1.3 * found
+    assert bound * (1 - 1e-4) <= by_slopes <= 1.3 * bound
 
 
 def laplacian(z: np.ndarray, neumann: bool) -> Any:
@@ -168,8 +168,8 @@ def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
     index = np.arange(field.size).reshape(field.shape)
     colours = np.stack([index >> 2 * bits, index >> bits & 15, index & 15], axis=-1) << (8 - bits)
     np.save(tmp_path / "field.npy", colours.astype(np.uint8))
-    given = [f"FRAMES={tmp_path / 'field.npy'}", f"CALIBRATION={tmp_path / 'c.npz'}", f"OUT={tmp_path / 'out'}"]
-    assert sim.run(run_request.parse([f"N={size}", f"SOLVER={solver}", "SIM=icarus", *given])) == 0
+    folders = [f"FRAMES={tmp_path / 'field.npy'}", f"CALIBRATION={tmp_path / 'c.npz'}", f"OUT={tmp_path / 'out'}"]
+    assert sim.run(run_request.parse([f"N={size}", f"SOLVER={solver}", "SIM=icarus", *folders])) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     assert report["saturations"] == {}
     assert report["registers"]["saturations"] == 0
@@ -250,7 +250,7 @@ def run(tmp_path: Any, *arguments: Any, rtl: bool = True) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("given", "depth_range"),
+    ("words", "depth_range"),
     [
         ("N=16", ""),
         *(
@@ -268,9 +268,9 @@ def run(tmp_path: Any, *arguments: Any, rtl: bool = True) -> Any:
     ],
 )
 def test_rtl_and_model_saturate_where_the_certificate_says(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any, depth_range: int
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: Any, depth_range: int
 ) -> None:
-    document = run(tmp_path, *given.split(), "SIM=icarus", f"DEPTH_RANGE={depth_range}")
+    document = run(tmp_path, *words.split(), "SIM=icarus", f"DEPTH_RANGE={depth_range}")
     assert document["rtl"]
     assert document["faults"] == []
     assert "no depth within the range saturates a node" in capsys.readouterr().out
@@ -284,9 +284,9 @@ def test_rtl_and_model_saturate_where_the_certificate_says(
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 def test_the_worst_depth_range_and_its_price(tmp_path: Path, capsys: pytest.CaptureFixture[str], solver: str) -> None:
     run(tmp_path, "N=32", f"SOLVER={solver}", "DEPTH_RANGE=worst", rtl=False)
-    said = capsys.readouterr().out
-    assert "no slopes at all saturate a node" in said
-    assert "bits of resolution" in said
+    output = capsys.readouterr().out
+    assert "no slopes at all saturate a node" in output
+    assert "bits of resolution" in output
 
 
 def test_a_certificate_that_is_wrong_is_found_out(tmp_path: Path) -> None:
@@ -307,16 +307,16 @@ def test_a_certificate_that_is_wrong_is_found_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "named"), [("N=100", "N=100"), ("DEPTH_RANGE=deep", "DEPTH_RANGE=deep"), ("RTL=2", "RTL=2")]
+    ("words", "named"), [("N=100", "N=100"), ("DEPTH_RANGE=deep", "DEPTH_RANGE=deep"), ("RTL=2", "RTL=2")]
 )
 def test_bad_input(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, given: Any, named: str
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, words: Any, named: str
 ) -> None:
-    monkeypatch.setattr("sys.argv", ["certify", given, f"OUT={tmp_path / 'out'}"])
+    monkeypatch.setattr("sys.argv", ["certify", words, f"OUT={tmp_path / 'out'}"])
     with pytest.raises(SystemExit) as stop:
         command.main()
     assert stop.value.code == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1
-    assert named in said[0]
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert named in lines[0]
     assert not (tmp_path / "out").exists()

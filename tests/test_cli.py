@@ -2,8 +2,11 @@
 """The command `tactile-depth depth`: what it writes is what the package computes, and bad input is one line."""
 
 import json
+import resource
+import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,12 +16,13 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth.cli.main import main
+from tactile_depth.cli.main import SIGNALS, main
 from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
 from tactile_depth.cli.ply import triangles
 from tests.real_data import FOLDER, needs_real_data
 
 GRID = ["--grid", "32x24"]
+WAIT_S = 60
 
 
 @pytest.fixture(scope="module")
@@ -159,7 +163,7 @@ def test_nothing_is_written_when_one_picture_is_bad(
     Image.new("RGB", (100, 240)).save(narrow)
     out = tmp_path / "out"
     assert main(["depth", f"{inputs}/press.png", str(narrow), "--out", str(out), *arguments]) == 2
-    assert not list(out.iterdir())
+    assert not out.exists()
     assert f"tactile-depth: {narrow}: pictures: 100 x 240 pixels" in capsys.readouterr().err
 
 
@@ -182,8 +186,8 @@ def test_the_calibration_is_found_by_the_reference_and_named(
     picture = f"{mini}/background.png"
     assert main(["depth", picture, "--reference", picture, "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr()
-    said = "calibration: gelsight-mini: the reference looks like it; --calibration names another"
-    assert printed.out.splitlines()[0] == said
+    message = "calibration: gelsight-mini: the reference looks like it; --calibration names another"
+    assert printed.out.splitlines()[0] == message
     assert "grid: 128 x 96 pixels of 0.1585 mm" in printed.out
     assert "no contact above 0.1 mm" in printed.out
     assert not printed.err
@@ -197,7 +201,7 @@ def test_a_reference_of_no_known_sensor_needs_a_calibration(
 ) -> None:
     picture = f"{mini}/rotated.png"
     assert main(["depth", picture, "--reference", picture, "--out", f"{tmp_path}/out"]) == 2
-    assert "name the calibration of the sensor that took it" in capsys.readouterr().err
+    assert "give the one of its sensor with --calibration" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
@@ -226,7 +230,7 @@ def test_a_real_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "message"),
     [
         ([], "the following arguments are required: COMMAND: see `tactile-depth --help`"),
         (["height"], "invalid choice: 'height'"),
@@ -243,7 +247,10 @@ def test_a_real_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
             ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--threshold-mm", "-1"],
             "--threshold-mm -1.0: acc",
         ),
-        (["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--out", "{press}"], "cannot be writ"),
+        (
+            ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--out", "{press}"],
+            "{press} is a file",
+        ),
     ],
 )
 def test_bad_input_is_one_line(
@@ -252,14 +259,14 @@ def test_bad_input_is_one_line(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     command: Any,
-    said: Any,
+    message: Any,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     names = {"press": f"{inputs}/press.png", "ref": f"{inputs}/background.png", "npz": f"{inputs}/sensor.npz"}
     assert main([word.format(**names) for word in command]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("tactile-depth: ")
-    assert said in line
+    assert message.format(**names) in line
     assert not list(tmp_path.iterdir())
 
 
@@ -272,6 +279,47 @@ def test_an_interruption_ends_with_130(
     monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", interrupt)
     assert main(["depth", f"{inputs}/press.png", *arguments]) == 130
     assert capsys.readouterr().err == "tactile-depth: interrupted\n"
+
+
+def started(words: list[str], **options: Any) -> Any:
+    """Start the command, with signals as a terminal leaves them."""
+
+    def defaults() -> None:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
+        for limit, value in options.items():
+            resource.setrlimit(getattr(resource, limit), (value, value))
+
+    command = [sys.executable, "-m", "tactile_depth.cli", *words]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=defaults)
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_removes_the_draft(tmp_path: Path, inputs: Any, arguments: Any, name: str) -> None:
+    pictures = np.repeat(np.array(Image.open(inputs / "press.png"))[None], 500, axis=0)
+    np.save(tmp_path / "pictures.npy", pictures)
+    process = started(["depth", f"{tmp_path}/pictures.npy", "--out", f"{tmp_path}/new/out", *arguments])
+    deadline = time.monotonic() + WAIT_S
+    while not list(tmp_path.glob("new/out/.work-*")):
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < deadline, "the draft did not come"
+        time.sleep(0.02)
+    process.send_signal(getattr(signal, name))
+    _, errors = process.communicate(timeout=WAIT_S)
+    assert errors == f"tactile-depth: {SIGNALS[name]}\n"
+    assert process.returncode == 128 + getattr(signal, name)
+    assert [path.name for path in tmp_path.iterdir()] == ["pictures.npy"]
+
+
+def test_a_file_that_does_not_fit_ends_with_3(tmp_path: Path, inputs: Any, arguments: Any) -> None:
+    """The system refuses to write files above a size, as it does on a full disk."""
+    words = ["depth", f"{inputs}/press.png", "--out", f"{tmp_path}/out", *arguments]
+    process = started(words, RLIMIT_FSIZE=1000)
+    _, errors = process.communicate(timeout=WAIT_S)
+    assert process.returncode == 3
+    (line,) = errors.splitlines()
+    assert line.endswith(": free disk space, or give a folder on another disk")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_error_of_the_program_ends_with_3(

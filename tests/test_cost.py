@@ -11,7 +11,7 @@ import pytest
 from commands.common import repository
 from commands.hardware import yosys
 from tactile_depth.configuration import Configuration
-from tactile_depth.cost import KINDS, Multiplier, cost
+from tactile_depth.cost import CORES, KINDS, Multiplier, cost
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 from tactile_depth.transform.sdf_fft import twiddle_stages
@@ -22,8 +22,30 @@ CASES = [
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "bits_per_channel": 2, "data_width": 20},
     {"columns": 64, "rows": 24, "solver": "tridiagonal", "neumann": True, "coefficient_width": 14},
     {"columns": 32, "rows": 24, "solver": "tridiagonal", "neumann": True, "auto_zero": True},
+    {"columns": 16, "rows": 24, "solver": "tridiagonal", "flat_field": True, "gradient_model": "quadratic"},
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
 ]
+
+INSTANCES = {  # in the units and solvers
+    "u_flat_field": "flat_field",
+    "u_lookup": "gradient_lookup",
+    "u_quadratic": "quadratic_gradient",
+    "u_divergence": "divergence",
+    "u_row_in": "row_reorder",
+    "u_row_out": "row_reorder",
+    "u_row_forward": "dst_forward",
+    "u_column_forward": "dst_forward",
+    "u_to_columns": "transpose",
+    "u_to_rows": "transpose",
+    "u_divide": "spectral_divide",
+    "u_down": "forward_elimination",
+    "u_stack": "frame_stack",
+    "u_up": "back_substitution",
+    "u_row_inverse": "dst_inverse",
+    "u_column_inverse": "dst_inverse",
+    "u_auto_zero": "auto_zero",
+    "u_capture": "floor_capture",
+}
 
 
 def elaborated(config: Configuration, folder: Path) -> Any:
@@ -42,6 +64,11 @@ def elaborated(config: Configuration, folder: Path) -> Any:
     assert yosys.run(script, timeout_s=300) == ""
     (module,) = json.loads((folder / "cells.json").read_text())["modules"].values()
     return module["cells"]
+
+
+def core_of(cell: str) -> str:
+    """Return the core of a cell, among those that cost.py lists, by the instances in its name."""
+    return next(INSTANCES[part] for part in cell.split(".") if part in INSTANCES)
 
 
 def operand_width(bits: Any) -> int:
@@ -64,13 +91,15 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: 
         elif cell["type"].startswith("$mem"):
             behind_wrapper = name.split(".")[-2].startswith("g_")  # ram.sv and rom.sv name their array in a generate
             if behind_wrapper:
-                memories[int(cell["parameters"]["WIDTH"], 2), int(cell["parameters"]["SIZE"], 2)] += 1
+                width, words = (int(cell["parameters"][size], 2) for size in ("WIDTH", "SIZE"))
+                memories[core_of(name), width, words] += 1
             else:
                 others.add(name)
     counted = cost(config)
     assert multipliers == Counter(tuple(sorted((m.a, m.b))) for m in counted.multipliers)
-    assert memories == Counter((memory.width, memory.words) for memory in counted.memories)
-    assert others <= {"u_tags.due_clock", "u_tags.tags"}, "registers of a few words, as frame_tags.sv has them"
+    assert memories == Counter((memory.core, memory.width, memory.words) for memory in counted.memories)
+    assert {multiplier.core for multiplier in counted.multipliers} <= set(CORES)
+    assert others <= {"u_depth.u_tags.due_clock", "u_depth.u_tags.tags"}, "registers of a few words, of frame_tags.sv"
 
 
 @pytest.mark.parametrize("size", [32, 64, 128, 256, 512])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The README and the pages of docs/: length, links, paths and make targets that they name."""
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -8,9 +9,10 @@ from typing import Any
 import pytest
 
 from commands.common import repository
+from commands.study import architecture
 
 ROOT = repository.ROOT
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "hdl").rglob("*.md")])
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = "hdl|models|tb|tests|formal|commands|boards|constraints|registers|docs"
 # A path in backquotes that begins with a folder of the repository.
@@ -51,3 +53,50 @@ def test_the_readme_is_short() -> None:
     lines, words = LARGEST_README
     assert len(readme.splitlines()) <= lines
     assert len(readme.split()) <= words
+
+
+def test_tables_of_the_architecture_are_those_of_the_models() -> None:
+    assert architecture.PAGE.read_text() == architecture.document(), "run python -m commands.study.architecture"
+
+
+def test_the_architecture_names_every_core_of_the_top() -> None:
+    text = architecture.PAGE.read_text()
+    cores = [path.stem for path in repository.sources("tactile_depth") if path.stem in repository.cores()]
+    assert [core for core in cores if f"`{core}`" not in text and core != "tactile_depth"] == []
+
+
+HANDSHAKES = {  # waveform: what says that a word is there, what takes it, and what belongs to it
+    "video": ("tvalid", "tready", ("tdata", "tuser", "tlast")),
+    "depth": ("m_axis_tvalid", "m_axis_tready", ("m_axis_tdata", "m_axis_tuser")),
+    "records": ("m_event_tvalid", "m_event_tready", ("m_event_tdata", "m_event_tlast")),
+    "raster": ("valid", "en", ("data", "first_row", "first_column", "last_column")),
+}
+
+
+def values(wave: str) -> list[str]:
+    """Return the value of a WaveDrom signal in each cycle; each item of data has a value of its own."""
+    out: list[str] = []
+    for cycle, letter in enumerate(wave):
+        out.append(out[-1] if letter == "." else f"{letter}{cycle}" if letter in "345|" else letter)
+    return out
+
+
+@pytest.mark.parametrize("name", HANDSHAKES)
+def test_a_waveform_keeps_the_rules_of_its_stream(name: str) -> None:
+    """A word stays until it is taken; in the cycle after that there is another, or none."""
+    drawn = json.loads((ROOT / "docs" / "waves" / f"{name}.json").read_text())["signal"]
+    waves = {signal["name"]: values(signal["wave"]) for signal in drawn}
+    offered, takes, fields = HANDSHAKES[name]
+    for cycle, (valid, ready) in enumerate(zip(waves[offered][:-1], waves[takes], strict=False)):
+        if valid == "1" and ready == "0":
+            stays = (offered, *fields)
+            assert [waves[field][cycle] for field in stays] == [waves[field][cycle + 1] for field in stays], cycle
+        elif valid == "1":
+            assert waves[fields[0]][cycle] != waves[fields[0]][cycle + 1], f"the word of cycle {cycle} is not taken"
+
+
+@pytest.mark.parametrize("folder", sorted({path.parent for path in repository.sources()}), ids=lambda path: path.name)
+def test_each_folder_of_hdl_has_a_readme_with_its_cores(folder: Path) -> None:
+    text = (folder / "README.md").read_text()
+    assert len(text.splitlines()) <= 50, "one screen"
+    assert [path.name for path in sorted(folder.glob("*.sv")) if f"]({path.name})" not in text] == []

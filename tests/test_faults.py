@@ -5,9 +5,9 @@ Icarus is a hundred times slower than Verilator, so `make test` takes a sample a
 
                 make test                              make regress
     Verilator   two grids: of all pairs of break and   five grids: the full product of breaks, positions and what
-                position one in 4 on the smaller and   follows, with and without stalls; a sample at 128 x 128
-                one in 8 on the other
-    Icarus      one in 24 of it on the smallest grid   every break at every position of 16 x 16, one of what can
+                position one in 8 on the smaller and   follows, with and without stalls; a sample at 128 x 128
+                one in 16 on the other
+    Icarus      one in 40 of it on the smallest grid   every break at every position of 16 x 16, one of what can
                                                        follow drawn for each; stalled half of them, and of a
                                                        solver's two boundaries one; the smallest grid as on the left
 """
@@ -36,8 +36,8 @@ GRIDS: dict[str, Any] = {
 }
 SMALLEST = "tridiagonal-8x16-neumann"
 EVERY = [(grid,) for grid in GRIDS]
-STRIDE = {"verilator": 8, "icarus": 32}
-SMALLEST_STRIDE = {"verilator": 1, "icarus": 8} if REGRESS else {"verilator": 4, "icarus": 24}
+STRIDE = {"verilator": 16, "icarus": 32}
+SMALLEST_STRIDE = {"verilator": 1, "icarus": 8} if REGRESS else {"verilator": 8, "icarus": 40}
 PHASES = {"verilator": 3, "icarus": 128}  # one in so many; REGRESS: each, with each number of clocks; Icarus 1 in 16
 CLOCKS = (1, 2, 16)  # of a reset
 SINKS = ("none", *(name for name in PROFILES if name != "none"), "full")

@@ -189,26 +189,26 @@ def test_a_picture_becomes_the_height_of_its_ball(sensor: Any) -> None:
 
 
 def test_presses_in_memory_give_the_same_sensor(sensor: Any) -> None:
-    given = [
+    balls = [
         td.BallPress(pictures()[name], diameter, (x, y, contact), name) for name, diameter, x, y, contact, _ in places()
     ]
-    again = td.fit(given, pictures()["background.png"], pitch_mm=PITCH, models="quadratic", name="mine")
+    again = td.fit(balls, pictures()["background.png"], pitch_mm=PITCH, models="quadratic", name="mine")
     np.testing.assert_array_equal(again.coefficients, sensor.coefficients)
     assert again.gradient is None
     assert again.name == "mine"
 
 
 def test_what_is_left_out_is_warned_of(folder: Path) -> None:
-    given = [td.BallPress(folder / row["frame"], row["diameter_mm"]) for row in table_rows()]
+    balls = [td.BallPress(folder / row["frame"], row["diameter_mm"]) for row in table_rows()]
     background = pictures()["background.png"]
-    given[3] = td.BallPress(background, 8.0, name="empty")
+    balls[3] = td.BallPress(background, 8.0, name="empty")
     with pytest.warns(InputWarning, match="empty: no circle to be seen: left out"):
-        sensor = td.fit(given, background, pitch_mm=PITCH, models="quadratic")
+        sensor = td.fit(balls, background, pitch_mm=PITCH, models="quadratic")
     assert sensor.height_errors["quadratic"].mean == pytest.approx(1, abs=0.06)
 
 
 @pytest.mark.parametrize(
-    ("choices", "said"),
+    ("choices", "message"),
     [
         ({"models": "cubic"}, "models=cubic: accepted are lut, quadratic"),
         ({"models": ()}, "models=: accepted are lut, quadratic"),
@@ -218,8 +218,8 @@ def test_what_is_left_out_is_warned_of(folder: Path) -> None:
         ({"pitch_mm": 0.12}, "pitch_mm=0.12 contradicts presses"),
     ],
 )
-def test_bad_arguments_are_named(folder: Path, choices: Any, said: Any) -> None:
-    with pytest.raises(InputError, match=said):
+def test_bad_arguments_are_named(folder: Path, choices: Any, message: Any) -> None:
+    with pytest.raises(InputError, match=message):
         td.fit(folder, **choices)
 
 
@@ -235,12 +235,12 @@ def test_presses_without_depth_are_refused(presses: Any) -> None:
 def test_an_evaluation_on_the_held_out_presses_is_that_of_the_fit(sensor: Any, presses: Any) -> None:
     fit = fit_presses(presses)
     names = set(fit.evaluation.presses)
-    given = [
+    balls = [
         td.BallPress(pictures()[name], diameter, (x, y, contact), name)
         for name, diameter, x, y, contact, _ in places()
         if name in names
     ]
-    evaluation = td.evaluate(sensor, given, pictures()["background.png"])
+    evaluation = td.evaluate(sensor, balls, pictures()["background.png"])
     assert evaluation.scores == fit.evaluation.scores
     assert evaluation.height_error("lut") == sensor.height_errors["lut"]
     assert evaluation.better_model == sensor.model
@@ -357,9 +357,9 @@ def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> Non
 def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(real_presses: Any, model: Any) -> None:
     """Lights up to 11 % weaker and 9 % stronger across the gel; Neumann, bit-accurate. Of the reference, of the floor,
     of one behind the other; heights come back with that of the reference."""
-    presses, size, rest = real_presses, real_presses.size, real_presses.background_on_grid
+    presses, size, no_contact = real_presses, real_presses.size, real_presses.background_on_grid
     held_out = held_out_presses(presses)[1]
-    sensor = replace(td.load("gelsight-mini"), pixel_pitch_mm=presses.grid_pitch_mm, reference=rest)
+    sensor = replace(td.load("gelsight-mini"), pixel_pitch_mm=presses.grid_pitch_mm, reference=no_contact)
     config = sensor.configuration(model, columns=size, neumann=True)
     y, x = np.indices((size, size)) / (size - 1) - 0.5
     drift = np.stack([1 + 0.1 * x - 0.05 * y, 1 - 0.08 * y + 0.2 * x * y, 0.92 + 0.06 * x], axis=-1)
@@ -376,23 +376,23 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
             codes = auto_zero(codes, floor, config)
         return codes * config.depth_lsb_px * presses.grid_pitch_mm
 
-    before, captured = captured_gains(rest[None], config), captured_gains(drifted(rest)[None], config)
-    assert depth_mm(drifted(rest), before).std() > 0.1  # measured: 0.14 (lut), 0.31 mm
-    at_rest = depth_mm(drifted(rest), captured)
+    before, captured = captured_gains(no_contact[None], config), captured_gains(drifted(no_contact)[None], config)
+    assert depth_mm(drifted(no_contact), before).std() > 0.1  # measured: 0.14 (lut), 0.31 mm
+    at_rest = depth_mm(drifted(no_contact), captured)
     assert at_rest.std() < 0.007  # measured: 0.0020, 0.0062 mm
     # The floor measured in place of the reference, and behind it.
-    alone = captured_floor(depth_codes(drifted(rest), before)[None], config)
-    both = captured_floor(depth_codes(drifted(rest), captured)[None], config)
-    assert depth_mm(drifted(rest), before, alone).std() < 0.01  # measured: 0.0057, 0.0084 mm
-    assert depth_mm(drifted(rest), captured, both).std() < 0.002  # measured: 0.0011, 0.0016 mm
+    alone = captured_floor(depth_codes(drifted(no_contact), before)[None], config)
+    both = captured_floor(depth_codes(drifted(no_contact), captured)[None], config)
+    assert depth_mm(drifted(no_contact), before, alone).std() < 0.01  # measured: 0.0057, 0.0084 mm
+    assert depth_mm(drifted(no_contact), captured, both).std() < 0.002  # measured: 0.0011, 0.0016 mm
 
     def caps(gains: np.ndarray, floor: np.ndarray | None = None) -> Any:
         depths = (depth_mm(drifted(view.frame), gains, floor) / presses.grid_pitch_mm for view in held_out)
         return np.array([view.press.recovered(depth) for view, depth in zip(held_out, depths, strict=True)])
 
     as_calibrated = [score.cap_height for score in scores_of(sensor, presses, held_out, model)]
-    for given in (caps(captured), caps(captured, both)):
-        assert np.abs(given - as_calibrated).max() < 0.02
+    for balls in (caps(captured), caps(captured, both)):
+        assert np.abs(balls - as_calibrated).max() < 0.02
     # Without a capture the floor comes back, but colours stay off: measured 0.123 (lut), 0.023.
     off = np.abs(caps(before, alone) - as_calibrated).max()
     assert off < (0.03 if model == "quadratic" else 0.15)

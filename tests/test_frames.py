@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames: the way from files to the grid, and what is said of bad ones."""
+"""Frames: the way from files to the grid, and errors for bad ones."""
 
 import struct
 import tracemalloc
@@ -76,8 +76,8 @@ def test_averages_of_a_ratio_that_is_not_whole() -> None:
     image = np.zeros((1, 3, 3), np.uint8)
     image[0, :, 0] = 10, 20, 60
     plan = resampling((3, 3), (2, 2))
-    found = plan.average(np.repeat(image, 3, axis=0))[:, :, 0]
-    np.testing.assert_allclose(found, [[(10 + 20 / 2) / 1.5, (20 / 2 + 60) / 1.5]] * 2)
+    averages = plan.average(np.repeat(image, 3, axis=0))[:, :, 0]
+    np.testing.assert_allclose(averages, [[(10 + 20 / 2) / 1.5, (20 / 2 + 60) / 1.5]] * 2)
 
 
 def test_many_images_are_averaged_as_one_by_one() -> None:

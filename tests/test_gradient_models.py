@@ -64,8 +64,8 @@ def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices: Any) ->
     tables = slope_tables(calibration, config)
     for level in (0, 90):
         want = slope_codes(frames, calibration, config, dark_level=level)
-        found = slope_codes(frames, calibration, config, dark_level=level, tables=tables)
-        np.testing.assert_array_equal(found, want)
+        result = slope_codes(frames, calibration, config, dark_level=level, tables=tables)
+        np.testing.assert_array_equal(result, want)
 
 
 @pytest.mark.parametrize("choices", MODELS, ids=str)
@@ -123,9 +123,9 @@ def test_at_power_up_codes_are_the_pixels(choices: Any) -> None:
 def test_gains_are_those_of_the_reference(choices: Any) -> None:
     config = Configuration(**choices)
     frames = lit(config, 2, 4)
-    found = interpolated_gains(captured_gains(frames, config), config) / 2.0**27
+    result = interpolated_gains(captured_gains(frames, config), config) / 2.0**27
     want = reference.gains(frames, config)
-    assert np.abs(found / want - 1).max() < 2**-19  # half a unit each of the node and of the sum, at a gain of 1/255
+    assert np.abs(result / want - 1).max() < 2**-19  # half a unit each of the node and of the sum, at a gain of 1/255
 
 
 def test_the_reference_itself_reads_flat_where_it_is_smooth() -> None:
@@ -210,8 +210,8 @@ def raster(words: np.ndarray, rows: int, columns: int) -> np.ndarray:
 def test_the_map_is_the_recurrence_along_the_raster(terms: Any) -> None:
     config = Configuration(columns=16, rows=9, solver="tridiagonal")
     words = np.broadcast_to(np.array(terms), (2, 3, 6))
-    found = coefficient_map(words, config)[1, 2]
-    np.testing.assert_array_equal(found, raster(np.array(terms), 9, 16).astype(np.int64))
+    result = coefficient_map(words, config)[1, 2]
+    np.testing.assert_array_equal(result, raster(np.array(terms), 9, 16).astype(np.int64))
 
 
 @pytest.mark.parametrize("choices", [*SHAPES, {"columns": 512}], ids=str)
@@ -221,12 +221,12 @@ def test_words_give_the_calibrations_quadratics(choices: Any) -> None:
     pitch = 15 / config.columns
     words = polynomial_words(calibration, config, pitch)
     unit = config.gradient_lsb * 2.0**config.gradient.fraction
-    found = coefficient_map(words, config) * COLOUR_COEFFICIENT.lsb * unit
+    result = coefficient_map(words, config) * COLOUR_COEFFICIENT.lsb * unit
     terms = reference.quadratic_terms(config.rows, config.columns, pitch)
     want = np.einsum("ant,rct->anrc", calibration.coefficients, terms)  # type: ignore[arg-type]
     # Half a unit of what is multiplied, and of three words of second differences, seen from an eighth of N^2 away.
     far = 3 / 2 * POLYNOMIAL.lsb * max(config.rows, config.columns) ** 2 / 8
-    assert np.abs(found - want).max() <= (COLOUR_COEFFICIENT.lsb / 2 + far) * unit * 1.01
+    assert np.abs(result - want).max() <= (COLOUR_COEFFICIENT.lsb / 2 + far) * unit * 1.01
 
 
 @settings(max_examples=20)
@@ -237,10 +237,10 @@ def test_slopes_are_near_double_precision(seed: int, choices: Any) -> None:
     pitch = 15 / config.columns
     codes = np.random.default_rng(seed).integers(-4096, 4096, (2, config.rows, config.columns, 3))
     monitor = Monitor()
-    found = quadratic_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
+    result = quadratic_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
     want = reference.quadratic_slopes(codes * DEVIATION.lsb, calibration, pitch)
     assert not monitor.saturations
-    assert np.abs(found * config.gradient_lsb - want).max() < 3 * COLOUR_COEFFICIENT.lsb + config.gradient_lsb
+    assert np.abs(result * config.gradient_lsb - want).max() < 3 * COLOUR_COEFFICIENT.lsb + config.gradient_lsb
 
 
 def test_slopes_saturate_and_are_counted() -> None:
@@ -248,10 +248,10 @@ def test_slopes_saturate_and_are_counted() -> None:
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit)
     monitor = Monitor()
     codes = np.full((1, 16, 16, 3), 8191)
-    found = quadratic_gradient(codes, polynomial_words(calibration, config, 1.0), config, monitor)
+    result = quadratic_gradient(codes, polynomial_words(calibration, config, 1.0), config, monitor)
     limit = 2 ** (config.gradient.width - 1)
-    assert set(np.unique(np.abs(found))) & {limit, limit - 1}
-    assert monitor.saturations["quadratic_gradient"] == np.count_nonzero((found == -limit) | (found == limit - 1))
+    assert set(np.unique(np.abs(result))) & {limit, limit - 1}
+    assert monitor.saturations["quadratic_gradient"] == np.count_nonzero((result == -limit) | (result == limit - 1))
 
 
 def test_coefficients_beyond_the_words_are_named() -> None:

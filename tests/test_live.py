@@ -4,17 +4,11 @@
 Tests of the viewer and of videos need the extra [live]: `make live-test` runs all in an environment that has it.
 """
 
-import contextlib
 import importlib.util
-import os
-import pty
 import re
-import select
 import signal
 import subprocess
 import sys
-import termios
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -27,9 +21,6 @@ from PIL import Image
 
 import tactile_depth as td
 from tactile_depth.cli import live as command
-from tactile_depth.cli import source as sources
-from tactile_depth.cli.failure import Failure
-from tactile_depth.cli.keys import pressed_keys
 from tactile_depth.cli.main import main
 from tactile_depth.cli.source import Source
 from tactile_depth.errors import InputError
@@ -142,8 +133,8 @@ def test_the_first_frames_become_the_reference(
     capsys: pytest.CaptureFixture[str],
     option: Any,
 ) -> None:
-    rest = np.array(Image.open(inputs / "background.png"))
-    np.save(tmp_path / "frames.npy", np.stack([rest] * 8 + [images[5]]))
+    no_contact = np.array(Image.open(inputs / "background.png"))
+    np.save(tmp_path / "frames.npy", np.stack([no_contact] * 8 + [images[5]]))
     assert main(["live", f"{tmp_path}/frames.npy", *arguments, *option]) == 0
     np.testing.assert_array_equal(Screen.last.heights, [pipeline_of(inputs)(images[5]).height_mm])
     printed = capsys.readouterr().out
@@ -154,8 +145,8 @@ def test_the_first_frames_become_the_reference(
 def test_the_calibration_is_found_by_the_captured_reference(
     tmp_path: Path, screen: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    rest = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
-    np.save(tmp_path / "frames.npy", np.stack([rest] * 9))
+    no_contact = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
+    np.save(tmp_path / "frames.npy", np.stack([no_contact] * 9))
     assert main(["live", f"{tmp_path}/frames.npy"]) == 0
     assert "calibration: gelsight-mini: the reference looks like it" in capsys.readouterr().out
 
@@ -174,10 +165,10 @@ def test_it_stops_after_so_many_frames(
 
 def drifting(tmp_path: Path, inputs: Any, images: np.ndarray) -> tuple[Any, ...]:
     """Frames without contact under weaker light, then one press; the drift is seen against the old background."""
-    rest = np.array(Image.open(inputs / "background.png"))
+    no_contact = np.array(Image.open(inputs / "background.png"))
     y, x = np.mgrid[-1:1:240j, -1:1:320j]
     light = 0.9 + 0.05 * np.stack([x, y, x * y], axis=-1)
-    drifted = [np.rint(image * light).astype(np.uint8) for image in (rest, images[5])]
+    drifted = [np.rint(image * light).astype(np.uint8) for image in (no_contact, images[5])]
     np.save(tmp_path / "frames.npy", np.stack([drifted[0]] * 8 + [drifted[1]]))
     return np.stack([drifted[0]] * 8), drifted[1]
 
@@ -193,15 +184,15 @@ def test_keys_capture_from_the_frames_that_follow(
     capsys: pytest.CaptureFixture[str],
     key: str,
 ) -> None:
-    rest, press = drifting(tmp_path, inputs, images)
+    no_contact, press = drifting(tmp_path, inputs, images)
     press_keys(key)
     reference = ["--reference", f"{inputs}/background.png"]
     assert main(["live", f"{tmp_path}/frames.npy", *reference, *arguments]) == 0
     expected = pipeline_of(inputs)
-    np.testing.assert_array_equal(Screen.last.heights[0], expected(rest[0]).height_mm)
+    np.testing.assert_array_equal(Screen.last.heights[0], expected(no_contact[0]).height_mm)
     if key == "r":
-        expected.capture_reference(rest)
-    expected.capture_zero(rest)
+        expected.capture_reference(no_contact)
+    expected.capture_zero(no_contact)
     np.testing.assert_array_equal(Screen.last.heights[8], expected(press).height_mm)
     assert "captured the" in capsys.readouterr().out
 
@@ -224,31 +215,6 @@ def test_z_without_a_zero_offset_is_refused_and_nothing_ends(
     assert main(["live", f"{inputs}/presses", *arguments, *options]) == 0
     assert "nothing captured: pictures: this pipeline has no zero offset" in capsys.readouterr().err
     assert len(Screen.last.indices) == FRAMES
-
-
-def test_the_terminal_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keys come one by one while the block runs; afterwards lines and echo are back, also after an error."""
-    ours, theirs = pty.openpty()
-    with os.fdopen(theirs, "r") as stdin:
-        monkeypatch.setattr(sys, "stdin", stdin)
-        before = termios.tcgetattr(stdin)
-        with contextlib.suppress(KeyboardInterrupt), pressed_keys() as key:
-            assert key() == ""  # type: ignore[misc]
-            os.write(ours, b"rz")
-            assert select.select([stdin], [], [], 5)[0]
-            assert [key(), key(), key()] == ["r", "z", ""]  # type: ignore[misc]
-            assert not termios.tcgetattr(stdin)[3] & (termios.ICANON | termios.ECHO)
-            raise KeyboardInterrupt
-        assert termios.tcgetattr(stdin) == before
-    os.close(ours)
-
-
-def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "empty").touch()
-    with (tmp_path / "empty").open() as stdin:
-        monkeypatch.setattr(sys, "stdin", stdin)
-        with pressed_keys() as key:
-            assert key is None
 
 
 # Frames that are lost.
@@ -279,32 +245,6 @@ def test_a_source_of_the_wrong_size_is_told_at_the_start(
     assert "100 x 240 pixels (columns x rows), but" in line
 
 
-@pytest.fixture
-def camera(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Make camera 0 out of items; it is asked for each as fast as it can be."""
-
-    def connect(items: Any) -> Any:
-        monkeypatch.setattr(sources, "_camera", lambda name: iter(items))
-        return Source("0")
-
-    return connect
-
-
-def numbered(count: int) -> list[Any]:
-    return [np.full((2, 2, 3), index, np.uint8) for index in range(count)]
-
-
-def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(camera: Any) -> None:
-    with camera(numbered(50)) as source:
-        source._thread.join()
-        taken = [frame for frame in source.frames() if frame is not None]
-    assert [frame.index for frame in taken] == list(range(50 - len(taken), 50))
-    assert [int(frame.image[0, 0, 0]) for frame in taken] == [frame.index for frame in taken]
-    assert 0 < len(taken) <= sources.QUEUED
-    assert source.counts.dropped == 50 - len(taken)
-    assert source.counts.read == 50
-
-
 def test_files_wait_for_a_slow_consumer(inputs: Any) -> None:
     with Source(f"{inputs}/presses") as source:
         taken = []
@@ -313,65 +253,6 @@ def test_files_wait_for_a_slow_consumer(inputs: Any) -> None:
             taken.append(frame)
     assert len(taken) == source.counts.read == FRAMES
     assert source.counts.dropped == 0
-
-
-def test_a_silent_source_gives_none_meanwhile(camera: Any) -> None:
-    released = threading.Event()
-
-    def items() -> Iterator[Any]:
-        released.wait(10)
-        yield from numbered(1)
-
-    with camera(items()) as source:
-        frames = source.frames(patience_s=0.01)
-        assert next(frames) is None
-        released.set()
-        assert next(frame for frame in frames if frame is not None).index == 0
-
-
-class Camera:
-    """Stands for cv2 and its camera, which reads one frame and then fails."""
-
-    COLOR_BGR2RGB = None
-
-    def __init__(self, good: int = 1) -> None:
-        self.good, self.reads, self.released = good, 0, False
-
-    def VideoCapture(self, name: str) -> Any:
-        self.name = name
-        return self
-
-    def isOpened(self) -> Any:
-        return self.good > 0
-
-    def read(self) -> Any:
-        self.reads += 1
-        return (self.reads <= self.good), np.array([[[1, 2, 3]]], np.uint8)
-
-    def cvtColor(self, image: np.ndarray, _: Any) -> Any:
-        return image[..., ::-1]
-
-    def release(self) -> None:
-        self.released = True
-
-
-def test_a_camera_that_is_unplugged_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    device = Camera()
-    monkeypatch.setattr(sources, "load_opencv", lambda: device)
-    monkeypatch.setattr(sources, "QUEUED", 100)
-    with Source("3") as source, pytest.raises(Failure, match="camera 3 gives no frames any more"):
-        assert [frame.image.tolist() for frame in source.frames()] == [[[[3, 2, 1]]]]  # type: ignore[union-attr]
-    assert device.name == 3  # type: ignore[comparison-overlap]
-    assert device.released
-    assert source.counts.failed == sources.DEAD_AFTER
-
-
-def test_a_camera_that_is_not_there_is_a_failure(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], screen: Any
-) -> None:
-    monkeypatch.setattr(sources, "load_opencv", lambda: Camera(good=0))
-    assert main(["live", "/dev/video9"]) == 3
-    assert "camera /dev/video9 cannot be opened" in capsys.readouterr().err
 
 
 def test_an_interruption_still_says_where_the_frames_went(
@@ -392,7 +273,7 @@ def test_an_interruption_still_says_where_the_frames_went(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["none.mp4"], "none.mp4: no such source"),
         (["presses", "--headless"], "--headless shows nothing: give --save FILE.rrd"),
@@ -407,18 +288,18 @@ def test_bad_input_is_one_line(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     options: Any,
-    said: Any,
+    message: Any,
 ) -> None:
     monkeypatch.chdir(inputs)
     (inputs / "few").mkdir(exist_ok=True)
     Image.new("RGB", (320, 240)).save(inputs / "few" / "0.png")
     assert main(["live", *options]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert said in line
+    assert message in line
 
 
 @pytest.mark.parametrize(
-    ("module", "source", "said"),
+    ("module", "source", "message"),
     [
         (
             "rerun",
@@ -438,14 +319,14 @@ def test_a_missing_library_is_one_line(
     capsys: pytest.CaptureFixture[str],
     module: Any,
     source: Any,
-    said: Any,
+    message: Any,
 ) -> None:
     monkeypatch.chdir(inputs)
     monkeypatch.setitem(sys.modules, module, None)
     if module == "cv2":
         monkeypatch.setattr(command, "load_rerun", lambda: None)
     assert main(["live", source]) == 3
-    assert capsys.readouterr().err == f"tactile-depth: {said}\n"
+    assert capsys.readouterr().err == f"tactile-depth: {message}\n"
 
 
 # With OpenCV and Rerun.

@@ -24,20 +24,13 @@ from tactile_depth.poisson.forward_elimination import forward_elimination
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
-from tactile_depth.registers.axil_registers import (
-    COUNTERS,
-    WORD,
-    AxilRegisters,
-    Build,
-    Events,
-    Live,
-    Response,
-    strobed_bits,
-)
-from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS
+from tactile_depth.registers.axil_port import Response, strobed_bits
+from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events, Live
+from tactile_depth.registers.event_registers import COUNTERS
+from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, WORD
 from tactile_depth.rom_files import pack, write_words
 from tactile_depth.sensor import Sensor, load, synthetic
-from tactile_depth.tactile_depth import solve, tactile_depth
+from tactile_depth.tactile_depth import solve, tactile_depth, top_parameters
 from tactile_depth.transform.mode_pairs import mode_pairs
 from tactile_depth.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
 from tactile_depth.transform.row_reorder import row_reorder
@@ -199,9 +192,9 @@ def test_the_laplacian_of_a_depth_gives_it_back(seed: int, config: Configuration
     f, depth = divergence_like(seed, config)
     np.testing.assert_allclose(reference.solve(f, config.neumann), depth, atol=1e-9)
     codes = np.rint(f / config.gradient_lsb).astype(np.int64)
-    found = solve(codes, config) * config.depth_lsb_px
-    found = found[::-1] if config.solver == "tridiagonal" else found
-    assert np.abs(found - depth).max() <= 2e-4 * np.abs(depth).max()
+    result = solve(codes, config) * config.depth_lsb_px
+    result = result[::-1] if config.solver == "tridiagonal" else result
+    assert np.abs(result - depth).max() <= 2e-4 * np.abs(depth).max()
 
 
 @settings(max_examples=20)
@@ -209,11 +202,11 @@ def test_the_laplacian_of_a_depth_gives_it_back(seed: int, config: Configuration
 def test_solvers_agree_with_scipy_mode_by_mode(seed: int, config: Configuration) -> None:
     f, _ = divergence_like(seed, config)
     codes = np.rint(f / config.gradient_lsb).astype(np.int64)
-    found = solve(codes, config) * config.depth_lsb_px
-    found = found[::-1] if config.solver == "tridiagonal" else found
+    result = solve(codes, config) * config.depth_lsb_px
+    result = result[::-1] if config.solver == "tridiagonal" else result
     transform = dctn if config.neumann else dstn
     want = transform(reference.solve(codes * config.gradient_lsb, config.neumann), type=2, norm="ortho")
-    assert np.abs(transform(found, type=2, norm="ortho") - want).max() <= 1e-3 * np.abs(want).max()
+    assert np.abs(transform(result, type=2, norm="ortho") - want).max() <= 1e-3 * np.abs(want).max()
 
 
 @settings(max_examples=20)
@@ -240,8 +233,8 @@ def test_sums_go_through_the_tridiagonal_solver(seed: int, other: Any, neumann: 
 def test_frames_of_a_sequence_do_not_mix(seed: int, solver: str, neumann: bool) -> None:
     config = Configuration(columns=16, solver=solver, neumann=neumann)
     frames = np.random.default_rng(seed).integers(100, 156, (3, 16, 16, 3)).astype(np.uint8)
-    whole = tactile_depth(frames, synthetic(), config)
-    np.testing.assert_array_equal(whole, [tactile_depth(frame, synthetic(), config) for frame in frames])
+    together = tactile_depth(frames, synthetic(), config)
+    np.testing.assert_array_equal(together, [tactile_depth(frame, synthetic(), config) for frame in frames])
 
 
 @given(st.sampled_from([16, 32, 64]), st.integers(8, 100), st.booleans())
@@ -265,8 +258,8 @@ def test_a_looked_up_slope_is_that_of_the_table_within_half_a_step(seed: int, bi
     calibration = Sensor("any", table, 0.1)
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, bits_per_channel=bits)
     frames = chance.integers(0, 256, (2, 5, 7, 3)).astype(np.uint8)
-    found = gradient_lookup(frames, gradient_codes(calibration, config), bits) * config.gradient_lsb
-    assert np.abs(found - reference.slopes(frames, calibration)).max() <= config.gradient_lsb / 2 * (1 + 1e-9)
+    result = gradient_lookup(frames, gradient_codes(calibration, config), bits) * config.gradient_lsb
+    assert np.abs(result - reference.slopes(frames, calibration)).max() <= config.gradient_lsb / 2 * (1 + 1e-9)
 
 
 @settings(max_examples=25)
@@ -279,12 +272,12 @@ def test_a_saved_calibration_is_loaded_as_it_was(
     camera = {"format_version": 2, "camera_size": (240, 320), "pixel_format": "rgb888", "black_level": 0.0}
     camera |= {"exposure_us": np.nan, "flat_field": False}
     (np.savez_compressed if packed else np.savez)(path, gradient=table, pixel_pitch_mm=pitch, **camera)  # type: ignore[arg-type]
-    found = load(str(path))
-    np.testing.assert_array_equal(found.gradient, table.astype(np.float64))
-    assert found.pixel_pitch_mm == pitch
-    assert found.bits_per_channel == bits
-    assert found.gradient_limit / 2 < np.abs(table.astype(float)).max() * (1 + 2.0**-7)
-    assert np.abs(table.astype(float)).max() < found.gradient_limit
+    result = load(str(path))
+    np.testing.assert_array_equal(result.gradient, table.astype(np.float64))
+    assert result.pixel_pitch_mm == pitch
+    assert result.bits_per_channel == bits
+    assert result.gradient_limit / 2 < np.abs(table.astype(float)).max() * (1 + 2.0**-7)
+    assert np.abs(table.astype(float)).max() < result.gradient_limit
 
 
 @given(st.lists(st.tuples(*[st.integers(-(1 << 26), (1 << 26) - 1)] * 3), min_size=1))
@@ -308,7 +301,7 @@ def test_fields_of_any_word_pack_to_its_listed_bits(register: Any, word: Any) ->
     assert register.pack(**register.unpack(word)) == word & listed
 
 
-REGISTER_BUILD = Build(16, 16, 24, 20, 18, 4)
+REGISTER_BUILD = Build(top_parameters(Configuration(columns=16)))
 ADDRESSES = st.one_of(st.sampled_from([r.offset for r in MAP]), st.integers(0, (1 << ADDRESS_WIDTH) - 1))
 WORDS = st.one_of(st.integers(0, 7), st.integers(0, WORD))
 WRITES = st.lists(st.tuples(ADDRESSES, WORDS, st.integers(0, 15), st.booleans()), max_size=20)
@@ -319,7 +312,7 @@ def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes: A
     registers = AxilRegisters(REGISTER_BUILD)
     for address, data, strobe, frame_start in writes:
         before, written = dict(registers.values), len(registers.table_writes)
-        pending, bank = registers.pending(registers.bank), registers.bank
+        pending, bank = registers.banks.pending(registers.banks.bank), registers.banks.bank
         response = registers.write(address, data, strobe, Live(in_use=bank))
         changed = {name for name in before if registers.values[name] != before[name]}
         if response is Response.SLVERR:
@@ -334,7 +327,9 @@ def test_a_refused_write_changes_nothing_and_bytes_without_strobe_stay(writes: A
             assert not pending >> table & 1
             assert index < REGISTER_BUILD.table_sizes[table]
         registers.clock(Events(frame_start=frame_start))
-        assert registers.bank == bank ^ pending * frame_start  # what was pending before this clock, all of it at once
+        assert (
+            registers.banks.bank == bank ^ pending * frame_start
+        )  # what was pending before this clock, all of it at once
 
 
 @given(st.lists(st.integers(0, 255), max_size=20), st.integers(0, WORD))
@@ -343,6 +338,7 @@ def test_counters_only_grow_and_stay_at_the_top(saturations: Any, start: Any) ->
     registers.values["SATURATIONS"] = start
     for count in saturations:
         registers.clock(Events(frozenset({"frame_in", "dark"}), count))
+    registers.clock(Events())  # counters see events one cycle later
     assert registers.values["SATURATIONS"] == min(start + sum(saturations), WORD)
     assert registers.values["FRAMES_IN"] == registers.values["DARK_PIXELS"] == len(saturations)
     registers.write(REGISTERS["CONTROL"].offset, 2)
@@ -372,17 +368,17 @@ ANY_WORD = st.builds(Word, WORDS, st.integers(0, 1), st.integers(0, 1))
 
 @given(st.lists(st.none() | ANY_WORD, max_size=40), st.sampled_from([0, 1, 3]))
 def test_whatever_arrives_whole_frames_leave_and_the_next_good_one_is_right(stream: Any, timeout: int) -> None:
-    found = frame_guard([*stream, *GOOD], HEIGHT, WIDTH, timeout)
+    result = frame_guard([*stream, *GOOD], HEIGHT, WIDTH, timeout)
     words = [*stream, *GOOD]
-    assert not found.open
-    for frame in found.frames:
+    assert not result.open
+    for frame in result.frames:
         assert len(frame.pixels) == HEIGHT * WIDTH
         if not frame.bad:
             assert frame.pixels == tuple(word.data for word in words[frame.first : frame.last + 1] if word is not None)
-    assert found.frames[-1].pixels == tuple(word.data for word in GOOD)
-    assert not found.frames[-1].bad
+    assert result.frames[-1].pixels == tuple(word.data for word in GOOD)
+    assert not result.frames[-1].bad
     # A broken frame has one fault; the others are of words between frames.
-    assert sum(frame.bad for frame in found.frames) == sum(name != "start_missing" for name in found.faults)
+    assert sum(frame.bad for frame in result.frames) == sum(name != "start_missing" for name in result.faults)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(0, 5)), max_size=5))
@@ -397,17 +393,17 @@ def test_good_frames_leave_whole_and_in_step(frames: Any) -> None:
                 if not bad:
                     wanted.append((data, int(column == WIDTH - 1), int(first)))
         inputs += [Clock(False, False, 0, False, False)] * gap
-    found = frame_output(inputs, HEIGHT, WIDTH)
-    assert found.beats == wanted
-    assert not found.out_of_step
-    assert len(found.ends) == len(frames)
+    result = frame_output(inputs, HEIGHT, WIDTH)
+    assert result.beats == wanted
+    assert not result.out_of_step
+    assert len(result.ends) == len(frames)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.booleans(), st.booleans(), st.booleans()), max_size=60))
 def test_whatever_the_solver_does_rows_end_where_they_should(clocks: Any) -> None:
-    found = frame_output([Clock(start, first, 0, due, bad) for start, first, due, bad in clocks], HEIGHT, WIDTH)
+    result = frame_output([Clock(start, first, 0, due, bad) for start, first, due, bad in clocks], HEIGHT, WIDTH)
     since = 0
-    for _, last, user in found.beats:
+    for _, last, user in result.beats:
         since = 0 if user else since + 1
         assert last == (since % WIDTH == WIDTH - 1)
         assert since < HEIGHT * WIDTH
@@ -415,11 +411,11 @@ def test_whatever_the_solver_does_rows_end_where_they_should(clocks: Any) -> Non
 
 @given(st.lists(st.none() | WORDS, max_size=40), st.integers(1, 9))
 def test_a_tag_is_due_so_many_clocks_after_it_was_pushed(pushed: Any, delay: Any) -> None:
-    tags, seen = FrameTags(delay), []
+    tags, due = FrameTags(delay), []
     for tag in [*pushed, *[None] * delay]:
-        seen.append(tags.due)
+        due.append(tags.due)
         tags.clock(tag)
-    assert seen == ([None] * delay + pushed)[: len(seen)]
+    assert due == ([None] * delay + pushed)[: len(due)]
     assert tags.held == (tags.due is not None)
 
 

@@ -154,14 +154,14 @@ def test_the_record_of_a_whole_frame_is_that_of_its_beats() -> None:
     rng = np.random.default_rng(1)
     settings = Settings(40, 20, 3, 2)
     for bottom_first in (False, True):
-        beats, whole = (ContactEvents(9, 16, bottom_first) for _ in range(2))
+        beats, at_once = (ContactEvents(9, 16, bottom_first) for _ in range(2))
         for time in range(12):
             frame = rng.integers(-50, rng.integers(1, 60), (9, 16))
             for row in range(9):
                 for column in range(16):
                     last, end = column == 15, (row, column) == (8, 15)
                     record = beats.beat(int(frame[row, column]), row + column == 0, last, end, settings, time)
-            assert whole.whole_frame(frame, settings, time) == record
+            assert at_once.whole_frame(frame, settings, time) == record
 
 
 def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
@@ -192,12 +192,12 @@ def test_captures_take_drift_away(ball: Any, arithmetic: Any) -> None:
     pipeline = td.Pipeline(ball.sensor, ball.reference, arithmetic=arithmetic)
     fresh = pipeline(ball.image).height_mm
     untouched = np.stack([drifted(ball.reference, seed) for seed in range(4)])
-    seen = drifted(ball.image, 9)
+    press = drifted(ball.image, 9)
     assert np.abs(pipeline(untouched[0]).depth_mm).max() > 0.1
     pipeline.capture_reference(untouched)
     pipeline.capture_zero(untouched)
     assert np.abs(pipeline(untouched[0]).depth_mm).max() < 0.01
-    assert np.abs(pipeline(seen).height_mm - fresh).max() < 0.02 * fresh.max()
+    assert np.abs(pipeline(press).height_mm - fresh).max() < 0.02 * fresh.max()
 
 
 def test_a_capture_takes_a_power_of_two_of_pictures(small: Any, ball: Any) -> None:
@@ -209,11 +209,11 @@ def test_a_capture_takes_a_power_of_two_of_pictures(small: Any, ball: Any) -> No
 
 def test_a_capture_that_the_pipeline_has_not_is_refused(ball: Any) -> None:
     as_sent = td.Pipeline(td.load("synthetic"), grid=(16, 16), zero_offset=False)
-    rest = np.full((16, 16, 3), 128, np.uint8)
+    no_contact = np.full((16, 16, 3), 128, np.uint8)
     with pytest.raises(td.InputError, match="takes colours as sent"):
-        as_sent.capture_reference(rest)
+        as_sent.capture_reference(no_contact)
     with pytest.raises(td.InputError, match="has no zero offset"):
-        as_sent.capture_zero(rest)
+        as_sent.capture_zero(no_contact)
 
 
 # Flags.
@@ -247,8 +247,8 @@ def test_a_reference_that_leaves_nothing_is_refused(ball: Any) -> None:
 
 def test_the_error_of_the_calibration_comes_with_the_result() -> None:
     mini = td.load("gelsight-mini")
-    rest = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)  # type: ignore[operator]
-    result = td.Pipeline(mini, rest)(rest)
+    no_contact = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)  # type: ignore[operator]
+    result = td.Pipeline(mini, no_contact)(no_contact)
     assert result.height_error == mini.height_errors["quadratic"]
     assert 0.05 < result.height_error.relative < 0.08
     assert result.fitted_slope == mini.fitted_slope["quadratic"]
@@ -260,7 +260,7 @@ def test_the_error_of_the_calibration_comes_with_the_result() -> None:
 def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: Any) -> None:
     index = small.hardware(tmp_path / "hw")
     described = json.loads(index.read_text())
-    assert described["parameters"] == top_parameters(small.config)
+    assert described["parameters"] == top_parameters(small.config, small.pixel_pitch_mm)
     assert described["depth_lsb_mm"] == small.depth_lsb_mm
     (tmp_path / "again").mkdir()
     write_tables(tmp_path / "again", small.sensor, small.config, small._floor, small._gains)
@@ -292,7 +292,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
 
 
 @pytest.mark.parametrize(
-    ("choices", "said"),
+    ("choices", "message"),
     [
         ({"sensor": "gelsight-mini"}, "sensor is a str: accepted is a Sensor"),
         ({"grid": 64}, "grid=64: accepted are"),
@@ -318,13 +318,13 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
         ({"reference": np.zeros((240, 320), np.uint8)}, r"reference are uint8 \(240, 320\)"),
     ],
 )
-def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, said: Any) -> None:
-    with pytest.raises(td.InputError, match=said):
+def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, message: Any) -> None:
+    with pytest.raises(td.InputError, match=message):
         td.Pipeline(**{"sensor": ball.sensor, "reference": ball.reference, **choices})
 
 
 @pytest.mark.parametrize(
-    ("picture", "said"),
+    ("picture", "message"),
     [
         (np.zeros((240, 320, 3)), r"pictures are float64 \(240, 320, 3\): accepted is uint8"),
         (np.zeros((240, 320, 4), np.uint8), r"\(240, 320, 4\)"),
@@ -335,8 +335,8 @@ def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, said: Any
         (None, "pictures are NoneType: accepted is a uint8 array or a path"),
     ],
 )
-def test_pictures_of_no_use_are_refused(small: Any, picture: np.ndarray, said: Any) -> None:
-    with pytest.raises(td.InputError, match=said):
+def test_pictures_of_no_use_are_refused(small: Any, picture: np.ndarray, message: Any) -> None:
+    with pytest.raises(td.InputError, match=message):
         small(picture)
 
 

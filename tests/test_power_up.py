@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""That Verilator's registers and memories really come up at random, and Icarus' unknown: the suite rests on it."""
+"""Check that registers and memories come up at random in Verilator, and unknown in Icarus: the suite rests on it."""
 
 import json
 from pathlib import Path
@@ -12,7 +12,7 @@ SEEDS = range(1, 9)
 
 
 def test_what_is_not_reset(simulator: str, tmp_path: Path) -> None:
-    files = [*repository.sources(["ram.sv"]), repository.ROOT / "tb" / "power_up.sv"]
+    files = [*repository.sources("ram"), repository.ROOT / "tb" / "power_up.sv"]
     simulation.build(simulator, "power_up", files, {}, tmp_path, log=tmp_path / "build.log")
 
     def seen(power_up: Any) -> Any:

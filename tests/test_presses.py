@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ball presses: folders, geometry and circles, and what is said of bad ones."""
+"""Ball presses: folders, geometry and circles, and errors for bad ones."""
 
 import builtins
 import importlib.util
@@ -110,10 +110,10 @@ def test_circles_found_in_real_pictures_agree_with_the_table() -> None:
 def without_scikit_image(monkeypatch: pytest.MonkeyPatch) -> None:
     load = builtins.__import__
 
-    def refuse(name: str, *rest: Any) -> Any:
+    def refuse(name: str, *more: Any) -> Any:
         if name.startswith("skimage"):
             raise ModuleNotFoundError(name)
-        return load(name, *rest)
+        return load(name, *more)
 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(builtins, "__import__", refuse)
@@ -142,9 +142,9 @@ def in_memory(**changed: Any) -> list[td.BallPress]:
 
 def test_presses_in_memory_are_those_of_the_folder(made: Any) -> None:
     background = pictures()["background.png"]
-    given, there = to_grid(gather(in_memory(), background), PITCH), read(made)
-    assert [view.press.name for view in given.views][:2] == ["press 1", "press 2"]
-    for one, other in zip(given.views, there.views, strict=True):
+    gathered, there = to_grid(gather(in_memory(), background), PITCH), read(made)
+    assert [view.press.name for view in gathered.views][:2] == ["press 1", "press 2"]
+    for one, other in zip(gathered.views, there.views, strict=True):
         np.testing.assert_array_equal(one.deviations, other.deviations)
         assert one.press.x == other.press.x
 
@@ -155,7 +155,7 @@ def test_presses_in_memory_may_be_paths(made: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"diameter_mm": -6}, "diameter_mm is -6: accepted is a number above 0"),
         ({"diameter_mm": math.nan}, "diameter_mm is nan"),
@@ -166,8 +166,8 @@ def test_presses_in_memory_may_be_paths(made: Any) -> None:
         ({"circle": (1, 2, 30), "ball_radius_px": 30}, "a contact of 30 pixels does not lie on a ball of 30"),
     ],
 )
-def test_a_bad_press_is_refused(changed: Any, said: Any) -> None:
-    assert said in refused(lambda: td.BallPress(**{"image": "a.png", "diameter_mm": 6, **changed}))
+def test_a_bad_press_is_refused(changed: Any, message: Any) -> None:
+    assert message in refused(lambda: td.BallPress(**{"image": "a.png", "diameter_mm": 6, **changed}))
 
 
 def test_bad_arguments_are_named() -> None:
@@ -184,14 +184,16 @@ def test_bad_arguments_are_named() -> None:
 
 
 def test_the_pitch_follows_from_the_balls() -> None:
-    given = gather([td.BallPress("a", 6.31, None, "a", 49.76), td.BallPress("b", 9.5, None, "b", 74.92)], drawn([], 1))
-    assert camera_pitch_mm(given, None) == 0.0634
-    assert camera_pitch_mm(given, 0.0635) == 0.0635
+    gathered = gather(
+        [td.BallPress("a", 6.31, None, "a", 49.76), td.BallPress("b", 9.5, None, "b", 74.92)], drawn([], 1)
+    )
+    assert camera_pitch_mm(gathered, None) == 0.0634
+    assert camera_pitch_mm(gathered, 0.0635) == 0.0635
 
 
 def test_a_pitch_that_the_balls_contradict_is_named(made: Any) -> None:
-    said = "pitch_mm=0.12 contradicts presses, whose ball radii give 0.1 mm/pixel. Omit pitch_mm or correct ball_rad"
-    assert said in refused(lambda: camera_pitch_mm(gather(made), 0.12))
+    message = "pitch_mm=0.12 contradicts presses, whose ball radii give 0.1 mm/pixel. Omit pitch_mm or correct ball_rad"
+    assert message in refused(lambda: camera_pitch_mm(gather(made), 0.12))
 
 
 def test_a_pitch_that_nothing_tells_is_asked_for() -> None:
@@ -249,12 +251,12 @@ def test_a_contact_wider_than_its_ball_is_left_out(folder: Path) -> None:
     rows = table_rows()
     rows[3] |= {"diameter_mm": 3.9, "ball_radius_px": ""}
     write_table(folder, rows)
-    said = "03.png: a contact of 20.0 pixels does not lie on a ball of 19.5: left out"
-    assert used(folder) == (23, [said])
+    message = "03.png: a contact of 20.0 pixels does not lie on a ball of 19.5: left out"
+    assert used(folder) == (23, [message])
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"contact_radius_px": 80}, "a contact of 80 pixels does not lie on a ball of 40"),
         ({"contact_radius_px": "nan"}, "radius=nan"),
@@ -266,14 +268,14 @@ def test_a_contact_wider_than_its_ball_is_left_out(folder: Path) -> None:
         ({"frame": "02.png"}, "02.png a second time"),
     ],
 )
-def test_a_bad_line_is_left_out(folder: Path, changed: Any, said: Any) -> None:
+def test_a_bad_line_is_left_out(folder: Path, changed: Any, message: Any) -> None:
     rows = table_rows()
     rows[3] |= changed
     write_table(folder, rows)
     count, (note,) = used(folder)
     assert count == 23
     assert f"{folder}/presses.csv: line 5 left out" in note
-    assert said in note
+    assert message in note
 
 
 def test_unknown_columns_are_named_and_not_used(folder: Path) -> None:

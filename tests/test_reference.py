@@ -49,20 +49,20 @@ def test_slopes_are_looked_up_by_the_top_bits_of_red_green_blue(bits: int) -> No
     bins = 1 << bits
     gradient = np.random.default_rng(2).normal(size=(bins, bins, bins, 2))
     frames = np.random.default_rng(3).integers(0, 256, (3, 5, 7, 3), dtype=np.uint8)
-    found = slopes(frames, Sensor("random", gradient, 0.1))
-    assert found.shape == (3, 5, 7, 2)
-    assert found.dtype == np.float64
+    result = slopes(frames, Sensor("random", gradient, 0.1))
+    assert result.shape == (3, 5, 7, 2)
+    assert result.dtype == np.float64
     for place in np.ndindex(3, 5, 7):
         red, green, blue = (int(c) * bins // 256 for c in frames[place])
-        np.testing.assert_array_equal(found[place], gradient[red, green, blue])
+        np.testing.assert_array_equal(result[place], gradient[red, green, blue])
 
 
 def test_depth_is_the_chain_and_frames_do_not_mix() -> None:
     gradient = np.random.default_rng(4).normal(size=(4, 4, 4, 2))
     calibration = Sensor("random", gradient, 0.1)
     frames = np.random.default_rng(5).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8)
-    whole = depth(frames, calibration)
-    for frame, z in zip(frames, whole, strict=True):
+    complete = depth(frames, calibration)
+    for frame, z in zip(frames, complete, strict=True):
         np.testing.assert_allclose(z, solve(divergence(slopes(frame, calibration))), atol=1e-13)
 
 
@@ -70,10 +70,10 @@ def test_depth_is_the_chain_and_frames_do_not_mix() -> None:
 # height kept, of the true one, by boundary. What lies outside the frame is not seen.
 @pytest.mark.parametrize(("centre", "dirichlet"), [(64, 1.0), (30, 1.0), (20, 0.90), (14, 0.73), (8, 0.47), (4, 0.26)])
 def test_height_of_a_contact_that_the_edge_cuts(centre: Any, dirichlet: Any) -> None:
-    whole = dome(128, 12.0)
-    row, column = np.unravel_index(whole.argmax(), whole.shape)
-    height = np.zeros_like(whole)
-    height[:, : 128 - (column - centre)] = whole[:, column - centre :]
+    complete = dome(128, 12.0)
+    row, column = np.unravel_index(complete.argmax(), complete.shape)
+    height = np.zeros_like(complete)
+    height[:, : 128 - (column - centre)] = complete[:, column - centre :]
     frame = photograph(height)
     area = np.s_[row - 1 : row + 2, centre - 1 : centre + 2]
     for neumann, kept in ((False, dirichlet), (True, 1.0)):

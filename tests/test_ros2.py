@@ -45,7 +45,7 @@ def test_pictures_are_read_in_rgb_without_their_padding(conversions: Any, paddin
 
 
 @pytest.mark.parametrize(
-    ("fields", "said"),
+    ("fields", "message"),
     [
         ((4, 6, 18, "mono8", bytes(72)), "encoding 'mono8': accepted are rgb8, bgr8"),
         ((4, 6, 17, "rgb8", bytes(68)), "68 bytes, step 17 for 6 x 4 pixels"),
@@ -53,8 +53,8 @@ def test_pictures_are_read_in_rgb_without_their_padding(conversions: Any, paddin
         ((0, 6, 18, "rgb8", b""), "0 bytes"),
     ],
 )
-def test_a_message_that_is_no_picture_is_refused(conversions: Any, fields: Any, said: Any) -> None:
-    with pytest.raises(td.InputError, match=said):
+def test_a_message_that_is_no_picture_is_refused(conversions: Any, fields: Any, message: Any) -> None:
+    with pytest.raises(td.InputError, match=message):
         conversions.picture(*fields)
 
 

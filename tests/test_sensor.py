@@ -120,14 +120,14 @@ DISAGREEING: dict[str, Any] = {
 @pytest.mark.parametrize("case", DISAGREEING)
 @pytest.mark.parametrize("use", ["model", "reference", "tables"])
 def test_a_sensor_and_a_configuration_that_disagree_are_refused(tmp_path: Path, case: Any, use: Any) -> None:
-    sensor, choices, said = DISAGREEING[case]
+    sensor, choices, message = DISAGREEING[case]
     config = Configuration(columns=16, **choices)
     uses: dict[str, Any] = {
         "model": lambda: tactile_depth(GREY, sensor, config),
         "reference": lambda: slopes_of(GREY, sensor, config),
         "tables": lambda: write_roms(tmp_path, sensor, config),
     }
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         uses[use]()
     assert not list(tmp_path.iterdir())
 

@@ -91,10 +91,10 @@ def environment(folder: Path, wheel: Any) -> Any:
         subprocess.run([sys.executable, "-m", "venv", python.parent.parent], check=True)
         install = [python, "-m", "pip", "install", "--disable-pip-version-check", wheel]
         ended = subprocess.run(install, capture_output=True, text=True, env=without_sources())
-        told = ended.stdout + ended.stderr
-        if ended.returncode and any(reason in told for reason in UNREACHABLE):
-            pytest.skip(f"pip reaches no registry for numpy, scipy and Pillow: {told.splitlines()[-1]}")
-        assert ended.returncode == 0, told
+        output = ended.stdout + ended.stderr
+        if ended.returncode and any(reason in output for reason in UNREACHABLE):
+            pytest.skip(f"pip reaches no registry for numpy, scipy and Pillow: {output.splitlines()[-1]}")
+        assert ended.returncode == 0, output
         complete.touch()
     return python
 
@@ -111,9 +111,9 @@ def pictures(folder: Path) -> Any:
             shutil.copy(data / "9.500mm" / "12.png", place / "press.png")
         else:
             blocks = td.load("gelsight-mini").lighting * 90  # type: ignore[operator]
-            rest = np.kron(blocks, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
+            no_contact = np.kron(blocks, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)
             for name in ("background.png", "press.png"):
-                Image.fromarray(rest).save(place / name)
+                Image.fromarray(no_contact).save(place / name)
     return place
 
 
@@ -220,6 +220,6 @@ def test_the_rtl_has_the_codes_of_the_wheel(
     )
     np.testing.assert_array_equal(played.codes.reshape(rows, columns)[::-1], codes)  # the bottom row leaves first
     described = json.loads((tmp_path / "hardware" / "parameters.json").read_text())
-    assert described["parameters"] == top_parameters(pipeline.config)
+    assert described["parameters"] == top_parameters(pipeline.config, pipeline.pixel_pitch_mm)
     for name in described["tables"]:
         assert (tmp_path / "hardware" / name).read_text() == (work / name).read_text()

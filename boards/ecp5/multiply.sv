@@ -2,14 +2,16 @@
 // multiply, in place of the core multiply on an ECP5, whose multipliers are 18 x 18: two of them take the upper and the
 // lower part of a long operand, each with a register of its own; their sum follows the registers.
 
+`default_nettype none
+
 module multiply #(
   parameter int AWidth = 27,
   parameter int BWidth = 18
 ) (
-  input  logic                            clk,
-  input  logic                            en,
-  input  logic signed [AWidth-1:0]        a,
-  input  logic signed [BWidth-1:0]        b,
+  input  wire                             clk,
+  input  wire                             en,
+  input  wire  signed [AWidth-1:0]        a,
+  input  wire  signed [BWidth-1:0]        b,
   output logic signed [AWidth+BWidth-1:0] product
 );
 
@@ -31,3 +33,5 @@ module multiply #(
   end
 
 endmodule
+
+`default_nettype wire

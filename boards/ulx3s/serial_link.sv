@@ -9,6 +9,8 @@
 // that lacks bytes leaves as it is, and frame_guard drops it. Pixels wait here while the guard fills such a one up.
 // Model: models/tactile_depth/boards/serial_link.py.
 
+`default_nettype none
+
 module serial_link
   import register_map_pkg::*;
 #(
@@ -16,34 +18,34 @@ module serial_link
   parameter int Columns = 128,
   parameter int Divider = 33  // clocks a bit on the line
 ) (
-  input  logic                    clk,
-  input  logic                    rst,
-  input  logic [31:0]             threshold,
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire  [31:0]             threshold,
 
-  input  logic                    in_valid,
-  input  logic [7:0]              in_data,
-  input  logic                    in_broken,
+  input  wire                     in_valid,
+  input  wire  [7:0]              in_data,
+  input  wire                     in_broken,
   output logic                    out_valid,
-  input  logic                    out_ready,
+  input  wire                     out_ready,
   output logic [7:0]              out_data,
 
   output logic [23:0]             m_axis_tdata,
   output logic                    m_axis_tvalid,
-  input  logic                    m_axis_tready,
+  input  wire                     m_axis_tready,
   output logic                    m_axis_tlast,
   output logic                    m_axis_tuser,
 
-  input  logic [31:0]             s_event_tdata,
-  input  logic                    s_event_tvalid,
+  input  wire  [31:0]             s_event_tdata,
+  input  wire                     s_event_tvalid,
   output logic                    s_event_tready,
-  input  logic                    s_event_tlast,
+  input  wire                     s_event_tlast,
 
   output logic [AddressWidth-1:0] m_axil_awaddr,
   output logic                    m_axil_awvalid,
-  input  logic                    m_axil_awready,
+  input  wire                     m_axil_awready,
   output logic [31:0]             m_axil_wdata,
   output logic                    m_axil_wvalid,
-  input  logic                    m_axil_wready
+  input  wire                     m_axil_wready
 );
 
   localparam logic [7:0] End = 8'hC0;
@@ -210,3 +212,5 @@ module serial_link
   end
 
 endmodule
+
+`default_nettype wire

@@ -5,12 +5,14 @@
 // nothing more until the line is high again. A start bit shorter than half a bit is none. The line may be asynchronous;
 // the rates may differ by 4 %. Bit-accurate model: models/tactile_depth/boards/uart.py.
 
+`default_nettype none
+
 module uart_receive #(
   parameter int Divider = 33  // clocks a bit
 ) (
-  input  logic       clk,
-  input  logic       rst,
-  input  logic       line,
+  input  wire        clk,
+  input  wire        rst,
+  input  wire        line,
   output logic       out_valid,
   output logic [7:0] out_data,
   output logic       broken
@@ -60,8 +62,11 @@ module uart_receive #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Divider < 4) $fatal(1, "%m: Divider must be at least 4");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Divider < 4) begin : g_refused
+    Divider_must_be_at_least_4 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

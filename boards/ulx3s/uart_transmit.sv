@@ -3,14 +3,16 @@
 //
 // Bytes in: ready/valid; one is taken when the line is free. Model: models/tactile_depth/boards/uart.py.
 
+`default_nettype none
+
 module uart_transmit #(
   parameter int Divider = 33  // clocks a bit
 ) (
-  input  logic       clk,
-  input  logic       rst,
-  input  logic       in_valid,
+  input  wire        clk,
+  input  wire        rst,
+  input  wire        in_valid,
   output logic       in_ready,
-  input  logic [7:0] in_data,
+  input  wire  [7:0] in_data,
   output logic       line
 );
 
@@ -44,8 +46,11 @@ module uart_transmit #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Divider < 2) $fatal(1, "%m: Divider must be at least 2");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Divider < 2) begin : g_refused
+    Divider_must_be_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

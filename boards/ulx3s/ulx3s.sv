@@ -5,9 +5,11 @@
 //
 // Packets: serial_link.sv. led[0]: contact; led[1] changes with every record; led[7]: the clock is locked.
 // btn[1]: reset.
-// Depth leaves the pipeline at full rate and is not sent; its record is. Parameters of the pipeline come from
-// models/tactile_depth/configuration.py; Threshold is a depth code. Model: models/tactile_depth/boards/serial_link.py
-// around models/tactile_depth/tactile_depth.py.
+// Depth leaves the pipeline at full rate and is not sent; its record is. tactile_depth_ulx3s is a wrapper; `make fpga`
+// writes it for a configuration. Threshold is a depth code. Model: models/tactile_depth/boards/serial_link.py around
+// models/tactile_depth/tactile_depth.py.
+
+`default_nettype none
 
 module ulx3s
   import register_map_pkg::*;
@@ -15,60 +17,21 @@ module ulx3s
   parameter int ClockMhz         = 100,      // of the pipeline
   parameter int Baud             = 3000000,
   parameter int Threshold        = 65536,    // written to both thresholds after a reset
-  parameter int Tridiagonal      = 1,
-  parameter int Neumann          = 0,
-  parameter int Rows             = 128,
+  parameter int Rows             = 128,      // of the wrapper
   parameter int Size             = 128,
-  parameter int BitsPerChannel   = 4,
-  parameter int GradientWidth    = 21,
-  parameter int GradientFraction = 19,
   parameter int DataWidth        = 24,
-  parameter int Width            = 27,
-  parameter int CoeffWidth       = 18,
-  parameter int RowForwardOut    = 4,
-  parameter int ColumnForwardIn  = 1,
-  parameter int ColumnInverseOut = -1,
-  parameter int RowInverseIn     = -1,
-  parameter int RowInverseOut    = -1,
-  parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 23,
-  parameter int StoreDrop        = 3,
-  parameter int TableWords       = 1379,
-  parameter int SettledWidth     = 7,
-  parameter int LastShiftWidth   = 1,
-  parameter int MomentDrop       = 7,
-  parameter int MeanReciprocal   = 65536,
-  parameter int MeanDrop         = 16,
-  parameter int StoreStyle       = 1,
-  parameter int WordsPerRow      = 1,
-  parameter int FrameLatency     = 566,
-  parameter int FlatField        = 0,
-  parameter int Quadratic        = 0,
-  parameter int AutoZero         = 0,
-  parameter int BlockLog2        = 3,
-  parameter int FloorLog2        = 8,
-  parameter int GainWidth        = 24,
-  parameter int GainFraction     = 27,
-  parameter int CaptureLog2      = 8,
-  parameter int ColourWidth      = 8,
-  parameter int ColourDrop       = 20,
-  parameter int ColourOffset     = 0,
-  parameter int ColourFlat       = 128,
-  parameter int PolynomialWords  = 36,
-  parameter int PolynomialWidth  = 32,
-  parameter int ColourCoeffWidth = 18,
-  parameter int SlopeDrop        = 6
+  parameter int Lanes            = 1
 ) (
-  input  logic       clk_25mhz,
-  input  logic       ftdi_txd,
+  input  wire        clk_25mhz,
+  input  wire        ftdi_txd,
   output logic       ftdi_rxd,
-  input  logic [1:1] btn,
+  input  wire  [1:1] btn,
   output logic [7:0] led,
   output logic       wifi_gpio0
 );
 
   localparam int Divider = (ClockMhz * 1000000 + Baud / 2) / Baud;
-  localparam int DepthBits = 8 * ((DataWidth + 7) / 8);
+  localparam int DepthBits = 8 * Lanes * ((DataWidth + 7) / 8);
 
   assign wifi_gpio0 = 1'b1;  // low, it would let the board's other chip load another bitstream
 
@@ -108,39 +71,25 @@ module ulx3s
     .m_axil_wdata(wdata), .m_axil_wvalid(wvalid), .m_axil_wready(wready)
   );
 
-  logic contact, recorded;
+  logic contact, irq, recorded;
   logic [DepthBits-1:0] depth_tdata;
   logic depth_tvalid, depth_tlast, depth_tuser;
   logic [1:0] bresp, rresp;
   logic bvalid, arready, rvalid;
   logic [31:0] rdata;
-  tactile_depth #(
-    .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Size(Size), .BitsPerChannel(BitsPerChannel),
-    .GradientWidth(GradientWidth), .GradientFraction(GradientFraction), .DataWidth(DataWidth), .Width(Width),
-    .CoeffWidth(CoeffWidth), .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn),
-    .ColumnInverseOut(ColumnInverseOut), .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
-    .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .StoreDrop(StoreDrop), .TableWords(TableWords),
-    .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
-    .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .StoreStyle(StoreStyle), .WordsPerRow(WordsPerRow),
-    .FrameLatency(FrameLatency), .FlatField(FlatField),
-    .Quadratic(Quadratic), .AutoZero(AutoZero), .BlockLog2(BlockLog2),
-    .FloorLog2(FloorLog2), .GainWidth(GainWidth), .GainFraction(GainFraction),
-    .CaptureLog2(CaptureLog2), .ColourWidth(ColourWidth), .ColourDrop(ColourDrop), .ColourOffset(ColourOffset),
-    .ColourFlat(ColourFlat), .PolynomialWords(PolynomialWords), .PolynomialWidth(PolynomialWidth),
-    .ColourCoeffWidth(ColourCoeffWidth), .SlopeDrop(SlopeDrop)
-  ) u_depth (
-    .clk, .rst,
+  tactile_depth_ulx3s u_depth (
+    .clk, .rst, .cold_rst(1'b0),
     .s_axis_tdata(pixel_tdata), .s_axis_tvalid(pixel_tvalid), .s_axis_tready(pixel_tready),
     .s_axis_tlast(pixel_tlast), .s_axis_tuser(pixel_tuser),
     .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
     .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
-    .contact,
+    .contact, .irq,
     .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
     .m_event_tlast(event_tlast),
-    .s_axil_awaddr(awaddr), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
+    .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
     .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
     .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
-    .s_axil_araddr(araddr), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
+    .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
     .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1)
   );
 
@@ -151,7 +100,9 @@ module ulx3s
   end
 
   logic unused_outputs;
-  assign unused_outputs = ^{depth_tdata, depth_tvalid, depth_tlast, depth_tuser, bresp, bvalid, arready, rdata, rresp,
-    rvalid};
+  assign unused_outputs = ^{irq, depth_tdata, depth_tvalid, depth_tlast, depth_tuser, bresp, bvalid, arready, rdata,
+    rresp, rvalid};
 
 endmodule
+
+`default_nettype wire

@@ -2,10 +2,12 @@
 // ulx3s_clock: the pipeline's clock from the board's 25 MHz. In simulation the clock that comes in is that of the
 // pipeline, locked after a few of its edges. No model: there is nothing to compute.
 
+`default_nettype none
+
 module ulx3s_clock #(
   parameter int ClockMhz = 100
 ) (
-  input  logic clk_25mhz,
+  input  wire  clk_25mhz,
   output logic clk,
   output logic locked
 );
@@ -31,7 +33,12 @@ module ulx3s_clock #(
   assign locked = edges == 3'(LockClocks);
   always_ff @(posedge clk_25mhz) if (!locked) edges <= edges + 3'd1;
 
-  initial if (ClockMhz < 25 || ClockMhz % 25 != 0 || 600 % ClockMhz != 0) $fatal(1, "%m: no such clock");
 `endif
 
+  if (ClockMhz < 25 || ClockMhz % 25 != 0 || 600 % ClockMhz != 0) begin : g_refused
+    ClockMhz_must_be_a_multiple_of_25_that_divides_600 u_refused ();
+  end
+
 endmodule
+
+`default_nettype wire

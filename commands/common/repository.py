@@ -7,6 +7,7 @@ from the tree, and no list is kept by hand.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -17,6 +18,7 @@ from tactile_depth.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
+UNITS = ("video_in", "gradient_unit", "poisson_unit", "depth_unit", "contact_unit")  # of the top, tested through it
 PACKAGE = "_pkg"  # end of the name of a SystemVerilog package, which is no core
 
 
@@ -28,13 +30,18 @@ class Core:
     block: str  # folder below hdl/, "" for a core at the root
     hdl: Path
     model: Path | None
-    bench: Path | None  # cocotb testbench
+    benches: tuple[Path, ...]  # cocotb testbenches: tb_<name>.py, or the tb_*.py of a folder <name>
     test: Path | None
     proof: Path | None
 
 
 def _existing(path: Path) -> Path | None:
     return path if path.is_file() else None
+
+
+def _benches(folder: Path, name: str) -> tuple[Path, ...]:
+    file = folder / f"tb_{name}.py"
+    return (file,) if file.is_file() else tuple(sorted((folder / name).glob("tb_*.py")))
 
 
 @cache
@@ -50,7 +57,7 @@ def cores() -> Mapping[str, Core]:
             "" if folder == Path() else str(folder),
             file,
             _existing(ROOT / "models" / "tactile_depth" / folder / f"{name}.py"),
-            _existing(ROOT / "tb" / folder / f"tb_{name}.py"),
+            _benches(ROOT / "tb" / folder, name),
             _existing(ROOT / "tests" / folder / f"test_{name}.py"),
             _existing(ROOT / "formal" / folder / f"fv_{name}.sv"),
         )
@@ -58,31 +65,32 @@ def cores() -> Mapping[str, Core]:
 
 
 def chosen(names: str) -> list[str]:
-    """Return the names of the cores in a value of CORE=a,b.
-
-    Raises
-    ------
-    InputError
-        A name is no core.
-    """
-    given = [name.strip() for name in names.split(",")]
-    unknown = [name for name in given if name not in cores()]
+    """Return the names of the cores in a value of CORE=a,b. Raises InputError: a name is no core."""
+    wanted = [name.strip() for name in names.split(",")]
+    unknown = [name for name in wanted if name not in cores()]
     if unknown:
         raise InputError(f"CORE={','.join(unknown)}: no such core; accepted are {', '.join(cores())}")
-    return given
+    return wanted
 
 
-def sources(names: Sequence[str] | None = None) -> list[Path]:
-    """Return the files of hdl/ with the given file names, packages first; all of them if names is None.
+def tested(names: Sequence[str]) -> list[str]:
+    """Return the cores whose testbenches test the cores with these names: a unit is tested through the top."""
+    return list(dict.fromkeys("tactile_depth" if name in UNITS else name for name in names))
 
-    Raises
-    ------
-    KeyError
-        A name is no file of hdl/.
-    """
-    files = {file.name: file for file in HDL.rglob("*.sv")}
-    found = list(files.values()) if names is None else [files[name] for name in names]
-    return sorted(found, key=lambda file: (not file.stem.endswith(PACKAGE), file.name))
+
+def sources(top: str | None = None) -> list[Path]:
+    """Return the files of hdl/ that a core needs, itself among them, packages first; all of them if top is None."""
+    files = {file.stem: file for file in HDL.rglob("*.sv")}
+    packages = {name for name in files if name.endswith(PACKAGE)}
+    needed = set(files)
+    if top is not None:
+        needed, waiting = set(packages), [top]
+        while waiting:
+            name = waiting.pop()
+            needed.add(name)
+            instances = re.findall(r"^ +(\w+) (?:#\(|u_\w+ \()", files[name].read_text(), re.MULTILINE)
+            waiting += [used for used in instances if used in files and used not in needed]
+    return [files[name] for name in sorted(needed, key=lambda name: (name not in packages, name))]
 
 
 def formal(name: str) -> Path | None:
@@ -96,9 +104,9 @@ def module(file: Path) -> str:
 
 
 def testbench(top: str) -> str:
-    """Return the module name of the cocotb testbench of a top level: of a core, or of a part of a board."""
+    """Return the modules of the cocotb testbench of a top level, with commas: of a core, or of a part of a board."""
     core = cores().get(top)
-    file = core.bench if core else _existing(ROOT / "tb" / "boards" / f"tb_{top}.py")
-    if file is None:
+    files = core.benches if core else _benches(ROOT / "tb" / "boards", top)
+    if not files:
         raise KeyError(f"no testbench of {top}")
-    return module(file)
+    return ",".join(map(module, files))

@@ -8,12 +8,15 @@ import json
 import math
 import os
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
+from tactile_depth.camera_configuration import FORMATS, PHASES, CameraChoice
 from tactile_depth.certificate import deepest
 from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
 from tactile_depth.errors import InputError
@@ -27,10 +30,24 @@ SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ACCEPTED = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "FRAMES", "PRESS"),
+    *(
+        "N",
+        "ROWS",
+        "COLS",
+        "SOLVER",
+        "BOUNDARY",
+        "LANES",
+        "SIM",
+        "DATA_WIDTH",
+        "COEFF_WIDTH",
+        "DEPTH_RANGE",
+        "FRAMES",
+        "PRESS",
+    ),
     *("AT", "NOISE", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "REPEAT", "SEED", "GAPS"),
     *("STALLS", "WAVES", "CONFIG", "OUT"),
 )
+CAMERA = ("CAMERA", "BAYER", "WINDOW")  # of commands that convert pictures to what a camera sends
 LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
@@ -42,6 +59,7 @@ class Request:
     columns: int
     solver: str
     boundary: str
+    lanes: int
     simulator: str
     data_width: int
     coefficient_width: int
@@ -59,34 +77,30 @@ class Request:
     stalls: float
     waves: bool
     out: Path | None
+    camera: CameraChoice | None = None
 
 
-def parse(arguments: list[str]) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default.
+def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request:
+    """KEY=VALUE arguments to a Request; an empty value means the default. Raises InputError."""
+    values = variables.given(arguments, accepted)
+    if "CONFIG" in values:
+        values = from_file(Path(values.pop("CONFIG")), values, [name for name in accepted if name != "CONFIG"]) | values
 
-    Raises
-    ------
-    InputError
-    """
-    given = variables.given(arguments, ACCEPTED)
-    if "CONFIG" in given:
-        given = from_file(Path(given.pop("CONFIG")), given, [name for name in ACCEPTED if name != "CONFIG"]) | given
-
-    number = partial(variables.number, given)
+    number = partial(variables.number, values)
 
     def choice(key: str, accepted: tuple[str, ...]) -> str:
-        value = given.get(key, accepted[0])
+        value = values.get(key, accepted[0])
         if value not in accepted:
             raise InputError(f"{key}={value} is unknown: accepted are {', '.join(filter(None, accepted))}")
         return value
 
     def position(key: str) -> tuple[float, float]:
         try:
-            x, y = (float(part) for part in given.get(key, "0,0").split(","))
+            x, y = (float(part) for part in values.get(key, "0,0").split(","))
         except ValueError:
             x = y = math.nan
         if not (abs(x) <= SENSOR_WIDTH_MM and abs(y) <= SENSOR_WIDTH_MM):
-            raise InputError(f"{key}={given[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
+            raise InputError(f"{key}={values[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
         return x, y
 
     both = number("N", 128, -math.inf, math.inf)
@@ -95,78 +109,90 @@ def parse(arguments: list[str]) -> Request:
         columns=int(number("COLS", both, -math.inf, math.inf)),
         solver=choice("SOLVER", SOLVERS),
         boundary=choice("BOUNDARY", BOUNDARIES),
+        lanes=int(number("LANES", 1, -math.inf, math.inf)),  # as for the rows
         simulator=choice("SIM", simulation.SIMULATORS),
         data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
         depth_range_mm=math.inf
-        if given.get("DEPTH_RANGE") == WORST
+        if values.get("DEPTH_RANGE") == WORST
         else number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
-        frames=given.get("FRAMES", DEFAULT_SCENE),
+        frames=values.get("FRAMES", DEFAULT_SCENE),
         press=Press(
             number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
             position("AT"),
             number("NOISE", NOISE, 0, 255, float),
         ),
-        reference=given.get("REFERENCE"),
-        floor=given.get("FLOOR"),
-        calibration=_calibration(given),
-        camera_size=_camera_size(given),
+        reference=values.get("REFERENCE"),
+        floor=values.get("FLOOR"),
+        calibration=_calibration(values),
+        camera_size=_camera_size(values),
         gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
         repeat=int(number("REPEAT", 1, 1, 100_000)),
         seed=int(number("SEED", 1, 0, 10**9)),
         gaps=number("GAPS", 0, 0, 0.99, float),
         stalls=number("STALLS", 0, 0, 0.99, float),
         waves=bool(number("WAVES", 0, 0, 1)),
-        out=Path(given["OUT"]) if "OUT" in given else None,
+        out=Path(values["OUT"]) if "OUT" in values else None,
+        camera=camera_choice(values),
     )
 
 
-def _calibration(given: dict[str, str]) -> str:
+def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:
+    """Return the camera that CAMERA, BAYER and WINDOW choose; None without CAMERA. Raises InputError."""
+    for name in CAMERA[1:]:
+        if values.get(name) and not values.get("CAMERA"):
+            raise InputError(f"{name}={values[name]} goes with CAMERA, a pixel format: {', '.join(FORMATS)}")
+    if not values.get("CAMERA"):
+        return None
+    window = None
+    if values.get("WINDOW"):
+        numbers = re.fullmatch(r"([0-9]{1,5}),([0-9]{1,5}),([0-9]{1,5}),([0-9]{1,5})", values["WINDOW"])
+        if not numbers:
+            raise InputError(f"WINDOW={values['WINDOW']}: accepted is x,y,width,height in pixels, as 80,0,480,480")
+        x, y, width, height = map(int, numbers.groups())
+        window = (x, y, width, height)
+    return CameraChoice(values["CAMERA"], values.get("BAYER") or PHASES[0], window)
+
+
+def _calibration(values: dict[str, str]) -> str:
     """The calibration that is named. Scenes are drawn for the synthetic sensor; a picture needs that of its sensor."""
-    if "CALIBRATION" in given:
-        return given["CALIBRATION"]
+    if "CALIBRATION" in values:
+        return values["CALIBRATION"]
     for key in ("FRAMES", "REFERENCE", "FLOOR"):
-        if key in given and given[key] not in SCENES and os.path.exists(given[key]):
+        if key in values and values[key] not in SCENES and os.path.exists(values[key]):
             raise InputError(
-                f"{key}={given[key]} needs CALIBRATION, that of the sensor that took it: {', '.join(BUILT_IN)}, or the "
-                ".npz of `make calibrate`"
+                f"{key}={values[key]} needs CALIBRATION, that of the sensor that took it: {', '.join(BUILT_IN)}, or "
+                "the .npz of `make calibrate`"
             )
     return BUILT_IN[0]
 
 
-def _camera_size(given: dict[str, str]) -> tuple[int, int] | None:
+def _camera_size(values: dict[str, str]) -> tuple[int, int] | None:
     """Rows and columns of CAMERA_SIZE=320x240, which gives columns first, as cameras do."""
-    if "CAMERA_SIZE" not in given:
+    if "CAMERA_SIZE" not in values:
         return None
-    size = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", given["CAMERA_SIZE"])
+    size = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", values["CAMERA_SIZE"])
     if not size:
-        raise InputError(f"CAMERA_SIZE={given['CAMERA_SIZE']}: accepted is columns x rows in pixels, as 320x240")
+        raise InputError(f"CAMERA_SIZE={values['CAMERA_SIZE']}: accepted is columns x rows in pixels, as 320x240")
     return int(size[2]), int(size[1])
 
 
 def load_sensor(request: Request) -> Sensor:
-    """The calibration of a request.
-
-    Raises
-    ------
-    InputError
-    """
+    """The calibration of a request. Raises InputError."""
     try:
         return load(request.calibration, request.camera_size)
     except InputError as error:
         if request.camera_size is None:
             raise
         rows, columns = request.camera_size
-        given = f"CAMERA_SIZE={columns}x{rows}"
-        raise InputError(str(error).replace(f"camera_size={request.camera_size}", given)) from error
+        variable = f"CAMERA_SIZE={columns}x{rows}"
+        raise InputError(str(error).replace(f"camera_size={request.camera_size}", variable)) from error
 
 
-def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[str, str]:
-    """Variables of a configuration file, a JSON object; an N that is `given` replaces rows and columns of the file.
+def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict[str, str]:
+    """Variables of a configuration file, a JSON object; an N of `explicit` replaces rows and columns of the file.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     try:
         if not is_file(path):
@@ -188,8 +214,38 @@ def from_file(path: Path, given: dict[str, str], accepted: list[str]) -> dict[st
             raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: accepted is a number or a string")
         if isinstance(value, str) and not variables.usable(value):
             raise InputError(f"CONFIG={path}: {key} is {json.dumps(value)}: it holds a character that no path can hold")
-    replaced = ("ROWS", "COLS") if "N" in given else ()
+    replaced = ("ROWS", "COLS") if "N" in explicit else ()
     return {key: str(value) for key, value in values.items() if key not in replaced}
+
+
+def described(config: Configuration) -> dict[str, Any]:
+    """Return a configuration as the reports of commands state it."""
+    return {
+        "grid": [config.rows, config.columns],
+        "solver": config.solver,
+        "boundary": "neumann" if config.neumann else "dirichlet",
+        "lanes": config.lanes,
+        "data_width": config.data_width,
+        "coeff_width": config.coefficient_width,
+        "gradient_model": config.gradient_model,
+        "flat_field": config.flat_field,
+        "auto_zero": config.auto_zero,
+    }
+
+
+def threshold_code(config: Configuration) -> int:
+    """Return the code above which a depth is a contact."""
+    return round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
+
+
+def check_grid(request: Request) -> None:
+    """Refuse a grid, a solver or lanes before frames are read.
+
+    Raises
+    ------
+    InputError
+    """
+    Configuration(columns=request.columns, rows=request.rows, solver=request.solver, lanes=request.lanes)
 
 
 def configure(request: Request, calibration: Sensor) -> Configuration:
@@ -198,7 +254,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
     depth_range = request.depth_range_mm
     depth_range_px: float | None
     if depth_range == math.inf:
-        Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
+        check_grid(request)
         depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
     else:
         depth_range_px = None if depth_range is None else depth_range / calibration.pixel_pitch_mm
@@ -207,6 +263,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         columns=request.columns,
         rows=request.rows,
         solver=request.solver,
+        lanes=request.lanes,
         neumann=neumann,
         data_width=request.data_width,
         coefficient_width=request.coefficient_width,

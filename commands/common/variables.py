@@ -17,18 +17,21 @@ from typing import Any
 
 from commands.common import signals
 from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.files import cause
 
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
 # Errors of the package name arguments; a user of make gave variables.
 VARIABLES = {
     r"\bcamera_size=\(rows, columns\)": "CAMERA_SIZE=<columns>x<rows>",
+    r"\bfolder=": "OUT=",
     r"\bcolumns=": "N=",
     r"\brows=": "ROWS=",
     r"\bsolver=": "SOLVER=",
     r"\bdata_width=": "DATA_WIDTH=",
     r"\bcoefficient_width=": "COEFF_WIDTH=",
     r"\bgradient_model=": "GRADIENT=",
+    r"\blanes=": "LANES=",
     r"\breference=": "REFERENCE=",
     r"\bcamera_size\b": "CAMERA_SIZE",
     r"\bomit the calibration\b": "omit CALIBRATION",
@@ -37,6 +40,9 @@ VARIABLES = {
     r"\bbits=": "BITS=",
     r"\bmodels=": "GRADIENT=",
     r"\bexposure_us=": "EXPOSURE_US=",
+    r"\bpixel_format=": "CAMERA=",
+    r"\bphase=": "BAYER=",
+    r"\bwindow=": "WINDOW=",
 }
 
 
@@ -45,13 +51,7 @@ class Mismatch(Exception):
 
 
 def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
-    """Name to value of those that have one.
-
-    Raises
-    ------
-    InputError
-        A name that is not accepted, or a word without one.
-    """
+    """Name to value of those that have one. Raises InputError: a name that is not accepted, or a word without one."""
     names = tuple(accepted)
     values: dict[str, str] = {}
     for argument in arguments:
@@ -67,10 +67,7 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
 def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
     """The number that was given as `name`, of a kind, int or float; `default` where it was not.
 
-    Raises
-    ------
-    InputError
-        No number, or not from `low` to `high`.
+    Raises InputError: no number, or not from `low` to `high`.
     """
     if not values.get(name):
         return default
@@ -118,12 +115,8 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
     """End `make <target>` with one line on stderr and an exit status when an exception or a signal ends it.
 
     Bad input gives 2, a mismatch 1, a failure on the way 3, a signal 128 + its number. An exception that nobody
-    expected shows its traceback, since it is a fault of the command, and gives 3.
-
-    Parameters
-    ----------
-    interrupted : str
-        Says what an interruption leaves.
+    expected shows its traceback, since it is a fault of the command, and gives 3. `interrupted` says what a signal
+    leaves.
     """
     try:
         with signals.stoppable(), warnings.catch_warnings():
@@ -139,8 +132,10 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
     except BrokenPipeError:
         message, status = "whatever reads the output has ended", FAILURE
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest at its end
-    except (RuntimeError, subprocess.SubprocessError, OSError, MemoryError) as error:
+    except OSError as error:
         message, status = cause(error), FAILURE
+    except (RuntimeError, subprocess.SubprocessError, MemoryError) as error:
+        message, status = str(error) or type(error).__name__, FAILURE
     except Exception:
         traceback.print_exc()
         message, status = "an unexpected error, shown above: please report it", FAILURE
@@ -148,10 +143,3 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
         return
     print(f"make {target}: {InputError(message)}", file=sys.stderr)
     sys.exit(status)
-
-
-def cause(error: Exception) -> str:
-    """Return what went wrong, with the file that an OSError names."""
-    if isinstance(error, OSError) and error.strerror:
-        return ": ".join(str(part) for part in (error.filename, error.strerror) if part)
-    return str(error) or type(error).__name__

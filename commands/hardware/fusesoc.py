@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The generator of tactile_depth.core: parameters and tables of a configuration, as a core of FuseSoC.
+"""The generator of tactile_depth.core: a configuration as a core of FuseSoC.
 
-Its parameters are the variables of `make sim` that choose a configuration; commands/hardware/synth.py names them.
+Its parameters are the variables of `make sim` that choose a configuration; commands/hardware/synth.py names them. With
+NAME the core holds the module tactile_depth_<NAME>, which a design instantiates, and its tables in a folder <NAME>.
+Without it the core holds the tables, and the parameters as defaults for a design whose top is tactile_depth.
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 
-from commands.common import run_request  # noqa: E402
+from commands.common import run_request, wrapper  # noqa: E402
 from commands.hardware import synth  # noqa: E402
 from tactile_depth.errors import InputError  # noqa: E402
 from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
@@ -23,31 +26,37 @@ from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
 def generate(description: Path, folder: Path) -> None:
     """Write the tables and a core that holds them, and the parameters as its defaults, into a folder.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     wanted = yaml.safe_load(description.read_text())
-    values = wanted.get("parameters") or {}
+    values = dict(wanted.get("parameters") or {})
+    module = values.pop("NAME", "")
     for key in values:
         if key not in synth.CONFIGURING:
-            raise InputError(f"{key}: unknown variable: accepted are {', '.join(synth.CONFIGURING)}")
+            raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
     config, calibration = synth.configured(run_request.parse([f"{key}={value}" for key, value in values.items()]))
     write_roms(folder, calibration, config)
-    parameters = top_parameters(config)
-    core = {
+    parameters = top_parameters(config, calibration.pixel_pitch_mm)
+    tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
+    place = f"{module}/" if module else ""
+    core: dict[str, Any] = {
         "name": wanted["vlnv"],
-        "filesets": {
-            "tables": {
-                "files": [{rom.name: {"copyto": rom.name}} for rom in sorted(folder.glob("*.hex"))],
-                "file_type": "user",
-            }
-        },
-        "parameters": {
-            name: {"datatype": "int", "default": value, "paramtype": "vlogparam"} for name, value in parameters.items()
-        },
-        "targets": {"default": {"filesets": ["tables"], "parameters": list(parameters)}},
+        "filesets": {"tables": {"files": [{name: {"copyto": place + name}} for name in tables], "file_type": "user"}},
+        "targets": {"default": {"filesets": ["tables"]}},
     }
+    if module:
+        path = wrapper.write(folder, module, parameters, place)
+        core["filesets"]["module"] = {
+            "files": [path.name],
+            "file_type": "systemVerilogSource",
+            "depend": ["::tactile_depth:0.1.0"],
+        }
+        core["targets"]["default"]["filesets"] += ["module"]
+    else:
+        core["parameters"] = {
+            name: {"datatype": "int", "default": value, "paramtype": "vlogparam"} for name, value in parameters.items()
+        }
+        core["targets"]["default"]["parameters"] = list(parameters)
     name = wanted["vlnv"].split(":")[2]
     (folder / f"{name}.core").write_text("CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False))
 

@@ -75,13 +75,7 @@ def path_of(name: str) -> str:
 
 
 def clock_pin(cell: Cell) -> str:
-    """Return the clock pin of a flip-flop.
-
-    Raises
-    ------
-    InputError
-        The flip-flop works on falling edges or has an asynchronous reset, which this design does not use.
-    """
+    """Return the clock pin of a flip-flop. Raises InputError for falling edges and for an asynchronous reset."""
     assert cell.flip_flop is not None
     attributes = cell.flip_flop.attributes
     if "clear" in attributes or "preset" in attributes:

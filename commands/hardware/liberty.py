@@ -40,11 +40,7 @@ def truth(function: str, inputs: Sequence[str]) -> int:
     """Return the truth table of a Liberty function: bit i is its value when the inputs, first lowest, spell i.
 
     ! before an operand or ' after it is not; a space is and.
-
-    Raises
-    ------
-    InputError
-        The text is no Boolean function of `inputs`, or they are too many.
+    Raises InputError: the text is no Boolean function of `inputs`, or they are too many.
     """
     wrong = InputError(f"LIB: {function} is no Boolean function of up to {LARGEST_GATE} pins: {', '.join(inputs)}")
     if len(inputs) > LARGEST_GATE:
@@ -107,12 +103,7 @@ class Group:
 
 
 def groups_of(text: str) -> Group:
-    """Return the library group of a Liberty text.
-
-    Raises
-    ------
-    ValueError
-    """
+    """Return the library group of a Liberty text. Raises ValueError."""
     text = NOISE.sub(" ", text).strip()
     open_groups = [Group("", [])]
     at = 0
@@ -281,13 +272,7 @@ def _unit(text: str) -> float:
 
 
 def read(path: Path) -> Library:
-    """Return the library of a file.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, is no Liberty file, or lacks a voltage, a flip-flop or an inverter.
-    """
+    """Return the library of a file. Raises InputError if it lacks a voltage, a flip-flop or an inverter."""
     try:
         library = groups_of(path.read_text(encoding="latin-1"))
         templates = {group.names[0]: group for group in library.groups if group.kind.endswith("_template")}

@@ -30,11 +30,6 @@ def energy_pj(bits: float, node_nm: float, voltage: float) -> float:
     return bits * ACCESS_PJ / WORD_BITS * node_nm / NODE_NM * (voltage / VOLTAGE) ** 2
 
 
-def access_ns(node_nm: float) -> float:
-    """Return the time from the clock to the output of a memory."""
-    return ACCESS_NS * node_nm / NODE_NM
-
-
-def setup_ns(node_nm: float) -> float:
-    """Return the set-up time of the inputs of a memory."""
-    return SETUP_NS * node_nm / NODE_NM
+def times_ns(node_nm: float) -> tuple[float, float]:
+    """Return the time from the clock to the output of a memory, and the set-up time of its inputs."""
+    return ACCESS_NS * node_nm / NODE_NM, SETUP_NS * node_nm / NODE_NM

@@ -13,6 +13,7 @@ import json
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from textwrap import wrap as wrapped
 from typing import Any
 
 from peakrdl_cheader.c_standards import CStandard
@@ -22,7 +23,7 @@ from peakrdl_python.exporter import PythonExporter
 from systemrdl.compiler import RDLCompiler
 from systemrdl.node import FieldNode, RegNode, RootNode
 
-from commands.common import variables
+from commands.common import variables, wrapper
 from commands.common.repository import ROOT
 
 SOURCE = ROOT / "registers" / "tactile_depth.rdl"
@@ -43,10 +44,7 @@ def compiled(source: Path = SOURCE, inst_name: str | None = None) -> RootNode:
 def access(field: FieldNode) -> str:
     """Return the access of a field, one of tactile_depth.registers.register_map.ACCESSES.
 
-    Raises
-    ------
-    ValueError
-        No register of this design has such an access.
+    Raises ValueError: no register of this design has such an access.
     """
     onwrite, onread = field.get_property("onwrite"), field.get_property("onread")
     properties = (
@@ -68,6 +66,11 @@ def access(field: FieldNode) -> str:
     return accesses[properties]
 
 
+def is_setting(field: FieldNode) -> bool:
+    """Return True for a field that software alone writes, and that holds what was written."""
+    return access(field) == "rw" and not field.is_hw_writable
+
+
 def field_of(node: FieldNode) -> dict[str, Any]:
     """Return a field as the JSON states it."""
     encode = node.get_property("encode")
@@ -78,6 +81,7 @@ def field_of(node: FieldNode) -> dict[str, Any]:
         "access": access(node),
         "reset": node.get_property("reset"),
         "signed": node.get_property("is_signed", default=False),
+        "setting": is_setting(node),
         "values": {member.name: member.value for member in encode} if encode else {},
         "description": node.get_property("name"),
     }
@@ -104,7 +108,7 @@ def package(registers: list[dict[str, Any]]) -> str:
     offsets, resets, bits, values = [], [], [], []
     for register in registers:
         name = camel(register["name"])
-        offsets.append(f"localparam int {name}Offset = 32'h{register['offset']:02x};")
+        offsets.append(f"localparam int {name}Offset = 32'h{register['offset']:03x};")
         reset = sum((field["reset"] or 0) << field["low"] for field in register["fields"])
         if reset:
             resets.append(f"localparam int {name}Reset = 32'h{reset:08x};")
@@ -113,16 +117,27 @@ def package(registers: list[dict[str, Any]]) -> str:
                 continue
             single = field["low"] == field["high"]
             bits.append(f"localparam int {name}{camel(field['name'])}{'Bit' if single else 'Lsb'} = {field['low']};")
-            if field["values"]:
+            if field["values"] and not single:
                 bits.append(f"localparam int {name}{camel(field['name'])}Width = {field['high'] - field['low'] + 1};")
                 values.append(f"localparam int {name}{camel(field['name'])}Count = {len(field['values'])};")
             for value, code in field["values"].items():
                 values.append(f"localparam int {name}{camel(value)} = {code};")
+    settings = [register for register in registers if any(field["setting"] for field in register["fields"])]
     sections = {
         "Byte offsets.": [f"localparam int AddressWidth = {address_width(registers)};", *offsets],
+        "Words of a record of contact.": [
+            f"localparam int RecordWords = {sum(register['name'].startswith('RECORD_') for register in registers)};"
+        ],
         "Values after reset that are not zero.": resets,
         "Bits: number of a flag, lowest of a wider field.": bits,
         "Values of a field.": values,
+        "Registers that software alone writes, by number, in words of 32 bits, the lowest first.": settings_of(
+            settings
+        ),
+        "Offsets that can be read, and those that can be written.": [
+            *predicate("is_register", registers),
+            *predicate("is_writable", [r for r in registers if any(f["access"] != "ro" for f in r["fields"])]),
+        ],
     }
     body = "\n\n".join("\n".join(f"  {line}" for line in (f"// {title}", *lines)) for title, lines in sections.items())
     return (
@@ -130,13 +145,49 @@ def package(registers: list[dict[str, Any]]) -> str:
         "// register_map_pkg: offsets, reset values and bits of the AXI4-Lite registers.\n"
         "//\n"
         f"// {WRITTEN_BY}\n\n"
-        f"package register_map_pkg;\n\n{body}\n\nendpackage\n"
+        "`default_nettype none\n\n"
+        f"package register_map_pkg;\n\n{body}\n\nendpackage\n\n"
+        "`default_nettype wire\n"
     )
 
 
+def settings_of(registers: list[dict[str, Any]]) -> list[str]:
+    """Return the declarations of number, offset, bits and reset value of each register with settings."""
+    words: dict[str, list[str]] = {"Offsets": [], "Masks": [], "Resets": []}
+    for register in registers:
+        fields = [field for field in register["fields"] if field["setting"]]
+        mask = sum((1 << field["high"] + 1) - (1 << field["low"]) for field in fields)
+        reset = sum((field["reset"] or 0) << field["low"] for field in fields)
+        words["Offsets"].append(f"{camel(register['name'])}Offset")
+        words["Masks"].append(f"32'h{mask:08x}")
+        words["Resets"].append(f"32'h{reset:08x}")
+    lines = [f"localparam int Settings = {len(registers)};"]
+    lines += [f"localparam int {camel(register['name'])}Setting = {n};" for n, register in enumerate(registers)]
+    for name, values in words.items():
+        listed = ", ".join(reversed(values))
+        lines.append(f"localparam logic [32*Settings-1:0] Setting{name} = {{")
+        lines += [*(f"  {line}" for line in wrapped(listed, 112)), "};"]
+    return lines
+
+
+def predicate(name: str, registers: list[dict[str, Any]]) -> list[str]:
+    """Return a function that is high for the offsets of some registers."""
+    listed = ", ".join(f"{camel(register['name'])}Offset" for register in registers)
+    *lines, last = (f"  {line}" for line in wrapped(listed, 90))
+    return [
+        f"function automatic logic {name}(input logic [31:0] offset);",
+        "  case (offset)",
+        *(f"  {line}" for line in lines),
+        f"  {last}: {name} = 1'b1;",
+        f"    default: {name} = 1'b0;",
+        "  endcase",
+        "endfunction",
+    ]
+
+
 def address_width(registers: list[dict[str, Any]]) -> int:
-    """Return the bits of a byte address: 8, enough for 64 registers, or more for a larger map."""
-    return max(8, max(register["offset"] for register in registers).bit_length())
+    """Return the bits of a byte address: 10, enough for 256 registers, or more for a larger map."""
+    return max(10, max(register["offset"] for register in registers).bit_length())
 
 
 def generated(root: RootNode) -> dict[Path, str]:
@@ -157,6 +208,7 @@ def generated(root: RootNode) -> dict[Path, str]:
     return texts | {
         PACKAGE_MAP: json.dumps(described, indent=1) + "\n",
         ROOT / "hdl" / "registers" / "register_map_pkg.sv": package(registers),
+        wrapper.DEFAULTS: wrapper.package(),
     }
 
 
@@ -171,7 +223,6 @@ def python_layer(folder: Path) -> None:
 
 
 def main() -> None:
-    """Run the command with the arguments of the process."""
     with variables.reported("registers"):
         variables.given(sys.argv[1:], ())
         run()
@@ -186,7 +237,3 @@ def run() -> None:
         print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")
     python_layer(LAYER)
     print(f"wrote {LAYER.relative_to(ROOT)}/{LAYER_NAME}")
-
-
-if __name__ == "__main__":
-    main()

@@ -15,7 +15,6 @@ from __future__ import annotations
 import importlib.metadata
 import json
 import os
-import re
 import shutil
 import sys
 import time
@@ -28,11 +27,12 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import published, repository, results, run_request, variables
+from commands.common import published, repository, run_request, variables
 from commands.common.markdown import table
 from commands.common.signals import threads
 from commands.hardware import synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
+from tactile_depth import files
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import REST_SCENE
@@ -41,6 +41,8 @@ from tactile_depth.tactile_depth import top_parameters
 
 OUT = repository.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
+UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
+SOLVER = "u_poisson.u_solver"
 CONFIGURING = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REFERENCE", "FLOOR"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
@@ -57,13 +59,9 @@ class Target:
 
 
 TARGETS = {
-    "xczu7ev": Target(
-        "XCZU7EV",
-        {"DSP48E2": 1728, "BRAM36": 312, "UltraRAM": 96, "LUT": 230_400, "FF": 460_800},
-    )
+    "xczu7ev": Target("XCZU7EV", {"DSP48E2": 1728, "BRAM36": 312, "UltraRAM": 96, "LUT": 230_400, "FF": 460_800})
 }
 # Cells of the two mappings.
-
 DEVICE_CELLS = {"DSP48E2": "DSP48E2", "URAM288": "UltraRAM"}
 BLOCK_CELLS = {"RAMB36E2": 1.0, "RAMB18E2": 0.5}
 LOGIC_LUTS = ("LUT1", "LUT2", "LUT3", "LUT4", "LUT5", "LUT6", "INV")  # an inverter may go into the LUT it drives
@@ -128,12 +126,7 @@ class Design:
 
 
 def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Request]:
-    """Return target, its name, grids and request; the grids are empty without GRIDS.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return target, its name, grids and request; the grids are empty without GRIDS. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, "OUT"))
     name = values.pop("TARGET", next(iter(TARGETS)))
     if name not in TARGETS:
@@ -147,12 +140,7 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Req
 
 
 def configured(request: run_request.Request) -> tuple[Configuration, Sensor]:
-    """Return the configuration of a request, and the calibration on its grid.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the configuration of a request, and the calibration on its grid. Raises InputError."""
     # A reference frame gives the width of the camera's pixels on the grid, so it is read as a frame too.
     source = run_request.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
     _, calibration, config = synthesis.design(request, source)
@@ -162,10 +150,7 @@ def configured(request: run_request.Request) -> tuple[Configuration, Sensor]:
 def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[run_request.Request, str]]:
     """Return the designs to build, each with the reason why it cannot be built, which is empty for most.
 
-    Raises
-    ------
-    InputError
-        Neither solver has a configuration for one of the grids.
+    Raises InputError: neither solver has a configuration for one of the grids.
     """
     if not grids:
         configured(request)
@@ -186,31 +171,10 @@ def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[ru
     return every
 
 
-def described(config: Configuration) -> dict[str, Any]:
-    """Return a configuration as resources.json states it."""
-    return {
-        "grid": [config.rows, config.columns],
-        "solver": config.solver,
-        "boundary": "neumann" if config.neumann else "dirichlet",
-        "data_width": config.data_width,
-        "coeff_width": config.coefficient_width,
-        "gradient_model": config.gradient_model,
-        "flat_field": config.flat_field,
-        "auto_zero": config.auto_zero,
-    }
-
-
-# Reading the design.
-
-
 def elaborate(config: Configuration, calibration: Sensor, folder: Path) -> tuple[list[str], list[str]]:
     """Return the lines of Yosys that read a design, and all its modules, <core>$<path>.
 
-    Sources and ROMs are written to the folder; <folder>/design.json holds the memories.
-
-    Raises
-    ------
-    RuntimeError
+    Sources and ROMs are written to the folder; <folder>/design.json holds the memories. Raises RuntimeError.
     """
     lines = synthesis.read(folder, config, calibration=calibration, options="--keep-hierarchy")
     script = folder / "elaborate.ys"
@@ -221,11 +185,10 @@ def elaborate(config: Configuration, calibration: Sensor, folder: Path) -> tuple
 
 
 def kept(modules: Sequence[str]) -> list[str]:
-    """Return the modules that keep their boundary: the cores of the top, with those of the solver for the solver."""
-    return [m for m in modules if re.fullmatch(r"(u_solver\.)?u_\w+", path_of(m)) and path_of(m) != "u_solver"]
-
-
-# Mapping.
+    """Return the modules that keep their boundary: the cores in the units and in the solver, and the registers."""
+    containers = {"", *UNITS, SOLVER}
+    paths = {module: path_of(module) for module in modules}
+    return [m for m, path in paths.items() if path not in containers and path.rpartition(".")[0] in containers]
 
 
 def tally(stat: Path) -> dict[str, Counter[str]]:
@@ -241,13 +204,7 @@ def device_counts(cells: Counter[str]) -> dict[str, float]:
 
 
 def logic_counts(cells: Counter[str], modules: Sequence[str]) -> dict[str, float]:
-    """Return LUTs and registers of the mapping to 7-series logic.
-
-    Raises
-    ------
-    RuntimeError
-        A cell has no count here.
-    """
+    """Return LUTs and registers of the mapping to 7-series logic. Raises RuntimeError: a cell has no count here."""
     known = {*LOGIC_LUTS, *SHIFT_LUTS, *MEMORY_LUTS, *REGISTERS, *NO_LUTS, *modules}
     if strange := sorted(cell for cell in cells if cell not in known and not cell.startswith("$")):
         raise RuntimeError(f"Yosys put in cells that commands/hardware/synth.py does not count: {', '.join(strange)}")
@@ -264,11 +221,7 @@ def mapped(
 ) -> tuple[dict[str, Counter[str]], dict[str, Counter[str]]]:
     """Return the cells of each module in the two mappings, which run at the same time.
 
-    The mapping to logic leaves out the modules `boxes`.
-
-    Raises
-    ------
-    RuntimeError
+    The mapping to logic leaves out the modules `boxes`. Raises RuntimeError.
     """
     shutil.copy(Path(__file__).with_name("wide_dsp.v"), folder)
     keep = [f"setattr -mod -set keep_hierarchy 1 {core}" for core in cores]
@@ -299,12 +252,7 @@ def misfit(totals: Mapping[str, float], target: Target) -> str:
 
 
 def synthesize(config: Configuration, calibration: Sensor, target: Target, folder: Path) -> Design:
-    """Return the resources of a design; when its memories do not fit, nothing is mapped.
-
-    Raises
-    ------
-    RuntimeError
-    """
+    """Return the resources of a design; when its memories do not fit, nothing is mapped. Raises RuntimeError."""
     began = time.monotonic()
     lines, modules = elaborate(config, calibration, folder)
     arrays = memories(folder / "design.json")
@@ -314,7 +262,7 @@ def synthesize(config: Configuration, calibration: Sensor, target: Target, folde
 
     def design(totals: dict[str, float], listed: list[Core]) -> Design:
         seconds = round(time.monotonic() - began, 1)
-        return Design(described(config), totals, details, listed, arrays, misfit(totals, target), seconds)
+        return Design(run_request.described(config), totals, details, listed, arrays, misfit(totals, target), seconds)
 
     if misfit(plain, target):
         return design(plain, [])
@@ -334,13 +282,10 @@ def synthesize(config: Configuration, calibration: Sensor, target: Target, folde
     return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]))
 
 
-# Report.
-
-
 def text(design: Design, target: Target) -> str:
     """Return the printed report of one design."""
     cores = [
-        (f"{core.name} ({core.path.removeprefix('u_solver.')})", core.counts) for core in design.cores if core.path
+        (f"{core.name} ({core.path.removeprefix(f'{SOLVER}.')})", core.counts) for core in design.cores if core.path
     ]
     cores += [("between the cores", core.counts) for core in design.cores if not core.path]
     by_core = [
@@ -431,7 +376,7 @@ def run(arguments: list[str]) -> int:
                     keep_sources(folder, config, out)
             document["designs"].append(asdict(built[-1]))
             (work / "resources.json").write_text(json.dumps(document, indent=1) + "\n")
-            results.replace(work, ["resources.json"], out)
+            files.replace(work, ["resources.json"], out)
     if grids:
         head, *rows = grid_rows(document)
         print("\n".join([table(head, rows), *NOTES]))
@@ -445,10 +390,5 @@ def run(arguments: list[str]) -> int:
 
 
 def main() -> None:
-    """Run the command with the arguments of the process."""
     with variables.reported("synth"):
         sys.exit(run(sys.argv[1:]))
-
-
-if __name__ == "__main__":
-    main()

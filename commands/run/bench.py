@@ -13,8 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from commands.common import repository
+from commands.common import repository, wrapper
 from commands.common import simulator as simulation
+from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters, write_roms
@@ -22,6 +23,7 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 BENCH = "frame_bench"
 KINDS = {"pixel": 0, "idle": 1, "sink": 2, "source": 3, "reset": 4, "arm": 5}
 NOTE, USER, LAST = 1 << 27, 1 << 25, 1 << 24
+LINE_BLANKING, FRAME_BLANKING = 144 / 640, 30 / 480  # of an OV7670: 784 x 510 clocks for a picture of 640 x 480
 LARGEST_CODE = 2**31 - 1  # no depth is above it
 
 
@@ -50,32 +52,49 @@ def frame_entries(frames: np.ndarray) -> np.ndarray:
     return entries.reshape(-1)
 
 
+def picture_entries(words: np.ndarray, last_word: int) -> np.ndarray:
+    """Pictures as a camera sends them, uint32 (pictures, rows, columns), with blanking behind rows and before pictures.
+
+    The clocks of the first word and of the one at position `last_word` of a picture are noted.
+    """
+    count, rows, columns = words.shape
+    entries = words.copy()
+    entries[..., -1] |= LAST
+    entries[:, 0, 0] |= USER | NOTE
+    entries.reshape(count, -1)[:, last_word] |= NOTE
+    line = round(LINE_BLANKING * columns)
+    blanked = np.concatenate((entries, np.full((count, rows, 1), entry("idle", line), np.uint32)), axis=-1)
+    frame = entry("idle", round(FRAME_BLANKING * rows) * (columns + line))
+    return np.concatenate((np.full((count, 1), frame, np.uint32), blanked.reshape(count, -1)), axis=-1).reshape(-1)
+
+
+def clocks_of(entries: np.ndarray) -> int:
+    """Clocks that these entries take without gaps."""
+    is_idle = entries >> 28 == KINDS["idle"]
+    return int(np.where(is_idle, entries & 0xFFFFFF, 1).sum())
+
+
 @dataclass(frozen=True)
 class Played:
-    """Recording of the bench.
+    """Recording of the bench."""
 
-    Attributes
-    ----------
-    codes : int32 array, depth codes as they left
-    events : list of tuple
-        Letter and numbers of each, in the order of their clocks: see tb/frame_bench.sv.
-    registers : dict of str to int, as they were at the end
-    """
-
-    codes: np.ndarray
-    events: list[tuple[str, tuple[int, ...]]]
-    registers: dict[str, int]
+    codes: np.ndarray  # int32, as they left
+    events: list[tuple[str, tuple[int, ...]]]  # letter and numbers by clock: see tb/frame_bench.sv
+    registers: dict[str, int]  # at the end
 
     def clocks(self, letter: str) -> list[int]:
         return [numbers[0] for have, numbers in self.events if have == letter]
 
 
-def build(simulator: str, config: Configuration, waves: bool = False) -> Path:
+def build(
+    simulator: str, config: Configuration, waves: bool = False, camera: CameraConfiguration | None = None
+) -> Path:
     """The simulator for a configuration, built once for each state of the sources."""
     bench = repository.ROOT / "tb" / BENCH
     sources = [*repository.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
     parameters = top_parameters(config)
-    key = hashlib.sha256(json.dumps([simulator, waves, parameters, simulation.versions()]).encode())
+    text = wrapper.wrapper("bench", parameters, camera=camera)
+    key = hashlib.sha256(json.dumps([simulator, waves, text, simulation.versions()]).encode())
     for source in (*sources, Path(simulation.__file__)):
         key.update(source.read_bytes())
     folder = simulation.BUILD / "simulators" / key.hexdigest()[:16]
@@ -92,8 +111,8 @@ def build(simulator: str, config: Configuration, waves: bool = False) -> Path:
             simulation.build(
                 simulator,
                 BENCH,
-                sources,
-                parameters,
+                [*sources, wrapper.write(folder, "bench", parameters, camera=camera)],
+                wrapper.grid(parameters),
                 folder,
                 fast=not waves,
                 waves=waves,
@@ -119,15 +138,16 @@ def play(
     seed: int = 1,
     waves: bool = False,
     floor: np.ndarray | None = None,
+    camera: CameraConfiguration | None = None,
 ) -> Played:
     """Play entries in `folder`, from reset on, with `registers` written; then read the registers. `floor`: of
-    `tactile_depth.tactile_depth`.
+    `tactile_depth.tactile_depth`. With a `camera` entries are what it sends.
 
     It ends when the file does and `total_frames` have left, and fails after so many `clocks`.
     """
     write_roms(folder, calibration, config, floor)
     np.asarray(entries, dtype=">u4").tofile(folder / "entries.bin")
-    built = build(simulator, config, waves)
+    built = build(simulator, config, waves, camera)
     registers = dict(registers or {})
     level = registers.get("THRESHOLD", LARGEST_CODE)
     wanted = {

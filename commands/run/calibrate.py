@@ -4,7 +4,8 @@
 The folder PRESSES holds background.png, the presses as PNGs or JPEGs, and presses.csv (press_folder.py). Circles that
 presses.csv does not give are found in the pictures; with CIRCLES=found all are: half a pixel in a radius of 26 is 4 %
 of the cap's height. HELD_OUT=each measures every whole press by a fit to all others, HELD_OUT=second every second one
-by the fit that is written. models/tactile_depth/fitting.py says how the fit is made.
+by the fit that is written. With CAMERA the pictures are converted to what a camera of this pixel format sends, and are
+taken as its hardware takes them. models/tactile_depth/fitting.py says how the fit is made.
 """
 
 from __future__ import annotations
@@ -21,15 +22,17 @@ import numpy as np
 from tqdm import tqdm
 
 from commands.common import repository, variables
+from commands.common.run_request import camera_choice
 from commands.run import draw
 from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
+from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.errors import InputError
 from tactile_depth.evaluation import slopes_and_depths
 from tactile_depth.fitting import DEFAULT_BITS, Fit, fit_presses
 from tactile_depth.presses import GridPresses, View, camera_pitch_mm, gather, to_grid
 from tactile_depth.sensor import BITS_PER_CHANNEL, MODELS
 
-VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "HELD_OUT", "EXPOSURE_US", "OUT")
+VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "HELD_OUT", "EXPOSURE_US", "CAMERA", "BAYER", "OUT")
 PRESSES_DRAWN = 3
 PUBLIC_PRESSES = (
     "give PRESSES=<folder with background.png, pictures of ball presses and presses.csv>; real ones are in the public "
@@ -49,39 +52,36 @@ class Request:
     find_circles: bool
     each_in_turn: bool
     exposure_us: float | None
+    camera: CameraChoice | None
     out: Path | None
 
 
 def parse(arguments: list[str]) -> Request:
-    """Read KEY=VALUE arguments; an empty value means the default.
-
-    Raises
-    ------
-    InputError
-    """
-    given = defaultdict(str, variables.given(arguments, VARIABLES))
+    """Read KEY=VALUE arguments; an empty value means the default. Raises InputError."""
+    values = defaultdict(str, variables.given(arguments, VARIABLES))
     models = {"": MODELS, "both": MODELS, **{model: (model,) for model in MODELS}}
-    if given["GRADIENT"] not in models:
-        raise InputError(f"GRADIENT={given['GRADIENT']}: accepted are {', '.join(filter(None, models))}")
-    if given["CIRCLES"] not in ("", "table", "found"):
+    if values["GRADIENT"] not in models:
+        raise InputError(f"GRADIENT={values['GRADIENT']}: accepted are {', '.join(filter(None, models))}")
+    if values["CIRCLES"] not in ("", "table", "found"):
         raise InputError(
-            f"CIRCLES={given['CIRCLES']}: accepted are table (those of presses.csv) and found (in the pictures)"
+            f"CIRCLES={values['CIRCLES']}: accepted are table (those of presses.csv) and found (in the pictures)"
         )
-    if given["HELD_OUT"] not in ("", "second", "each"):
+    if values["HELD_OUT"] not in ("", "second", "each"):
         raise InputError(
-            f"HELD_OUT={given['HELD_OUT']}: accepted are second and each: presses that are left out of the fit"
+            f"HELD_OUT={values['HELD_OUT']}: accepted are second and each: presses that are left out of the fit"
         )
-    out = Path(given["OUT"]) if given["OUT"] else None
+    out = Path(values["OUT"]) if values["OUT"] else None
     if out is not None and out.suffix != ".npz":
         raise InputError(f"OUT={out}: give the name of an .npz file")
     return Request(
-        Path(given["PRESSES"]) if given["PRESSES"] else None,
-        models[given["GRADIENT"]],
-        variables.number(given, "PITCH", None, *PIXEL_PITCHES_MM, float),
-        variables.number(given, "BITS", DEFAULT_BITS, *BITS_PER_CHANNEL),
-        given["CIRCLES"] == "found",
-        given["HELD_OUT"] == "each",
-        variables.number(given, "EXPOSURE_US", None, 1e-3, LONGEST_EXPOSURE_US, float),
+        Path(values["PRESSES"]) if values["PRESSES"] else None,
+        models[values["GRADIENT"]],
+        variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float),
+        variables.number(values, "BITS", DEFAULT_BITS, *BITS_PER_CHANNEL),
+        values["CIRCLES"] == "found",
+        values["HELD_OUT"] == "each",
+        variables.number(values, "EXPOSURE_US", None, 1e-3, LONGEST_EXPOSURE_US, float),
+        camera_choice(values),
         out,
     )
 
@@ -89,10 +89,7 @@ def parse(arguments: list[str]) -> Request:
 def data_folder() -> Path:
     """Return the folder of real presses: `gelslam/` in `TACTILE_DATA`, or in ../shared/data beside the repository.
 
-    Raises
-    ------
-    InputError
-        It holds no presses.csv.
+    Raises InputError: it holds no presses.csv.
     """
     beside = repository.ROOT.parent / "shared" / "data"
     folder = Path(os.environ.get("TACTILE_DATA") or beside) / "gelslam"
@@ -108,7 +105,7 @@ def run(request: Request) -> int:
     check_writable(out)
     pictures = gather(folder)
     pitch_mm = camera_pitch_mm(pictures, request.pitch_mm)
-    presses = to_grid(pictures, pitch_mm, request.find_circles, compare_circles=True)
+    presses = to_grid(pictures, pitch_mm, request.find_circles, compare_circles=True, choice=request.camera)
     for note in presses.notes:
         print(f"make calibrate: {note}", file=sys.stderr)
     fit = fit_presses(
@@ -208,7 +205,3 @@ def _progress(views: list[View]) -> Iterable[View]:
 def main() -> None:
     with variables.reported("calibrate"):
         sys.exit(run(parse(sys.argv[1:])))
-
-
-if __name__ == "__main__":
-    main()

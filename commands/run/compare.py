@@ -17,18 +17,11 @@ OF_COLOURS = ("flat_field", "quadratic_gradient")  # nodes before the solver, wh
 
 @dataclass(frozen=True)
 class Difference:
-    """Codes that differ, in the order of depth.npy: frames, rows and columns count from 0.
+    """Codes that differ, in the order of depth.npy: frames, rows and columns count from 0."""
 
-    Attributes
-    ----------
-    differing : bool array (frames, rows, columns)
-    codes, expected : int
-        The first differing code, and the one of the model; 0 when all are equal.
-    """
-
-    differing: np.ndarray
-    code: int
-    expected: int
+    differing: np.ndarray  # bool (frames, rows, columns)
+    code: int  # the first differing one; 0 when all are equal
+    expected: int  # of the model
 
     @property
     def count(self) -> int:

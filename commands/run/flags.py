@@ -16,16 +16,10 @@ from tactile_depth.sensor import Sensor
 
 @dataclass(frozen=True)
 class Flags:
-    """Flagged pixels of frames, bool arrays (frames, rows, cols).
+    """Flagged pixels of frames, bool arrays (frames, rows, cols)."""
 
-    Attributes
-    ----------
-    dark : colour was taken from the pixel before, because the reference is too dark there
-    outside : the pixel is not dark, and its slope is steeper than any in the fit of the calibration
-    """
-
-    dark: np.ndarray
-    outside: np.ndarray
+    dark: np.ndarray  # the reference is too dark there, so the colour is that of the pixel before
+    outside: np.ndarray  # not dark, and the slope is steeper than any in the fit of the calibration
 
     def report(self, repeat: int) -> dict[str, list[int]]:
         """Return the number of flagged pixels of each frame, the sequence `repeat` times."""
@@ -51,13 +45,7 @@ class Flags:
 
 
 def flags(frames: np.ndarray, calibration: Sensor, config: Configuration, reference_name: str | None) -> Flags:
-    """Flag pixels of frames, uint8 (frames, rows, cols, 3).
-
-    Raises
-    ------
-    InputError
-        The reference leaves nothing.
-    """
+    """Flag pixels of frames, uint8 (frames, rows, cols, 3). Raises InputError: the reference leaves nothing."""
     dark = np.zeros(frames.shape[:-1], bool)
     if config.flat_field:
         gains = reference_gains(calibration, config)

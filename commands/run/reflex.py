@@ -28,37 +28,16 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, published, repository, results, variables
+from commands.common import markdown, published, repository, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
-from commands.common.run_request import CONTACT_THRESHOLD
+from commands.common.run_request import CONTACT_THRESHOLD, threshold_code
 from commands.common.signals import threads
 from commands.run import bench, reflex_picture
-from commands.run.reflex_model import (
-    CAMERA_BYTES,
-    EXPOSURE,
-    FRAME_MS,
-    HOST_NAMES,
-    NEAR_NAMES,
-    SPEED_MM_S,
-    USB_BYTES_PER_MS,
-    Draws,
-    Request,
-    Setup,
-    Times,
-    calibration_on,
-    delays,
-    draw,
-    in_software,
-    picture,
-    rank_sum,
-    sensitivity,
-    spacing,
-    statistics,
-    times,
-    within_published,
-)
+from commands.run import reflex_model as model
+from commands.run.reflex_model import Draws, Request, Setup, Times
 from commands.run.reflex_tables import sentences, tables
+from tactile_depth import files
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.latency import last_pixel_to_first_depth
@@ -72,37 +51,29 @@ DECIDING_CLOCKS = 1  # from the deciding depth's leaving to `contact`
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default.
-
-    Raises
-    ------
-    InputError
-    """
+    """KEY=VALUE arguments to a Request; an empty value means the default. Raises InputError."""
     accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "OUT")
-    given = variables.given(arguments, accepted)
-    number = partial(variables.number, given)
+    values = variables.given(arguments, accepted)
+    number = partial(variables.number, values)
     request = Request(
         size=number("N", 128, *COLUMNS["spectral"]),
         clock_mhz=number("CLOCK_MHZ", published.CLOCK_MHZ, 0.5, 400, float),
-        speed=number("SPEED", SPEED_MM_S, 5, 200, float),
+        speed=number("SPEED", model.SPEED_MM_S, 5, 200, float),
         trials=number("TRIALS", published.REFLEX["near"]["trials"], 2, 10_000),
         host_trials=number("HOST_TRIALS", published.REFLEX["host"]["trials"], 2, 10_000),
         seed=number("SEED", 1, 0, 10**9),
-        simulator=given.get("SIM", simulation.SIMULATORS[0]),
-        out=Path(given.get("OUT", DEFAULT_OUT)),
+        simulator=values.get("SIM", simulation.SIMULATORS[0]),
+        out=Path(values.get("OUT", DEFAULT_OUT)),
     )
     for solver in COLUMNS:
         Configuration(columns=request.size, solver=solver)
-    least = request.size**2 / FRAME_MS["near"] / 1000
+    least = request.size**2 / model.FRAME_MS["near"] / 1000
     if request.clock_mhz < least:
         raise InputError(
             f"CLOCK_MHZ={request.clock_mhz:g}: the pixels of {request.size} x {request.size} at "
-            f"{1000 / FRAME_MS['near']:g} frames/s come faster: accepted is {least:.4g} and more, or a smaller N"
+            f"{1000 / model.FRAME_MS['near']:g} frames/s come faster: accepted is {least:.4g} and more, or a smaller N"
         )
     return request
-
-
-# Frames.
 
 
 @dataclass(frozen=True)
@@ -128,28 +99,15 @@ def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
             return
 
 
-# Near the sensor.
-
-
 @dataclass(frozen=True)
 class Decision:
-    """Decision of one trial as seen at the pins, in clocks.
+    """Decision of one trial at the pins, in clocks."""
 
-    Attributes
-    ----------
-    frame : int
-        The first after which `contact` rose; 0 is the first whose exposure ended after the contact.
-    first_pixel_to_contact, last_pixel_to_contact, last_pixel_to_first_depth : int
-    place : int
-        Depths of the frame that left before the deciding one.
-    deciding_to_contact : int
-    """
-
-    frame: int
+    frame: int  # the first after which `contact` rose; 0 is the first whose exposure ended after the contact
     first_pixel_to_contact: int
     last_pixel_to_contact: int
     last_pixel_to_first_depth: int
-    place: int
+    place: int  # depths of the frame that left before the deciding one
     deciding_to_contact: int
 
 
@@ -167,7 +125,7 @@ class Loop:
 
 def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
     """Return the entries for the bench and the smallest number of clocks they take."""
-    gap, period = spacing(request)
+    gap, period = model.spacing(request)
     parts: list[np.ndarray] = []
     clocks = 0
     for one, frame in zip(sent, pixels, strict=True):
@@ -194,7 +152,7 @@ def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration)
             deciding[index] = numbers[0]
         elif letter == "c":
             contact[index] = numbers[0]
-    found: list[Decision] = []
+    contacts: list[Decision] = []
     faults = []
     expected = last_pixel_to_first_depth(config)
     decided: set[int] = set()
@@ -212,10 +170,10 @@ def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration)
         clock, above = contact[index], deciding.get(index, contact[index])
         if clock - above != DECIDING_CLOCKS:
             faults.append(f"trial {one.trial}: `contact` came {clock - above} clocks after the deciding depth")
-        found.append(Decision(one.frame, clock - first, clock - last, depth - last, above - depth, clock - above))
+        contacts.append(Decision(one.frame, clock - first, clock - last, depth - last, above - depth, clock - above))
     for trial in sorted({one.trial for one in sent} - decided):
         faults.append(f"trial {trial}: `contact` never rose")
-    return found, faults
+    return contacts, faults
 
 
 def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
@@ -223,11 +181,11 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
     sent = [one for trial in range(request.trials) for one in sequence(setup, draws, trial)]
     pixels = np.stack(
         [
-            picture(setup, draws, one.trial, one.frame, request.size)
+            model.picture(setup, draws, one.trial, one.frame, request.size)
             for one in tqdm(sent, desc="rendering", unit="frame", leave=False, disable=None)
         ]
     )
-    calibration = calibration_on(request.size)
+    calibration = model.calibration_on(request.size)
     played_entries, clocks = entries(request, sent, pixels)
     configs = [Configuration(columns=request.size, rows=request.size, solver=solver) for solver in COLUMNS]
     for config in configs:
@@ -264,28 +222,31 @@ def examine(
     config: Configuration, played: bench.Played, sent: list[Sent], pixels: np.ndarray, calibration: Sensor
 ) -> Loop:
     codes = played.codes.reshape(len(sent), config.rows, config.columns)
-    found, faults = decisions(played, sent, config)
+    decided, faults = decisions(played, sent, config)
     if not (codes == tactile_depth(pixels, calibration, config)).all():
         faults.append("RTL differs from the model")
-    return Loop(config, sent, pixels, codes, found, [f"{config.solver}, {fault}" for fault in faults])
+    return Loop(config, sent, pixels, codes, decided, [f"{config.solver}, {fault}" for fault in faults])
 
 
-def threshold_code(config: Configuration) -> int:
-    return round(CONTACT_THRESHOLD * config.rows / config.depth_lsb_px)
+def described(path: Times) -> dict[str, Any]:
+    """Return the statistics of a path and of its parts."""
+    parts = {name: model.statistics(part) for name, part in path.parts.items() if part.any()}
+    return {"command": model.statistics(path.command), "motion": model.statistics(path.motion), "parts": parts}
 
 
 def measure(request: Request) -> dict[str, Any]:
     """Measure everything, and return the document that reflex.json holds."""
-    gap, _ = spacing(request)
+    gap, _ = model.spacing(request)
     clocks_per_ms = 1000 * request.clock_mhz
     threshold = CONTACT_THRESHOLD * SENSOR_WIDTH_MM
     read_out = gap * (request.size**2 - 1) / clocks_per_ms
-    near = Setup(
-        request.speed, threshold, FRAME_MS["near"], EXPOSURE, read_out=read_out / FRAME_MS["near"], waiting=0, wake_up=0
-    )
-    host = Setup(request.speed, threshold, FRAME_MS["host"], EXPOSURE, transfer=CAMERA_BYTES / USB_BYTES_PER_MS)
-    near_draws, host_draws = draw(request.trials, request.seed, "near"), draw(request.host_trials, request.seed, "host")
-
+    frame_ms, press = model.FRAME_MS, (request.speed, threshold)
+    transfer = model.CAMERA_BYTES / model.USB_BYTES_PER_MS
+    share = read_out / frame_ms["near"]
+    near = Setup(*press, frame_ms["near"], model.EXPOSURE, read_out=share, waiting=0, wake_up=0)
+    host = Setup(*press, frame_ms["host"], model.EXPOSURE, transfer=transfer)
+    near_draws = model.draw(request.trials, request.seed, "near")
+    host_draws = model.draw(request.host_trials, request.seed, "host")
     load = os.getloadavg()[0]
     loops = loop(request, near, near_draws)
     faults = [fault for one in loops for fault in one.faults]
@@ -300,25 +261,23 @@ def measure(request: Request) -> dict[str, Any]:
         # The clock counted from the first pixel on says all; `times` has its read-out apart.
         pipeline = np.array([d.first_pixel_to_contact for d in one.decisions]) / clocks_per_ms - read_out
         bases[one.config.solver] = (frames, pipeline, none)
-        near_times[one.config.solver] = times(near, near_draws, *bases[one.config.solver])
-    host_base = in_software(host, host_draws, request.size, "host")
-    host_times = times(host, host_draws, *host_base)
+        near_times[one.config.solver] = model.times(near, near_draws, *bases[one.config.solver])
+    host_base = model.in_software(host, host_draws, request.size, "host")
+    host_times = model.times(host, host_draws, *host_base)
     for one in loops:
-        found = near_times[one.config.solver]
+        measured = near_times[one.config.solver]
         solvers[one.config.solver] = {
-            "command": statistics(found.command),
-            "motion": statistics(found.motion),
-            "command_against_host": rank_sum(found.command, host_times.command),
-            "motion_against_host": rank_sum(found.motion, host_times.motion),
-            "within_published": within_published(statistics(found.motion)),
-            "parts": {name: statistics(part) for name, part in found.parts.items() if part.any()},
+            **described(measured),
+            "command_against_host": model.rank_sum(measured.command, host_times.command),
+            "motion_against_host": model.rank_sum(measured.motion, host_times.motion),
+            "within_published": model.within_published(model.statistics(measured.motion)),
             "trials": [
                 {**asdict(decision), "command_ms": float(command), "motion_ms": float(motion)}
-                for decision, command, motion in zip(one.decisions, found.command, found.motion, strict=True)
+                for decision, command, motion in zip(one.decisions, measured.command, measured.motion, strict=True)
             ],
         }
     first = loops[0].config.solver
-    software, _, _ = in_software(near, near_draws, request.size, "near, in software")
+    software, _, _ = model.in_software(near, near_draws, request.size, "near, in software")
     document = {
         "grid": [request.size, request.size],
         "clock_mhz": request.clock_mhz,
@@ -329,12 +288,10 @@ def measure(request: Request) -> dict[str, Any]:
         "machine": machine(),
         "load_before": load,
         "published": published.REFLEX,
-        "delays": [asdict(delay) for delay in delays(request, near, host)],
+        "delays": [asdict(delay) for delay in model.delays(request, near, host)],
         "near": solvers,
         "host": {
-            "command": statistics(host_times.command),
-            "motion": statistics(host_times.motion),
-            "parts": {name: statistics(part) for name, part in host_times.parts.items() if part.any()},
+            **described(host_times),
             "trials": [
                 {"command_ms": float(command), "motion_ms": float(motion)}
                 for command, motion in zip(host_times.command, host_times.motion, strict=True)
@@ -344,28 +301,28 @@ def measure(request: Request) -> dict[str, Any]:
         "same_frame_by_double_precision": int((software == bases[first][0]).sum()),
         "difference": difference(solvers[first], near),
         "sensitivity": {
-            "near": sensitivity(near, near_draws, request.size, bases[first], NEAR_NAMES),
-            "host": sensitivity(host, host_draws, request.size, host_base, HOST_NAMES),
+            "near": model.sensitivity(near, near_draws, request.size, bases[first], model.NEAR_NAMES),
+            "host": model.sensitivity(host, host_draws, request.size, host_base, model.HOST_NAMES),
         },
     }
     return document
 
 
 def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
-    """Where in the frame that leaves the deciding depth lies, and what the earlier of two starts is worth."""
+    """Position of the deciding depth in the frame that leaves, and the gain from the earlier of the two starts."""
     rows: dict[str, Any] = {}
     for one in loops:
         rows[one.config.solver] = {
             "last_pixel_to_first_depth": one.decisions[0].last_pixel_to_first_depth,
-            "place": statistics(np.array([d.place for d in one.decisions])),
-            "last_pixel_to_contact": statistics(np.array([d.last_pixel_to_contact for d in one.decisions])),
+            "place": model.statistics(np.array([d.place for d in one.decisions])),
+            "last_pixel_to_contact": model.statistics(np.array([d.last_pixel_to_contact for d in one.decisions])),
             "deciding_to_contact": sorted({d.deciding_to_contact for d in one.decisions}),
         }
     spectral, tridiagonal = (
         np.array([d.last_pixel_to_contact for one in loops if one.config.solver == solver for d in one.decisions])
         for solver in ("spectral", "tridiagonal")
     )
-    earlier = statistics(spectral - tridiagonal)
+    earlier = model.statistics(spectral - tridiagonal)
     earlier["mean_us"] = earlier["mean"] / request.clock_mhz
     return {"solvers": rows, "tridiagonal_earlier_clocks": earlier}
 
@@ -407,24 +364,18 @@ def show(document: dict[str, Any]) -> str:
 def run(request: Request) -> None:
     """Measure, print, and write reflex.json and reflex.png, both or neither.
 
-    Raises
-    ------
-    InputError, Mismatch, RuntimeError
+    Raises InputError, Mismatch or RuntimeError.
     """
     simulation.check(request.simulator)
-    with results.workspace(request.out, RESULTS) as work:
+    with files.workspace(request.out, RESULTS) as work:
         document = measure(request)
         print(show(document))
         (work / "reflex.json").write_text(json.dumps(document, indent=1) + "\n")
         reflex_picture.plot(work / "reflex.png", document)
-        results.replace(work, RESULTS, request.out)
+        files.replace(work, RESULTS, request.out)
     print(f"results: {os.path.relpath(request.out)}")
 
 
 def main() -> None:
     with variables.reported("reflex", "nothing was written"):
         run(parse(sys.argv[1:]))
-
-
-if __name__ == "__main__":
-    main()

@@ -46,39 +46,22 @@ class Delay:
 
 @dataclass(frozen=True)
 class Setup:
-    """A path in numbers. Each may be scaled by itself, which is what the sensitivity table does.
+    """Delays of a path in ms; the sensitivity table scales each of them alone."""
 
-    Attributes
-    ----------
-    speed : float, mm/s
-    threshold : float, mm
-    frame : float, ms
-        From one exposure to the next.
-    exposure : float
-        Share of the frame time, at its end.
-    read_out : float
-        Share of the frame time from the end of the exposure to the last pixel.
-    transfer : float, ms
-        What a link takes in its place.
-    waiting, compute, wake_up : float
-        Scales of what was drawn or measured in each trial.
-    servo, servo_spread : float, ms
-    """
-
-    speed: float
-    threshold: float
-    frame: float
-    exposure: float
-    read_out: float = 0.0
-    transfer: float = 0.0
-    waiting: float = 1.0
+    speed: float  # mm/s
+    threshold: float  # mm
+    frame: float  # from one exposure to the next
+    exposure: float  # share of the frame time, at its end
+    read_out: float = 0.0  # share of the frame time from the end of the exposure to the last pixel
+    transfer: float = 0.0  # of a link, in place of the read-out
+    waiting: float = 1.0  # this and the next two scale what is drawn or measured in each trial
     compute: float = 1.0
     wake_up: float = 1.0
     servo: float = SERVO_MS
     servo_spread: float = SERVO_SPREAD_MS
 
     def exposed(self, phase: float, frame: int) -> float:
-        """When the exposure of a frame ends, ms after the contact; number 0 is the first to end after it."""
+        """End of the exposure of a frame, ms after the contact; frame 0 is the first that ends after it."""
         return (phase + frame) * self.frame
 
     def middle(self, phase: float, frame: int) -> float:
@@ -92,20 +75,12 @@ class Setup:
 
 @dataclass(frozen=True)
 class Draws:
-    """Random draws for the trials of a path, one entry per trial.
+    """Random draws for the trials of a path, one entry per trial."""
 
-    Attributes
-    ----------
-    phase : float array, shares of a frame time from the contact to the end of the exposure
-    waiting : int array, finished frames that wait in the driver before this one
-    servo : float array, standard normal
-    noise : int array, seeds of the camera's noise
-    """
-
-    phase: np.ndarray
-    waiting: np.ndarray
-    servo: np.ndarray
-    noise: np.ndarray
+    phase: np.ndarray  # share of a frame time from the contact to the end of the exposure
+    waiting: np.ndarray  # finished frames that wait in the driver before this one
+    servo: np.ndarray  # standard normal
+    noise: np.ndarray  # seeds of the camera's noise
 
 
 def draw(trials: int, seed: int, path: str) -> Draws:
@@ -160,7 +135,7 @@ class Times:
 
 
 def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, wake_up: np.ndarray) -> Times:
-    """From the deciding frames to motion.
+    """Times from the deciding frames to motion.
 
     Parameters
     ----------
@@ -183,13 +158,7 @@ def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, w
 
 
 def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: Sensor) -> tuple[int, float, float]:
-    """The deciding frame by double precision; how long its reconstruction took, and how late a sleep before it ended.
-
-    Returns
-    -------
-    frame : int
-    compute, wake_up : float, ms
-    """
+    """Deciding frame in double precision, time of its reconstruction, and delay of the end of a sleep before it, ms."""
     for frame in itertools.count():
         if 2 * setup.depth(draws.phase[trial], frame) < setup.threshold:
             continue  # see `sequence`
@@ -209,8 +178,8 @@ def in_software(setup: Setup, draws: Draws, size: int, name: str) -> tuple[np.nd
     calibration = calibration_on(size)
     reference.depth(picture(setup, draws, 0, 0, size), calibration)  # the first is slower: imports, plans
     trials = tqdm(range(len(draws.phase)), desc=name, unit="trial", leave=False, disable=None, delay=2)
-    found = [first_above(setup, draws, trial, size, calibration) for trial in trials]
-    frames, compute, wake_up = (np.array(values) for values in zip(*found, strict=True))
+    decided = [first_above(setup, draws, trial, size, calibration) for trial in trials]
+    frames, compute, wake_up = (np.array(values) for values in zip(*decided, strict=True))
     return frames, compute, wake_up
 
 
@@ -244,13 +213,8 @@ def sensitivity(
 
 
 def statistics(values: np.ndarray) -> dict[str, Any]:
-    return {
-        "trials": len(values),
-        "mean": float(values.mean()),
-        "sd": float(values.std(ddof=1)),
-        "min": float(values.min()),
-        "max": float(values.max()),
-    }
+    numbers = {"mean": values.mean(), "sd": values.std(ddof=1), "min": values.min(), "max": values.max()}
+    return {"trials": len(values), **{name: float(value) for name, value in numbers.items()}}
 
 
 def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
@@ -280,12 +244,7 @@ def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
             f"constant, {near.read_out * near.frame:.3f} ms",
             f"assumption: all of the frame, {gap} clocks a pixel",
         ),
-        Delay(
-            "near",
-            "pipeline",
-            "the clocks counted in each trial",
-            f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)",
-        ),
+        Delay("near", "pipeline", "the clocks counted in each trial", f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)"),
         Delay(
             "both", "servo", f"normal, {near.servo:g} +- {near.servo_spread:g} ms", "published; its shape: assumption"
         ),

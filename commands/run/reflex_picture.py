@@ -19,15 +19,15 @@ MARKERS = {"near": "o", "host": "s"}
 def plot(path: Path, document: dict[str, Any]) -> None:
     """Contact to command and contact to motion of every trial, and the published mean, deviation and range."""
     rows: list[tuple[str, str, dict[str, Any] | None]] = []
-    for solver, found in document["near"].items():
-        rows.append((f"near the sensor,\n{solver}", "near", found))
+    for solver, result in document["near"].items():
+        rows.append((f"near the sensor,\n{solver}", "near", result))
     rows += [("near the sensor,\npublished", "near", None), ("host", "host", document["host"])]
     rows.append(("host,\npublished", "host", None))
     figure, axes = plt.subplots(1, 2, figsize=(12, 4.2), layout="constrained", sharex=True, sharey=True)
     jitter = np.random.default_rng(0)
     for axis, key in zip(axes, ("command", "motion"), strict=True):
-        for place, (_, kind, found) in enumerate(rows):
-            if found is None:
+        for place, (_, kind, result) in enumerate(rows):
+            if result is None:
                 published = document["published"][kind]
                 mean, spread = published[key]
                 low, high = published["range"]
@@ -35,10 +35,10 @@ def plot(path: Path, document: dict[str, Any]) -> None:
                 if key == "motion":
                     axis.plot([low, high], [place, place], color="black", linewidth=0.8, linestyle=":")
             else:
-                values = [trial[f"{key}_ms"] for trial in found["trials"]]
+                values = [trial[f"{key}_ms"] for trial in result["trials"]]
                 at = place + jitter.uniform(-0.28, 0.28, len(values))
                 axis.scatter(values, at, s=9, alpha=0.45, color=COLOURS[kind], marker=MARKERS[kind], linewidths=0)
-                mean, spread = found[key]["mean"], found[key]["sd"]
+                mean, spread = result[key]["mean"], result[key]["sd"]
                 count = f"n = {len(values)}"
             axis.errorbar(mean, place, xerr=spread, color="black", marker="D", markersize=4, capsize=5)
             side = "center" if kind == "host" else "left"  # there is no room left of the sensor's

@@ -6,9 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from commands.run.reflex_model import (
-    SCALES,
-)
+from commands.run.reflex_model import SCALES
 
 
 def plus_minus(values: dict[str, Any]) -> str:
@@ -20,17 +18,17 @@ def sub_frame_rows(document: dict[str, Any]) -> list[tuple[str, ...]]:
     clock = document["clock_mhz"]
     pixels = math.prod(document["grid"])
     places: list[tuple[str, ...]] = []
-    for solver, found in document["sub_frame"]["solvers"].items():
-        place, contact = found["place"], found["last_pixel_to_contact"]
+    for solver, result in document["sub_frame"]["solvers"].items():
+        place, contact = result["place"], result["last_pixel_to_contact"]
         places.append(
             (
                 solver,
-                f"{found['last_pixel_to_first_depth']:,}",
+                f"{result['last_pixel_to_first_depth']:,}",
                 f"{place['mean']:,.0f} ({place['min']:,.0f} to {place['max']:,.0f})",
                 f"{100 * place['mean'] / pixels:.0f} %",
                 f"{contact['mean']:,.0f} ({contact['min']:,.0f} to {contact['max']:,.0f})",
                 f"{contact['mean'] / clock:.1f}",
-                ", ".join(map(str, found["deciding_to_contact"])),
+                ", ".join(map(str, result["deciding_to_contact"])),
             )
         )
     return places
@@ -107,9 +105,9 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
 
 def sentences(document: dict[str, Any]) -> list[str]:
     """Return sentences that sum up the tables."""
-    first, found = next(iter(document["near"].items()))
+    first, result = next(iter(document["near"].items()))
     earlier, why = document["sub_frame"]["tridiagonal_earlier_clocks"], document["difference"]
-    share = 100 * earlier["mean_us"] / 1000 / found["command"]["mean"]
+    share = 100 * earlier["mean_us"] / 1000 / result["command"]["mean"]
     verdict = "within" if all(one["within_published"] for one in document["near"].values()) else "NOT within"
     mean, spread = document["published"]["near"]["command"]
 
@@ -127,5 +125,5 @@ def sentences(document: dict[str, Any]) -> list[str]:
         f"the frame clock alone gives a spread of {why['spread_of_frame_clock_ms']:.2f} ms; of the published {spread} "
         f"ms {why['spread_left_ms']:.1f} ms are left to what differs from press to press and is not simulated",
         f"double precision decides in the same frame in {document['same_frame_by_double_precision']} of "
-        f"{found['motion']['trials']} trials ({first})",
+        f"{result['motion']['trials']} trials ({first})",
     ]

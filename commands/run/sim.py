@@ -13,22 +13,24 @@ import sys
 import threading
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, results, variables
+from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
-from commands.common.run_request import CONTACT_THRESHOLD, Request, configure, load_sensor, parse
+from commands.common.run_request import ACCEPTED, CAMERA, Request, check_grid, configure, load_sensor, parse
 from commands.run import bench
 from commands.run.compare import compare, warnings
 from commands.run.draw import draw_depth
 from commands.run.flags import flags
 from commands.run.sim_table import check_registers, coefficient_words, measure, table
-from tactile_depth import latency, reference
+from tactile_depth import files, latency, reference
 from tactile_depth.accuracy import errors
 from tactile_depth.calibration.auto_zero import exact_zero
 from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
+from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
@@ -42,35 +44,32 @@ DUMPS = (".vcd", ".fst")
 
 
 def untouched(request: Request, frames: Frames) -> np.ndarray | None:
-    """Frames of `FLOOR`, a power of two of them, uint8 (n, rows, columns, 3); None without it.
-
-    Raises
-    ------
-    InputError
-    """
+    """Frames of `FLOOR`, a power of two of them, uint8 (n, rows, columns, 3); None without it. Raises InputError."""
     if request.floor is None:
         return None
     reference = request.reference if request.floor in SCENES else None
-    rest = load_frames(request.floor, frames.pixels.shape[1:3], reference, request.seed)
-    if rest.pixel_scale != frames.pixel_scale:
+    no_contact = load_frames(request.floor, frames.pixels.shape[1:3], reference, request.seed, camera=request.camera)
+    if no_contact.pixel_scale != frames.pixel_scale:
         raise InputError(f"FLOOR={request.floor}: not of the size of {frames.name}: give frames of the same camera")
-    return rest.pixels[: 1 << min(LARGEST_LOG2, len(rest.pixels).bit_length() - 1)]
+    return no_contact.pixels[: 1 << min(LARGEST_LOG2, len(no_contact.pixels).bit_length() - 1)]
 
 
-def floor_of(rest: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray | None:
+def floor_of(no_contact: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray | None:
     """Return the zero offset that a capture of these frames measures, codes (node rows, node columns)."""
-    if rest is None:
+    if no_contact is None:
         return None
-    return captured_floor(tactile_depth(rest, calibration, replace(config, auto_zero=False)), config)
+    return captured_floor(tactile_depth(no_contact, calibration, replace(config, auto_zero=False)), config)
 
 
-def exact_depth(frames: np.ndarray, rest: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray:
+def exact_depth(
+    frames: np.ndarray, no_contact: np.ndarray | None, calibration: Sensor, config: Configuration
+) -> np.ndarray:
     """Depth in double precision, grid pixels, rows from the top."""
     depth = reference.depth_of(frames, calibration, config)
-    if rest is None:
+    if no_contact is None:
         return depth
     down = -1 if config.solver == "tridiagonal" else 1  # blocks are counted as depth leaves
-    at_rest = reference.depth_of(rest, calibration, config)[..., ::down, :]
+    at_rest = reference.depth_of(no_contact, calibration, config)[..., ::down, :]
     return exact_zero(depth[..., ::down, :], at_rest, config)[..., ::down, :]
 
 
@@ -85,8 +84,14 @@ def simulate(
     """Run the bench in `folder`, with a bar that shows how far it is."""
     total = len(frames.pixels) * request.repeat
     pixels = config.rows * config.columns
+    if frames.camera is None or frames.words is None:
+        entries = bench.frame_entries(frames.pixels)
+        clocks = (total + 4) * pixels
+    else:
+        entries = bench.picture_entries(frames.words, frames.camera.last_word)
+        clocks = 4 * pixels + request.repeat * bench.clocks_of(entries)
     # Twice the clocks that gaps and stalls make likely: a pipeline that hangs ends with a failure.
-    clocks = int(2 * (total + 4) * pixels / (1 - request.gaps) / (1 - request.stalls))
+    clocks = int(2 * clocks / (1 - request.gaps) / (1 - request.stalls))
     profiles = [
         bench.entry(side, bench.chance(no)) for side, no in (("sink", request.stalls), ("source", request.gaps))
     ]
@@ -99,7 +104,7 @@ def simulate(
                 if depth.exists():
                     bar.update(min(depth.stat().st_size // (4 * pixels), total) - bar.n)
 
-    bench.build(request.simulator, config, request.waves)
+    bench.build(request.simulator, config, request.waves, frames.camera)
     watcher = threading.Thread(target=watch)
     watcher.start()
     try:
@@ -107,15 +112,16 @@ def simulate(
             request.simulator,
             config,
             calibration,
-            np.concatenate([np.array(profiles, np.uint32), bench.frame_entries(frames.pixels)]),
+            np.concatenate([np.array(profiles, np.uint32), entries]),
             folder,
             clocks=clocks,
             passes=request.repeat,
             total_frames=total,
-            registers={"THRESHOLD": round(CONTACT_THRESHOLD * min(config.rows, config.columns) / config.depth_lsb_px)},
+            registers={"THRESHOLD": run_request.threshold_code(config)},
             seed=request.seed,
             waves=request.waves,
             floor=floor,
+            camera=frames.camera,
         )
     finally:
         finished.set()
@@ -129,35 +135,35 @@ def run(request: Request, frames: Frames | None = None) -> int:
     """
     simulation.check(request.simulator)
     calibration = load_sensor(request)
-    # Refuse a grid before frames are read.
-    Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
+    check_grid(request)
     grid = (request.rows, request.columns)
     if frames is None:
-        frames = load_frames(request.frames, grid, request.reference, request.seed, request.press)
+        frames = load_frames(request.frames, grid, request.reference, request.seed, request.press, request.camera)
     calibration = calibration.on_grid(frames)
     config = configure(request, calibration)
     flagged = flags(frames.pixels, calibration, config, request.reference)
-    rest = untouched(request, frames)
-    floor = floor_of(rest, calibration, config)
+    no_contact = untouched(request, frames)
+    floor = floor_of(no_contact, calibration, config)
     out = request.out or default_folder(request, config)
-    with results.workspace(out, RESULTS) as work:
+    with files.workspace(out, RESULTS) as work:
         played = simulate(request, config, frames, calibration, work, floor)
         monitor = Monitor()
         codes = tactile_depth(frames.pixels, calibration, config, monitor, floor=floor)
-        reference_px = exact_depth(frames.pixels, rest, calibration, config)
-        seen = played.codes.reshape(request.repeat, *codes.shape)
+        reference_px = exact_depth(frames.pixels, no_contact, calibration, config)
+        rtl_codes = played.codes.reshape(request.repeat, *codes.shape)
         if config.solver == "tridiagonal":  # it puts the bottom row out first; results are in input order
-            seen, codes = seen[..., ::-1, :], codes[..., ::-1, :]
-        difference = compare(seen, codes)
-        percent = errors(seen[0] * config.depth_lsb_px, reference_px)
+            rtl_codes, codes = rtl_codes[..., ::-1, :], codes[..., ::-1, :]
+        difference = compare(rtl_codes, codes)
+        percent = errors(rtl_codes[0] * config.depth_lsb_px, reference_px)
         result = work / "result"
         result.mkdir()
-        dumps = take_dumps(request, config, work, result)
+        dumps = take_dumps(request, config, frames, work, result)
         clips = {node: count * request.repeat for node, count in sorted(monitor.saturations.items())}
         report = {
             **describe(request, config, calibration, frames),
             **measure(played),
             **{key: values * request.repeat for key, values in percent.items()},
+            **camera_report(request, config, frames, rtl_codes[0]),
             "bit_exact": not difference.count,
             "differing_codes": difference.count,
             "saturations": clips,
@@ -169,21 +175,21 @@ def run(request: Request, frames: Frames | None = None) -> int:
         report["registers_agree"] = not differences
         report["warnings"] = [] if difference.count else warnings(config, report["rms_percent_of_peak"], clips)
         report["warnings"] += flagged.warnings()
-        np.save(result / "depth.npy", seen.reshape(-1, *grid).astype(np.int32))
+        np.save(result / "depth.npy", rtl_codes.reshape(-1, *grid).astype(np.int32))
         (result / "report.json").write_text(json.dumps(report, indent=1) + "\n")
         pitch = calibration.pixel_pitch_mm
         draw_depth(
             result / "depth.png",
             frames,
-            seen[0] * config.depth_lsb_px * pitch,
+            rtl_codes[0] * config.depth_lsb_px * pitch,
             reference_px * pitch,
             pitch,
             f"{request.solver}, {request.boundary}, {config.rows}x{config.columns}, {config.data_width}-bit words, "
             f"{calibration.name}",
-            np.asarray(difference.differing.reshape(seen.shape).any(axis=0)),
+            np.asarray(difference.differing.reshape(rtl_codes.shape).any(axis=0)),
             flagged,
         )
-        results.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))
+        files.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))
 
     print(table(report, frames.labels))
     for line in differences:
@@ -201,7 +207,9 @@ def default_folder(request: Request, config: Configuration) -> Path:
     colours = f"-{config.gradient_model}" if config.flat_field else ""
     colours += "-zero" if config.auto_zero else ""
     shape = f"{config.rows}x{config.columns}"
-    name = f"{request.solver}-{request.boundary}-{shape}-{widths}{colours}-{request.simulator}"
+    camera = "" if request.camera is None else f"-{request.camera.pixel_format}"
+    lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""
+    name = f"{request.solver}{lanes}-{request.boundary}-{shape}-{widths}{colours}{camera}-{request.simulator}"
     return repository.ROOT / "build" / "sim" / name
 
 
@@ -210,49 +218,63 @@ def describe(request: Request, config: Configuration, calibration: Sensor, frame
     pixel_pitch_mm = calibration.pixel_pitch_mm
     assert config.depth_range_px is not None
     return {
-        "grid": [config.rows, config.columns],
-        "solver": request.solver,
-        "boundary": request.boundary,
+        **run_request.described(config),
         "simulator": request.simulator,
-        "data_width": config.data_width,
-        "coeff_width": config.coefficient_width,
         "frames": len(frames.pixels) * request.repeat,
         "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
         "pixel_pitch_mm": pixel_pitch_mm,
         "depth_range_mm": config.depth_range_px * pixel_pitch_mm,
         "gradient_lsb": config.gradient_lsb,
         "coefficient_table_words": coefficient_words(config),
-        "contact_threshold_mm": CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
+        "contact_threshold_mm": run_request.CONTACT_THRESHOLD * min(config.rows, config.columns) * pixel_pitch_mm,
         "calibration": calibration.name,
-        "gradient_model": config.gradient_model,
-        "flat_field": config.flat_field,
-        "auto_zero": config.auto_zero,
         "source": frames.name,
-        "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config),
+        "expected_last_pixel_to_first_depth_cycles": latency.last_pixel_to_first_depth(config)
+        if frames.camera is None
+        else latency.last_word_to_first_depth(frames.camera, config),
     }
 
 
-def take_dumps(request: Request, config: Configuration, work: Path, result: Path) -> list[str]:
+def camera_report(request: Request, config: Configuration, frames: Frames, codes: np.ndarray) -> dict[str, Any]:
+    """Return the fields of the report about the camera, and the depth error against RGB of the grid.
+
+    RGB of the grid is the same window of the same pictures, averaged as they are; its depth is in double precision.
+    `codes` are (frames, rows, columns), rows from the top.
+    """
+    camera = frames.camera
+    if camera is None:
+        return {}
+    plain = replace(request, camera=CameraChoice("rgb888", window=camera.crop))
+    size = (config.rows, config.columns)
+    as_rgb = load_frames(request.frames, size, request.reference, request.seed, request.press, plain.camera)
+    calibration = load_sensor(request).on_grid(as_rgb)
+    reference_px = exact_depth(as_rgb.pixels, untouched(plain, as_rgb), calibration, config)
+    percent = errors(codes * config.depth_lsb_px, reference_px)
+    x, y, width, height = camera.crop
+    described = {
+        "pixel_format": camera.pixel_format,
+        "bayer": camera.phase if camera.format.bayer else None,
+        "picture": list(camera.picture),
+        "window": [x, y, width, height],
+        "pixels_per_grid_pixel": float(camera.ratio),
+    }
+    lost = {f"camera_{key}": values * request.repeat for key, values in percent.items()}
+    return {"camera": described, **lost}
+
+
+def take_dumps(request: Request, config: Configuration, frames: Frames, work: Path, result: Path) -> list[str]:
     """Move the waveforms that a simulation left to `result`; returns their names."""
     if not request.waves:
         return []
-    built = bench.build(request.simulator, config, True)  # Icarus writes there, Verilator into `work`
+    built = bench.build(request.simulator, config, True, frames.camera)  # Icarus writes there, Verilator into `work`
     return [Path(shutil.move(dump, result / dump.name)).name for dump in (*work.glob("*.vcd"), *built.glob("*.fst"))]
 
 
 def earlier_dumps(out: Path) -> list[str]:
-    """Names of the waveforms that the report in `out` lists: this command wrote them, and new results replace them."""
-    try:
-        names = json.loads((out / "report.json").read_text())["waves"]
-        return [name for name in names if name == Path(name).name and name.endswith(DUMPS)]
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):  # no report, or one of something else
-        return []
+    """Return the waveforms that the report in `out` lists: this command wrote them, and new results replace them."""
+    return [name for name in files.listed(out / "report.json", "waves") if name.endswith(DUMPS)]
 
 
 def main() -> None:
     with variables.reported("sim"):
-        sys.exit(run(parse(sys.argv[1:])))
-
-
-if __name__ == "__main__":
-    main()
+        sys.exit(run(parse(sys.argv[1:], (*ACCEPTED, *CAMERA))))

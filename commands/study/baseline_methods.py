@@ -3,10 +3,15 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib.metadata
 import importlib.util
-from collections.abc import Callable
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -24,28 +29,31 @@ Solve = Callable[[Any], Any]
 class Method:
     """One way to solve in software.
 
-    Attributes
-    ----------
-    prepare : function (size, threads) to (solve, give, take, synchronise)
-        `give` turns a float32 array into what `solve` takes, `take` its result into an array; neither is timed.
-        `synchronise` waits for a device.
-    packages : tuple of str, as distributions are named
-    device : bool
-        It runs on CUDA.
+    `prepare` takes a size and a number of threads. `packages` are names of distributions, `program` is another program
+    that it needs, `device` is CUDA, and a method of `one_core` has no threads.
     """
 
     name: str
     prepare: Callable[[int, int], Prepared]
     packages: tuple[str, ...]
+    program: str = ""
     device: bool = False
+    one_core: bool = False
 
 
 @dataclass(frozen=True)
 class Prepared:
+    """A method for one grid.
+
+    `give` turns a float32 array into what `solve` takes, `take` its result into an array; neither is timed.
+    `synchronise` waits for a device. `clock` times so many solves in us where a call from Python would count.
+    """
+
     solve: Solve
     give: Callable[[np.ndarray], Any] = np.asarray
     take: Callable[[Any], np.ndarray] = np.asarray
     synchronise: Callable[[], None] | None = None
+    clock: Callable[[Sequence[np.ndarray], int], list[float]] | None = None
 
 
 def inverse_eigenvalues(size: int) -> np.ndarray:
@@ -93,8 +101,8 @@ def with_pyfftw(size: int, threads: int) -> Prepared:
 
     forward, backward = plan(f, modes, "FFTW_RODFT10"), plan(modes, depth, "FFTW_RODFT01")
 
-    def solve(given: np.ndarray) -> np.ndarray:
-        f[:] = given
+    def solve(frame: np.ndarray) -> np.ndarray:
+        f[:] = frame
         forward.execute()
         np.multiply(modes, factor, out=modes)
         backward.execute()
@@ -140,6 +148,41 @@ def with_tridiagonal(size: int, threads: int) -> Prepared:
         return dst(modes, axes=(1,), type=3, out=depth, nthreads=threads)
 
     return Prepared(solve)
+
+
+SIMD_SOLVER = Path(__file__).with_name("simd_solver.c")
+# Not -ffast-math: a library linked with it makes the whole process flush subnormal numbers to zero.
+FLOATS = ("-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math", "-ffp-contract=fast")
+COMPILER = ("cc", "-O3", "-march=native", *FLOATS, "-shared", "-fPIC")
+
+
+def with_c(size: int, threads: int) -> Prepared:
+    """The tridiagonal solver in C with SIMD, compiled for this machine and grid.
+
+    Raises RuntimeError: the compiler refuses it.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        library = Path(folder) / "solver.so"
+        command = [*COMPILER, f"-DN={size}", str(SIMD_SOLVER), "-o", str(library), "-lm"]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        if result.returncode:
+            raise RuntimeError(f"cc cannot compile {SIMD_SOLVER.name}: {result.stderr.splitlines()[0]}")
+        solver = ctypes.CDLL(str(library))
+    solver.prepare()
+    depth = np.empty((size, size), np.float32)
+    target = ctypes.c_void_p(depth.ctypes.data)
+
+    def solve(f: np.ndarray) -> np.ndarray:
+        solver.solve(ctypes.c_void_p(f.ctypes.data), target)
+        return depth
+
+    def clock(given: Sequence[np.ndarray], runs: int) -> list[float]:
+        frames = (ctypes.c_void_p * len(given))(*(frame.ctypes.data for frame in given))
+        nanoseconds = np.empty(runs, np.int64)
+        solver.time_solves(frames, len(given), target, runs, ctypes.c_void_p(nanoseconds.ctypes.data))
+        return (nanoseconds / 1000).tolist()
+
+    return Prepared(solve, give=np.ascontiguousarray, clock=clock)
 
 
 def _on(device: str, threads: int) -> tuple[Any, Callable[[np.ndarray], Any], Callable[[Any], np.ndarray], Any]:
@@ -209,17 +252,20 @@ METHODS = (
     Method("PyTorch, rfft", with_torch_fft, ("torch",)),
     Method("PyTorch, products of matrices", with_torch_matmul, ("torch",)),
     Method("ducc0 rows, numba tridiagonal", with_tridiagonal, ("ducc0", "numba")),
+    Method("C with SIMD, tridiagonal", with_c, (), program="cc", one_core=True),
     Method("PyTorch, rfft, CUDA", _on_cuda(with_torch_fft), ("torch",), device=True),
     Method("PyTorch, products of matrices, CUDA", _on_cuda(with_torch_matmul), ("torch",), device=True),
 )
 
 
 def missing(method: Method) -> str:
-    """Why a method cannot run here; nothing when it can."""
+    """Reason why a method cannot run here; empty when it can."""
     absent = []
     for package in method.packages:
         try:
             importlib.metadata.version(package)
         except importlib.metadata.PackageNotFoundError:
             absent.append(package)
+    if method.program and not shutil.which(method.program):
+        absent.append(method.program)
     return f"{', '.join(absent)} not installed" if absent else ""

@@ -3,7 +3,8 @@
 
 The same 2-D solve (divergence in, depth out, single precision) on the same frames, the contacts of the bench in turn,
 in scipy, ducc0, pyFFTW and PyTorch, on one core and on all, and on CUDA where there is a device, the frames already on
-it. And the tridiagonal solver's method on the CPU: ducc0 along the rows, Thomas's algorithm by numba down the columns.
+it. And the tridiagonal solver's method on the CPU: ducc0 along the rows, Thomas's algorithm by numba down the columns;
+and on one core in C with SIMD (simd_solver.c), compiled for this machine.
 Every result is checked by tactile_depth.reference before it is timed: WARM_UPS solves, then RUNS that count, or as many
 as there is time for. Each method is timed in a process of its own, so that none runs beside the threads of another.
 
@@ -36,13 +37,13 @@ import matplotlib
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import markdown, published, repository, results, variables
+from commands.common import markdown, published, repository, variables
 from commands.common.machine import machine
-from tactile_depth import reference
-from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth import files, reference
+from tactile_depth.configuration import COLUMNS, Configuration, most_lanes
 from tactile_depth.errors import InputError
 from tactile_depth.gradient.divergence import divergence
-from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.scenes import render
 from tactile_depth.sensor import synthetic
 
@@ -76,64 +77,53 @@ def percent_of_peak(depth: np.ndarray, wanted: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class Job:
-    """One of `METHODS`, by its number, for a process of its own.
-
-    Attributes
-    ----------
-    scenes : dict of int to pair of arrays, `frames` by grid
-    until : float
-        When all should be done, by time.monotonic.
-    cells : int
-        Grids of this job and of all that follow it: until then each may take twice its share.
-    """
+    """One of `METHODS`, by its number, for a process of its own."""
 
     number: int
     threads: int
-    scenes: dict[int, tuple[np.ndarray, np.ndarray]]
+    scenes: dict[int, tuple[np.ndarray, np.ndarray]]  # `frames` by grid
     runs: int
-    until: float
-    cells: int
+    until: float  # end of all jobs by time.monotonic; each grid may take twice its share of the time
+    cells: int  # grids of this job and of all that follow
 
 
 def measure(job: Job) -> list[dict[str, Any]]:
-    """Check and time a method.
-
-    Returns
-    -------
-    list of dict, one a grid: `error_percent`, the worst frame's, and `times_us`; or `problem`
-    """
+    """Check and time a method: for each grid `error_percent` of the worst frame and `times_us`, or `problem`."""
     method = METHODS[job.number]
     if method.device:
         import torch
 
         if not torch.cuda.is_available():
             return [{"problem": "no device"} for _ in job.scenes]
-    found: list[dict[str, Any]] = []
+    results: list[dict[str, Any]] = []
     for index, (size, (f, wanted)) in enumerate(job.scenes.items()):
         end = time.monotonic() + 2 * (job.until - time.monotonic()) / (job.cells - index)
         prepared = method.prepare(size, job.threads)
-        given = [prepared.give(one) for one in f]
-        depths = [np.array(prepared.take(prepared.solve(one)), np.float64) for one in given]
+        inputs = [prepared.give(one) for one in f]
+        depths = [np.array(prepared.take(prepared.solve(one)), np.float64) for one in inputs]
         error = max(percent_of_peak(*pair) for pair in zip(depths, wanted, strict=True))
         if not error <= TOLERANCE_PERCENT:
-            found.append({"error_percent": error, "problem": "wrong result"})
+            results.append({"error_percent": error, "problem": "wrong result"})
             continue
         wait = prepared.synchronise or (lambda: None)
         gc.disable()
         half = (time.monotonic() + end) / 2
-        times = _timed(prepared.solve, given, wait, WARM_UPS, half) and _timed(
-            prepared.solve, given, wait, job.runs, end
-        )
+        if prepared.clock:
+            times = prepared.clock(inputs, WARM_UPS) and prepared.clock(inputs, job.runs)
+        else:
+            times = _timed(prepared.solve, inputs, wait, WARM_UPS, half) and _timed(
+                prepared.solve, inputs, wait, job.runs, end
+            )
         gc.enable()
-        found.append({"error_percent": error, "times_us": times})
-    return found
+        results.append({"error_percent": error, "times_us": times})
+    return results
 
 
-def _timed(solve: Solve, given: Sequence[Any], wait: Callable[[], None], runs: int, end: float) -> list[float]:
+def _timed(solve: Solve, inputs: Sequence[Any], wait: Callable[[], None], runs: int, end: float) -> list[float]:
     """Times in us of so many solves, or of those until the end, and FEWEST_RUNS of them at least."""
     times: list[float] = []
     while len(times) < runs and (time.monotonic() < end or len(times) < FEWEST_RUNS):
-        one = given[len(times) % len(given)]
+        one = inputs[len(times) % len(inputs)]
         wait()
         begin = time.perf_counter_ns()
         solve(one)
@@ -143,7 +133,7 @@ def _timed(solve: Solve, given: Sequence[Any], wait: Callable[[], None], runs: i
 
 
 def in_own_process(job: Job) -> list[dict[str, Any]]:
-    """`measure` there, with as many threads as it is told."""
+    """Run `measure` in a process of its own, with the threads of the job."""
     before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(job.threads)))
     try:
@@ -170,16 +160,20 @@ def in_own_process(job: Job) -> list[dict[str, Any]]:
 
 
 def pipeline(sizes: Sequence[int], clock_mhz: float) -> list[dict[str, Any]]:
+    """Both solvers, and the tridiagonal one with the most lanes."""
     rows = []
     for size in sizes:
-        for solver in COLUMNS:
-            config = Configuration(columns=size, solver=solver)
-            first = last_pixel_to_first_depth(config)
-            last = first + size * size - 1
-            clocks = {"first_depth": first, "last_depth": last}
+        for solver, lanes in (("spectral", 1), ("tridiagonal", 1), ("tridiagonal", most_lanes(size))):
+            config = Configuration(columns=size, solver=solver, lanes=lanes)
+            clocks = {"first_depth": last_pixel_to_first_depth(config), "last_depth": last_pixel_to_last_depth(config)}
             micros = {f"{name}_us": count / clock_mhz for name, count in clocks.items()}
-            rows.append({"grid": size, "solver": solver, **clocks, **micros})
+            rows.append({"grid": size, "solver": solver, "lanes": lanes, **clocks, **micros})
     return rows
+
+
+def pipeline_name(row: dict[str, Any]) -> str:
+    lanes = f" with {row['lanes']} lanes" if row["lanes"] > 1 else ""
+    return f"{row['solver']} pipeline{lanes}"
 
 
 @dataclass(frozen=True)
@@ -193,26 +187,21 @@ class Request:
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default.
-
-    Raises
-    ------
-    InputError
-    """
-    given = defaultdict(str, variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT")))
-    number = partial(variables.number, given)
+    """KEY=VALUE arguments to a Request; an empty value means the default. Raises InputError."""
+    values = defaultdict(str, variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT")))
+    number = partial(variables.number, values)
     low, high = COLUMNS["spectral"]
     try:
-        grids = tuple(int(part) for part in given["GRIDS"].split(",")) if given["GRIDS"] else GRIDS
+        grids = tuple(int(part) for part in values["GRIDS"].split(",")) if values["GRIDS"] else GRIDS
     except ValueError:
         grids = ()
     if not grids or any(not low <= size <= high or size & (size - 1) for size in grids):
-        raise InputError(f"GRIDS={given['GRIDS']}: accepted are powers of two from {low} to {high}, as 64,128")
+        raise InputError(f"GRIDS={values['GRIDS']}: accepted are powers of two from {low} to {high}, as 64,128")
     return Request(
         grids=tuple(sorted(set(grids))),
         runs=number("RUNS", RUNS, FEWEST_RUNS, 1_000_000),
         clock_mhz=number("CLOCK_MHZ", published.CLOCK_MHZ, 0.001, 10_000, float),
-        out=Path(given["OUT"]) if given["OUT"] else DEFAULT_OUT,
+        out=Path(values["OUT"]) if values["OUT"] else DEFAULT_OUT,
     )
 
 
@@ -220,24 +209,15 @@ def summarise(row: dict[str, Any]) -> dict[str, Any]:
     """Percentiles in place of the times."""
     times = row.pop("times_us", None)
     if times is not None:
-        low, median, high = np.percentile(times, (1, 50, 99))
-        row |= {
-            "runs": len(times),
-            "p1_us": float(low),
-            "p50_us": float(median),
-            "p99_us": float(high),
-            "max_us": max(times),
-        }
+        percentiles = {f"p{share}_us": float(np.percentile(times, share)) for share in (1, 50, 99)}
+        row |= {"runs": len(times), **percentiles, "max_us": max(times)}
     return row
 
 
 def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """The document that baselines.json holds, and the rows with every time, for the picture.
 
-    Raises
-    ------
-    RuntimeError
-        A result is not that of the reference.
+    Raises RuntimeError: a result is not that of the reference.
     """
     cores = len(os.sched_getaffinity(0))
     load = os.getloadavg()[0]
@@ -245,7 +225,7 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
         (number, threads)
         for threads in sorted({1, cores})
         for number, method in enumerate(METHODS)
-        if threads == 1 or not method.device
+        if threads == 1 or not (method.device or method.one_core)
     ]
     rows: list[dict[str, Any]] = []
     scenes = {size: frames(size) for size in request.grids}
@@ -256,8 +236,8 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
             bar.set_description(f"{method.name}, {threads} threads")
             job = Job(number, threads, scenes, request.runs, until, (len(jobs) - done) * len(scenes))
             problem = missing(method)
-            found = [{"problem": problem} for _ in scenes] if problem else in_own_process(job)
-            for size, one in zip(scenes, found, strict=True):
+            results = [{"problem": problem} for _ in scenes] if problem else in_own_process(job)
+            for size, one in zip(scenes, results, strict=True):
                 rows.append({"grid": size, "method": method.name, "threads": None if method.device else threads, **one})
     names = [method.name for method in METHODS]
     rows.sort(key=lambda row: names.index(row["method"]))
@@ -283,9 +263,6 @@ def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]
     return document, rows
 
 
-# What comes of it.
-
-
 def threads_of(row: dict[str, Any]) -> str:
     return "device" if row["threads"] is None else str(row["threads"])
 
@@ -300,7 +277,7 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
             if row["grid"] == size:
                 for what in ("first_depth", "last_depth"):
                     micros = f"{row[f'{what}_us']:.1f}"
-                    name = f"pipeline, {row['solver']}, {what.replace('_', ' ')}"
+                    name = f"{pipeline_name(row)}, {what.replace('_', ' ')}"
                     rows.append((name, f"{row[what]:,} clocks", micros, micros, micros, "-"))
         for row in document["software"]:
             if row["grid"] == size:
@@ -326,31 +303,35 @@ def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[
         best = fastest(document, size)
         ours = [
             f"{row['first_depth_us']:,.1f} / {row['last_depth_us']:,.1f}"
+            + (f" ({row['lanes']} lanes)" if row["lanes"] > 1 else "")
             for row in document["pipeline"]
             if row["grid"] == size
         ]
         figures = (f"{best[key]:,.1f}" for key in ("p50_us", "p99_us", "max_us"))
         rows.append((f"{size} x {size}", f"{best['method']}, {threads_of(best)}", *figures, *ours))
-    pipelines = (f"{solver} pipeline: first depth / whole map" for solver in COLUMNS)
+    columns = (*(f"{solver} pipeline" for solver in COLUMNS), "tridiagonal pipeline with the most lanes")
+    pipelines = (f"{column}: first depth / whole map" for column in columns)
     head = ("us after the last pixel", "fastest in software, threads", "p50", "p99", "maximum", *pipelines)
     return "In short", head, rows
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
-    """For each grid, where software is faster and where it is not."""
+    """Return for each grid a sentence that says which parts software computes faster."""
 
     def place(micros: float, row: dict[str, Any]) -> str:
         if micros > row["max_us"]:
             return "after its maximum: software is faster"
         if micros > row["p99_us"]:
             return "after its p99 but not its maximum: software is faster in 99 of 100 solves, not in all"
-        return "after its median but not its p99" if micros > row["p50_us"] else "before its median"
+        if micros > row["p50_us"]:
+            return "after its median but not its p99"
+        return f"before its median, {row['p50_us'] / micros:.1f} times as early"
 
     lines = []
     for size in sorted({row["grid"] for row in document["pipeline"]}):
         best = fastest(document, size)
         parts = [
-            f"the {row['solver']} pipeline's {what} ({row[key]:,.1f}) comes {place(row[key], best)}"
+            f"the {what} of the {pipeline_name(row)} ({row[key]:,.1f}) comes {place(row[key], best)}"
             for row in document["pipeline"]
             if row["grid"] == size
             for what, key in (("whole map", "last_depth_us"), ("first depth", "first_depth_us"))
@@ -368,7 +349,8 @@ def setting(document: dict[str, Any]) -> str:
     return (
         f"{document['machine']} (load {document['load_before']:.1f} before); {packages}; {document['warm_ups']} "
         f"warm-ups and {document['runs']:,} solves timed, one frame at a time, float32; pipeline at "
-        f"{document['clock_mhz']:g} MHz. Software begins with the divergence in memory, the pipeline with the pixels"
+        f"{document['clock_mhz']:g} MHz. Software begins with the divergence in memory and ends with the map in "
+        "memory; the pipeline begins with the pixels and ends with the map on its output"
     )
 
 
@@ -381,7 +363,7 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
     shape = (6.6 * across, 1.2 + down * (0.9 + 0.24 * len(names)))
     figure, axes = plt.subplots(down, across, figsize=shape, layout="constrained", squeeze=False, sharey=True)
     jitter = np.random.default_rng(0)
-    styles = {"spectral": ("#08306b", "-"), "tridiagonal": ("#e6550d", "--")}
+    colours = {"spectral": "#08306b", "tridiagonal": "#e6550d"}
     for axis, size in zip(axes.flat, sizes, strict=False):
         for row in rows:
             if row["grid"] != size or "times_us" not in row:
@@ -395,17 +377,11 @@ def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -
                 axis.plot([value], [place], color="black", marker=marker, **look)
         for row in document["pipeline"]:
             if row["grid"] == size:
-                colour, style = styles[row["solver"]]
-                label = f"{row['solver']} pipeline"
+                colour, style = colours[row["solver"]], ":" if row["lanes"] > 1 else "-"
+                label = f"{row['solver']} pipeline" + (" with the most lanes" if row["lanes"] > 1 else "")
                 axis.axvline(row["last_depth_us"], color=colour, linestyle=style, label=f"{label}, whole map")
-                axis.axvline(
-                    row["first_depth_us"],
-                    color=colour,
-                    linestyle=style,
-                    linewidth=0.8,
-                    alpha=0.6,
-                    label=f"{label}, first depth",
-                )
+                thin: dict[str, Any] = {"color": colour, "linestyle": style, "linewidth": 0.8, "alpha": 0.6}
+                axis.axvline(row["first_depth_us"], label=f"{label}, first depth", **thin)
         axis.set(xscale="log", title=f"{size} x {size}")
         axis.grid(axis="x", alpha=0.3)
     for axis in axes.flat[len(sizes) :]:
@@ -433,23 +409,17 @@ def show(document: dict[str, Any]) -> str:
 def run(request: Request) -> None:
     """Measure, print, and write baselines.json and baselines.png, both or none of them.
 
-    Raises
-    ------
-    InputError, Mismatch, RuntimeError
+    Raises InputError, Mismatch or RuntimeError.
     """
-    with results.workspace(request.out, RESULTS) as work:
+    with files.workspace(request.out, RESULTS) as work:
         document, rows = measure_all(request)
         print(show(document))
         (work / "baselines.json").write_text(json.dumps(document, indent=1) + "\n")
         plot(work / "baselines.png", document, rows)
-        results.replace(work, RESULTS, request.out)
+        files.replace(work, RESULTS, request.out)
     print(f"results: {os.path.relpath(request.out)}")
 
 
 def main() -> None:
     with variables.reported("baselines", "nothing was written"):
         run(parse(sys.argv[1:]))
-
-
-if __name__ == "__main__":
-    main()

@@ -36,6 +36,7 @@ from commands.common.repository import ROOT
 from commands.study import benchmark_child
 from commands.study.baselines import THREAD_VARIABLES
 from commands.study.benchmark_child import CASES
+from tactile_depth import files
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import Press, render
 
@@ -57,12 +58,7 @@ class Request:
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """Read KEY=VALUE arguments; an empty value means the default.
-
-    Raises
-    ------
-    InputError
-    """
+    """Read KEY=VALUE arguments; an empty value means the default. Raises InputError."""
     values = variables.given(arguments, ("BEFORE", "ROUNDS", "OUT"))
     rounds = variables.number(values, "ROUNDS", ROUNDS, FEWEST_ROUNDS, 100_000)
     return Request(commit(values.get("BEFORE", FIRST)), rounds, Path(values.get("OUT", DEFAULT_OUT)))
@@ -75,18 +71,13 @@ def git(*arguments: str) -> bytes | None:
 
 
 def commit(name: str) -> str:
-    """Abbreviated hash of a commit that holds models.
-
-    Raises
-    ------
-    InputError
-    """
-    found = git("rev-parse", "--verify", "--quiet", "--short", "--end-of-options", f"{name}^{{commit}}")
-    if found is None:
+    """Abbreviated hash of a commit that holds models. Raises InputError."""
+    output = git("rev-parse", "--verify", "--quiet", "--short", "--end-of-options", f"{name}^{{commit}}")
+    if output is None:
         raise InputError(f"BEFORE={name} is no commit of this clone: give a hash or a branch, or run `git fetch`")
     if git("cat-file", "-e", f"{name}:models") is None:
         raise InputError(f"BEFORE={name} has no folder models/: give {FIRST} or a later commit")
-    return found.decode().strip()
+    return output.decode().strip()
 
 
 def extract(name: str, folder: Path) -> None:
@@ -105,26 +96,13 @@ def draw_pictures(folder: Path) -> None:
 
 
 class Version:
-    """Child process that runs one version of the models.
-
-    Attributes
-    ----------
-    name : str
-    results : Path
-        Folder of the depth maps, `<case>.npy`.
-    """
+    """Child process that runs one version of the models; its depth maps are `<case>.npy` in the folder `results`."""
 
     def __init__(self, name: str, process: subprocess.Popen[str], results: Path) -> None:
         self.name, self.results, self._process = name, results, process
 
     def run(self, case: str) -> float:
-        """Run a case once: ms per frame.
-
-        Raises
-        ------
-        RuntimeError
-            The child ended.
-        """
+        """Run a case once: ms per frame. Raises RuntimeError: the child ended."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         try:
@@ -202,18 +180,11 @@ def table(rows: Sequence[dict[str, Any]], before: str) -> str:
 def run(request: Request) -> dict[str, Any]:
     """Measure, and write benchmark.json.
 
-    Raises
-    ------
-    InputError
-        The folder of the results cannot be written.
-    RuntimeError
-        A version does not run.
+    Raises InputError: the folder of the results cannot be written; RuntimeError: a version does not run.
     """
+    files.make(request.out, ("benchmark.json",))
     folder = request.out / request.before
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"OUT={request.out} cannot be written: {error.strerror}: name another folder") from error
+    folder.mkdir(exist_ok=True)
     extract(request.before, folder)
     with ExitStack() as stack:
         pictures = Path(stack.enter_context(tempfile.TemporaryDirectory()))
@@ -232,7 +203,3 @@ def main() -> None:
         document = run(request)
         print(table(document["cases"], request.before))
         print(f"{document['machine']}; one thread, {request.rounds} pairs of runs; {request.out / 'benchmark.json'}")
-
-
-if __name__ == "__main__":
-    main()

@@ -19,14 +19,8 @@ from typing import Any
 import numpy as np
 
 GRID = (128, 128)
-CHOICES: dict[str, Any] = {
-    "rows": GRID[0],
-    "columns": GRID[1],
-    "solver": "tridiagonal",
-    "neumann": True,
-    "flat_field": True,
-    "gradient_model": "quadratic",
-}
+CHOICES: dict[str, Any] = {"rows": GRID[0], "columns": GRID[1], "solver": "tridiagonal", "neumann": True}
+CHOICES |= {"flat_field": True, "gradient_model": "quadratic"}
 CASES = {"chip": 1, "float": 1, "chip, batch of 16": 16}
 """Pictures of each case by its name."""
 

@@ -20,9 +20,10 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands.common import repository, results, run_request, variables
+from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.run import sim, sim_table
+from tactile_depth import files
 from tactile_depth.certificate import Node, certify, slope_response
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import GRADIENT_MODELS, Configuration
@@ -38,20 +39,11 @@ ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: test
 
 @dataclass(frozen=True)
 class Attempt:
-    """The frame of a calibration's colours that drives a node as far as any of them can.
-
-    Attributes
-    ----------
-    node : Node
-    frame : int
-        Its place among the frames.
-    expected : float
-        Value that it drives the node to, in the node's codes, were arithmetic exact.
-    """
+    """Frame of a calibration's colours that drives a node as far as any of them can."""
 
     node: Node
-    frame: int
-    expected: float
+    frame: int  # its place among the frames
+    expected: float  # value of the node in exact arithmetic, in its codes
 
 
 class Peaks(Monitor):
@@ -74,7 +66,7 @@ class Peaks(Monitor):
 
 
 def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) -> tuple[np.ndarray, list[Attempt]]:
-    """For each node the frame that drives it furthest: every pixel takes the colour whose slopes add the most.
+    """Return for each node the frame that drives it furthest: every pixel has the colour whose slopes add the most.
 
     Returns
     -------
@@ -86,7 +78,7 @@ def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) 
     bits = config.bits_per_channel
     colours = np.stack([bins >> 2 * bits, bins >> bits & (1 << bits) - 1, bins & (1 << bits) - 1], axis=-1)
     colours = (colours << (8 - bits)).astype(np.uint8)
-    found: dict[bytes, int] = {}
+    places: dict[bytes, int] = {}
     frames: list[np.ndarray] = []
     attempts = []
     for node in nodes:
@@ -95,10 +87,10 @@ def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) 
         gain = slope_response(node.response, config.neumann) @ codes[bins].T  # of each corner at each pixel
         choice = gain.argmax(axis=-1)
         key = choice.astype(np.int32).tobytes()
-        if key not in found:
-            found[key] = len(frames)
+        if key not in places:
+            places[key] = len(frames)
             frames.append(colours[choice])
-        attempts.append(Attempt(node, found[key], float(gain.max(axis=-1).sum())))
+        attempts.append(Attempt(node, places[key], float(gain.max(axis=-1).sum())))
     return np.stack(frames), attempts
 
 
@@ -228,30 +220,25 @@ def stream(request: run_request.Request, config: Configuration, calibration: Sen
 
 
 def run(request: run_request.Request, rtl: bool = True) -> int:
-    """Everything after parsing; returns the exit status."""
+    """Certify, run the frames, write the results and return the exit status."""
     if rtl:
         simulation.check(request.simulator)
     calibration = run_request.load_sensor(request)
+    run_request.check_grid(request)
     grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
     # It holds for all slopes, whatever the colours: they are taken as a table without a reference reads them.
     calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
     pixel_pitch_mm = calibration.pixel_pitch_mm
     config = run_request.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
-    shape = f"{config.rows}x{config.columns}"
+    shape = f"{config.rows}x{config.columns}" + (f"-{config.lanes}lanes" if config.lanes > 1 else "")
     name = f"{request.solver}-{request.boundary}-{shape}-d{config.data_width}-c{config.coefficient_width}"
     if request.depth_range_mm == math.inf:
         name += "-worst"
     out = request.out or repository.ROOT / "build" / "certify" / name
-    results.make(out, RESULTS)  # refused before minutes of work
+    files.make(out, RESULTS)  # refused before minutes of work
 
-    with tqdm(
-        total=1.0,
-        desc="certifying",
-        leave=False,
-        disable=None,
-        delay=3,
-        bar_format="{desc} {percentage:.0f} % {bar} {remaining}",
-    ) as bar:
+    shape = "{desc} {percentage:.0f} % {bar} {remaining}"
+    with tqdm(total=1.0, desc="certifying", leave=False, disable=None, delay=3, bar_format=shape) as bar:
         nodes = certify(config, bar.update)
     print(table(nodes))
     for line in summary(nodes, config, pixel_pitch_mm):
@@ -276,11 +263,7 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
     saturate = f"{'model and RTL saturate' if rtl else 'the model saturates'} {', '.join(clipping) or 'nothing'}"
     print(f"{len(frames)} frames that drive every node furthest, in the colours of {calibration.name}: {saturate}")
     document = {
-        "grid": [config.rows, config.columns],
-        "solver": request.solver,
-        "boundary": request.boundary,
-        "data_width": config.data_width,
-        "coeff_width": config.coefficient_width,
+        **run_request.described(config),
         "depth_range_mm": config.depth_range_px * pixel_pitch_mm,  # type: ignore[operator]
         "gradient_limit": config.gradient_limit,
         "depth_lsb_mm": config.depth_lsb_px * pixel_pitch_mm,
@@ -290,10 +273,10 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
         "rtl": rtl,
         "faults": faults,
     }
-    with results.workspace(out, RESULTS) as work:
+    with files.workspace(out, RESULTS) as work:
         np.save(work / "worst.npy", frames)
         (work / "certificate.json").write_text(json.dumps(document, indent=1) + "\n")
-        results.replace(work, RESULTS, out)
+        files.replace(work, RESULTS, out)
     for fault in faults:
         print(fault)
     print(f"results: {os.path.relpath(out)}")
@@ -323,11 +306,7 @@ def _record(node: Node, attempts: list[Attempt]) -> dict:
 
 def main() -> None:
     with variables.reported("certify"):
-        given = variables.given(sys.argv[1:], ("RTL", *run_request.ACCEPTED))
-        rtl = bool(variables.number(given, "RTL", 1, 0, 1))
-        given.pop("RTL", None)
-        sys.exit(run(run_request.parse([f"{key}={value}" for key, value in given.items()]), rtl))
-
-
-if __name__ == "__main__":
-    main()
+        values = variables.given(sys.argv[1:], ("RTL", *run_request.ACCEPTED))
+        rtl = bool(variables.number(values, "RTL", 1, 0, 1))
+        values.pop("RTL", None)
+        sys.exit(run(run_request.parse([f"{key}={value}" for key, value in values.items()]), rtl))

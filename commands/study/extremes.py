@@ -1,30 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make extremes`: what happens at the edges of what can come in, one row each, in RTL, model and double precision.
+"""`make extremes`: limits of the input range, one row each, in RTL, model and double precision.
 
-Error, saturations by node, whether the hardware's sticky bit told, codes that wrapped around; long runs for drift; then
-the transforms in the manner of IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the long runs and the largest
-grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
+A row has the error, saturations by node, the hardware's sticky bit, and codes that wrapped around. Long runs measure
+drift, and the transforms are measured in the manner of IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the long
+runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
 """
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import sys
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, results, run_request, variables
+from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.study import certify as certificate
 from commands.study.transform_noise import BIAS, Compliance, compliance, compliance_table
-from tactile_depth import reference
+from tactile_depth import files, reference
 from tactile_depth.accuracy import errors
 from tactile_depth.certificate import certify
 from tactile_depth.common.round_saturate import Monitor
@@ -35,7 +34,7 @@ from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, rende
 from tactile_depth.sensor import load
 from tactile_depth.tactile_depth import tactile_depth
 
-RESULTS = ("extremes.json", "extremes.csv", "compliance.csv")
+RESULTS = ("extremes.json",)
 CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
@@ -78,13 +77,10 @@ class Row:
     rms_codes: float
     max_codes: float
     saturations: dict[str, int]
-    told: bool
+    flagged: bool  # by the sticky bit of the hardware
     wrapped: int
     bit_exact: bool
     registers_agree: bool
-
-
-# What comes in.
 
 
 def _colour(*rgb: int) -> Draw:
@@ -187,9 +183,9 @@ def drift(frames: int) -> Extreme:
 
 def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     """Stream it through the RTL, with the model beside it, and measure both against double precision."""
-    given = [*([] if any(v.startswith(("N=", "ROWS=")) for v in extreme.variables) else [f"N={size}"])]
-    given += [f"SOLVER={solver}", f"SIM={simulator}", f"REPEAT={extreme.repeat}", *extreme.variables]
-    request = run_request.parse(given)
+    words = [*([] if any(v.startswith(("N=", "ROWS=")) for v in extreme.variables) else [f"N={size}"])]
+    words += [f"SOLVER={solver}", f"SIM={simulator}", f"REPEAT={extreme.repeat}", *extreme.variables]
+    request = run_request.parse(words)
     calibration = load(CALIBRATION)
     config = run_request.configure(request, calibration)
     frames = np.ascontiguousarray(extreme.draw(config))
@@ -201,13 +197,9 @@ def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
     percent = errors(codes[0] * config.depth_lsb_px, exact)
     bit = next(field for field in REGISTERS["STATUS"].fields if field.name == "saturation")
     full_scale = 2.0 ** (config.data_width - 1)
+    grid = f"{config.rows}x{config.columns}"
     return Row(
-        extreme.name,
-        solver,
-        f"{config.rows}x{config.columns}",
-        config.data_width,
-        config.coefficient_width,
-        extreme.repeat * len(frames),
+        *(extreme.name, solver, grid, config.data_width, config.coefficient_width, extreme.repeat * len(frames)),
         _largest(percent["rms_percent_of_peak"]),
         _largest(percent["max_percent_of_peak"]),
         float(np.sqrt((error**2).mean(axis=(1, 2))).max()),
@@ -227,21 +219,25 @@ def _largest(values: list[float | None]) -> float | None:
 
 def faults(extreme: Extreme, row: Row) -> list[str]:
     """Return one line for each result that is out of bounds."""
-    found = []
+    broken = []
     if not row.bit_exact:
-        found.append("RTL differs from the model, or a frame from its repetition")
+        broken.append("RTL differs from the model, or a frame from its repetition")
     if not row.registers_agree:
-        found.append("the hardware's counters differ from what was seen")
-    if row.told != bool(row.saturations):
-        found.append("the status bit tells of a saturation that was not" if row.told else "a saturation was not told")
+        broken.append("the hardware's counters differ from the count at its pins")
+    if row.flagged != bool(row.saturations):
+        broken.append(
+            "the status bit is set without a saturation" if row.flagged else "a saturation did not set the status bit"
+        )
     if row.wrapped:
-        found.append(f"{row.wrapped} codes wrapped around")
+        broken.append(f"{row.wrapped} codes wrapped around")
     if extreme.saturates != bool(row.saturations):
-        found.append("it must saturate" if extreme.saturates else "it must not saturate")
-    return [f"{row.extreme}, {row.solver}: {fault}" for fault in found]
+        broken.append("it must saturate" if extreme.saturates else "it must not saturate")
+    return [f"{row.extreme}, {row.solver}: {fault}" for fault in broken]
 
 
 # Drift of the model: does the error of a frame depend on how many came before?
+
+DRIFT = 0.05  # by which the mean error of the first half of a run may differ from that of the second
 
 
 def model_drift(solver: str, size: int, count: int, advance: Callable[[int], object] = lambda frames: None) -> Row:
@@ -268,13 +264,9 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
         wrapped += int(np.count_nonzero((np.abs(exact) > config.depth_limit_px / 2) & (codes * exact < 0)))
         advance(len(frames))
     rms = np.concatenate(squares)
+    name, grid = f"{count:,} frames on the model", f"{size}x{size}"
     return Row(
-        f"{count:,} frames on the model",
-        solver,
-        f"{size}x{size}",
-        config.data_width,
-        config.coefficient_width,
-        count,
+        *(name, solver, grid, config.data_width, config.coefficient_width, count),
         max(_largest(each["rms_percent_of_peak"]) or 0.0 for each in percent),
         max(_largest(each["max_percent_of_peak"]) or 0.0 for each in percent),
         float(rms.max()),
@@ -287,102 +279,77 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
     )
 
 
-DRIFT = 0.05  # by which the mean error of the first half of a run may differ from that of the second
-
-
-# IEEE 1180-1990, Standard specifications for the implementations of 8x8 inverse discrete cosine transform: peak, mean
-# square and mean error of each output word over random blocks, in steps of that word, for several amplitudes and both
-# signs. Its own limits are for one 8 x 8 transform of 9-bit words. Noise alone is not enough: it spreads over all modes
-# and leaves the range of each nearly unused, so lone modes at full amplitude come too.
-
-
-# Output.
-
-
 def table(rows: list[Row]) -> str:
     head = f"{'extreme':<34}{'solver':<12}{'grid':>10}{'bits':>5}{'frames':>7}{'RMS %':>10}{'max %':>10}"
-    lines = [head + f"{'RMS codes':>12}{'max codes':>12}  {'told':<5}{'wrapped':>8}  saturated"]
+    lines = [head + f"{'RMS codes':>12}{'max codes':>12}  {'flag':<5}{'wrapped':>8}  saturated"]
     for row in rows:
         shares = (row.rms_percent, row.max_percent)
         percent = "".join(f"{'-' if share is None else format(share, '.5f'):>10}" for share in shares)
         clipped = ", ".join(f"{node} {count:,}" for node, count in row.saturations.items()) or "-"
         lines.append(
             f"{row.extreme:<34}{row.solver:<12}{row.grid:>10}{row.data_width:>5}{row.frames:>7,}{percent}"
-            f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.told else 'no':<5}{row.wrapped:>8}"
+            f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.flagged else 'no':<5}{row.wrapped:>8}"
             f"  {clipped}"
         )
     return "\n".join(lines)
 
 
 def write(out: Path, rows: list[Row], measured: list[Compliance]) -> None:
-    """extremes.json, extremes.csv and compliance.csv."""
+    """Write extremes.json."""
     document = {"extremes": [asdict(row) for row in rows], "compliance": [asdict(row) for row in measured]}
-    (out / "extremes.json").write_text(json.dumps(document, indent=1) + "\n")
-    for name, kind, records in (("extremes", Row, rows), ("compliance", Compliance, measured)):
-        with (out / f"{name}.csv").open("w", newline="") as file:
-            writer = csv.DictWriter(file, [field.name for field in fields(kind)])
-            writer.writeheader()
-            for record in records:
-                flat = asdict(record)
-                if "saturations" in flat and isinstance(flat["saturations"], dict):
-                    flat["saturations"] = " ".join(f"{node}:{count}" for node, count in flat["saturations"].items())
-                writer.writerow(flat)
+    (out / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
 
 
 def run(size: int, simulator: str, out: Path, short: bool) -> int:
-    """Everything after parsing; returns the exit status."""
+    """Run every row, write the results and return the exit status."""
     simulation.check(simulator)
     for solver in COLUMNS:
         Configuration(columns=size, solver=solver)
-    results.make(out, RESULTS)  # refused before minutes of work
+    files.make(out, RESULTS)  # refused before minutes of work
     plan = [
         (extreme, solver)
         for solver in COLUMNS
         for extreme in (*EXTREMES, smallest(solver), *([] if short else [largest(solver), drift(LONG_RTL)]))
     ]
     rows: list[Row] = []
-    found: list[str] = []
+    broken: list[str] = []
     with tqdm(total=len(plan), leave=False, disable=None) as bar:
         for extreme, solver in plan:
             bar.set_description(f"{extreme.name}, {solver}")
             rows.append(measure(extreme, solver, size, simulator))
-            found += faults(extreme, rows[-1])
+            broken += faults(extreme, rows[-1])
             bar.update()
     count = SHORT_MODEL if short else LONG_MODEL
     for solver in COLUMNS:
         with tqdm(total=count, desc=f"model, {solver}", unit="frame", leave=False, disable=None) as bar:
             rows.append(model_drift(solver, size, count, bar.update))
         if not rows[-1].bit_exact:
-            found.append(f"{rows[-1].extreme}, {solver}: the error drifts")
+            broken.append(f"{rows[-1].extreme}, {solver}: the error drifts")
     measured = compliance(Configuration(columns=size), 100 if short else 10_000)
     for row in measured:
         if not row.zero_in_zero_out:
-            found.append(f"{row.core}: zero in does not give zero out")
+            broken.append(f"{row.core}: zero in does not give zero out")
         if row.saturations:
-            found.append(f"{row.core}, {row.input}: {row.saturations} values clipped within the range")
+            broken.append(f"{row.core}, {row.input}: {row.saturations} values clipped within the range")
         if row.mean_in_standard_errors > BIAS:
-            found.append(f"{row.core}, {row.input}: the mean error is {row.mean:.5f}, a bias")
+            broken.append(f"{row.core}, {row.input}: the mean error is {row.mean:.5f}, a bias")
     print(table(rows))
     print()
     print(compliance_table(measured))
-    with results.workspace(out, RESULTS) as work:
+    with files.workspace(out, RESULTS) as work:
         write(work, rows, measured)
-        results.replace(work, RESULTS, out)
-    for fault in found:
+        files.replace(work, RESULTS, out)
+    for fault in broken:
         print(fault)
     print(f"results: {os.path.relpath(out)}")
-    return 1 if found else 0
+    return 1 if broken else 0
 
 
 def main() -> None:
     with variables.reported("extremes"):
-        given = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
-        if given["SHORT"] not in ("", "0", "1"):
-            raise InputError(f"SHORT={given['SHORT']}: accepted are 0 and 1")
-        request = run_request.parse([f"N={given['N'] or 64}", f"SIM={given['SIM']}"])
-        out = Path(given["OUT"]) if given["OUT"] else repository.ROOT / "build" / "extremes"
-        sys.exit(run(request.columns, request.simulator, out, given["SHORT"] == "1"))
-
-
-if __name__ == "__main__":
-    main()
+        values = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
+        if values["SHORT"] not in ("", "0", "1"):
+            raise InputError(f"SHORT={values['SHORT']}: accepted are 0 and 1")
+        request = run_request.parse([f"N={values['N'] or 64}", f"SIM={values['SIM']}"])
+        out = Path(values["OUT"]) if values["OUT"] else repository.ROOT / "build" / "extremes"
+        sys.exit(run(request.columns, request.simulator, out, values["SHORT"] == "1"))

@@ -21,13 +21,13 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from commands.common import results, run_request, variables
+from commands.common import run_request, variables
 from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, MEMORY_MBIT, RMS_PERCENT, WORST_RMS_PERCENT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, extremes, sweep
-from tactile_depth import reference
+from tactile_depth import files, reference
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.scenes import BENCH, SENSOR_WIDTH_MM, render
@@ -47,9 +47,6 @@ EXTREMES_SIZE = 64
 EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
 
 
-# Measuring.
-
-
 @dataclass(frozen=True)
 class Run:
     """The bench's contacts through the RTL, over and over."""
@@ -60,13 +57,7 @@ class Run:
 
 
 def run_rtl(solver: str, folder: Path) -> Run:
-    """At least CONSECUTIVE frames without a pause.
-
-    Raises
-    ------
-    Mismatch
-        The RTL differs from the model.
-    """
+    """Run at least CONSECUTIVE frames without a pause. Raises Mismatch: the RTL differs from the model."""
     repeat = -(-CONSECUTIVE // len(BENCH))
     words = [f"SOLVER={solver}", "FRAMES=bench", f"REPEAT={repeat}", f"N={SIZE}"]
     out = folder / solver
@@ -89,9 +80,6 @@ def document_of(command: Any, name: str) -> dict[str, Any]:
     if not file.exists():
         command.run(command.parse([]))
     return json.loads(file.read_text())
-
-
-# Figures.
 
 
 def headline(runs: dict[str, Run]) -> Figure:
@@ -206,12 +194,7 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
         rms = run.report["rms_percent_of_peak"][: len(BENCH)]
         at = places + 0.4 * (index - 0.5)
         axis.bar(at, rms, 0.38, color=LOOKS[solver]["color"], hatch=hatches[index], edgecolor="white", label=solver)
-    axis.axhline(
-        RMS_PERCENT,
-        color="black",
-        linestyle=":",
-        label=f"published, mean of 15 contacts: {RMS_PERCENT} %",
-    )
+    axis.axhline(RMS_PERCENT, color="black", linestyle=":", label=f"published, mean of 15 contacts: {RMS_PERCENT} %")
     axis.set_yscale("log")
     axis.set_xticks(places, [name.replace("_", " ") for name in BENCH], rotation=35, ha="right")
     axis.set_ylabel("RMS, % of peak")
@@ -306,7 +289,7 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     text = (
         f"Every pair of word lengths at {SIZE}: stored words of 12 to 32 bits, coefficients of 10 to 24. Lines: the "
         "best that so much latency, so many multipliers or so much memory buy. The published design's multipliers are "
-        "told for 64 (82) and 256 (108) only; its memory is its UltraRAM."
+        "published for 64 (82) and 256 (108) only; its memory is its UltraRAM."
     )
     return Figure("front", "Accuracy against latency and area", text, "make sweep", picture(figure, folder, "front"))
 
@@ -328,14 +311,14 @@ def extremes_figures(folder: Path) -> list[Figure]:
             percent(row["max_percent"]),
             f"{row['max_codes']:,.0f}",
             ", ".join(f"{node} {count:,}" for node, count in row["saturations"].items()) or "-",
-            "yes" if row["told"] else "no",
+            "yes" if row["flagged"] else "no",
             str(row["wrapped"]),
         )
         for row in document["extremes"]
     ]
     head = (
         *("what comes in", "solver", "grid", "frames", "RMS, % of peak", "largest, %", "largest, codes"),
-        *("values clipped", "status bit told", "wrapped"),
+        *("values clipped", "status bit set", "wrapped"),
     )
     text = (
         "Errors against double precision; where there is no depth to speak of, in codes. Where values are clipped the "
@@ -361,11 +344,7 @@ def extremes_figures(folder: Path) -> list[Figure]:
     return [
         edges,
         Figure(
-            "transforms",
-            "The transforms, in the manner of IEEE 1180",
-            text,
-            EXTREMES_COMMAND,
-            table(columns, blocks),
+            "transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, table(columns, blocks)
         ),
     ]
 
@@ -396,8 +375,8 @@ def baselines_figure(document: dict[str, Any]) -> Figure:
 
 def latest(flow: str, file: str) -> dict[str, Any] | None:
     """Return the latest result in build/<flow>/, for any configuration."""
-    found = sorted((ROOT / "build" / flow).glob(f"*/{file}"), key=lambda path: path.stat().st_mtime)
-    return json.loads(found[-1].read_text()) if found else None
+    paths = sorted((ROOT / "build" / flow).glob(f"*/{file}"), key=lambda path: path.stat().st_mtime)
+    return json.loads(paths[-1].read_text()) if paths else None
 
 
 def synth_figure(document: dict[str, Any]) -> Figure:
@@ -431,18 +410,13 @@ def hardware_figures() -> list[Figure]:
         ("fpga", "fpga.json", fpga_figure),
         ("asic", "asic.json", asic_figure),
     ]
-    found = [(figure, latest(flow, file)) for flow, file, figure in flows]
-    return [figure(document) for figure, document in found if document is not None]
+    documents = [(figure, latest(flow, file)) for flow, file, figure in flows]
+    return [figure(document) for figure, document in documents if document is not None]
 
 
 def build(folder: Path) -> Path:
-    """Measure and write the page; returns its path.
-
-    Raises
-    ------
-    InputError, Mismatch, RuntimeError
-    """
-    results.make(folder, ["report.html"])
+    """Measure and write the page; returns its path. Raises InputError, Mismatch or RuntimeError."""
+    files.make(folder, ["report.html"])
     steps: list[tuple[str, Callable[[], Any]]] = [
         *(
             (f"{solver}: {CONSECUTIVE} frames through the RTL", lambda s=solver: run_rtl(s, folder))
@@ -482,7 +456,3 @@ def main() -> None:
     with variables.reported("report", "the rows of the sweep are kept, run it again to go on"):
         folder = Path(variables.given(sys.argv[1:], ("OUT",)).get("OUT", DEFAULT_OUT))
         print(f"report: {os.path.relpath(build(folder))}")
-
-
-if __name__ == "__main__":
-    main()

@@ -15,19 +15,13 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 
-# Told apart without colour.
 LOOKS: dict[str, dict[str, Any]] = {
     "spectral": {"color": "#08306b", "marker": "o", "linestyle": "-"},
     "tridiagonal": {"color": "#e6550d", "marker": "s", "linestyle": "--"},
 }
 
-PUBLISHED_LOOK: dict[str, Any] = {
-    "color": "black",
-    "marker": "*",
-    "markersize": 13,
-    "linestyle": "none",
-    "label": "published",
-}
+PUBLISHED_LOOK: dict[str, Any] = {"color": "black", "marker": "*", "markersize": 13, "linestyle": "none"}
+PUBLISHED_LOOK["label"] = "published"
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,9 @@ from typing import Any, BinaryIO
 import joblib
 from tqdm import tqdm
 
-from commands.common import published, results, variables
+from commands.common import published, variables
 from commands.common.repository import ROOT
-from tactile_depth import accuracy
+from tactile_depth import accuracy, files
 from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
 from tactile_depth.errors import InputError
@@ -79,20 +79,17 @@ def key(choices: Choices) -> Key:
 def kept(path: Path, content: bytes) -> tuple[dict[Key, Row], int]:
     """Rows of an earlier run and the length of what is whole; a last line without an end is not.
 
-    Raises
-    ------
-    InputError
-        The rows are not of these columns and these models.
+    Raises InputError: the rows are not of these columns and these models.
     """
     mend = "move it away, or give another folder with OUT="
-    whole = content[: content.rfind(b"\n") + 1]
+    complete = content[: content.rfind(b"\n") + 1]
     header = _line(HEADER)
-    if not whole:
+    if not complete:
         if not header.startswith(content):
             raise InputError(f"{path}: not a table of this sweep: {mend}")
         return {}, 0
     try:
-        lines = list(csv.reader(io.StringIO(whole.decode()), strict=True))
+        lines = list(csv.reader(io.StringIO(complete.decode()), strict=True))
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: not a readable table ({error}): {mend}") from error
     if lines[0] != list(HEADER):
@@ -105,7 +102,7 @@ def kept(path: Path, content: bytes) -> tuple[dict[Key, Row], int]:
         if row["models"] != VERSION:
             raise InputError(f"{path}: line {number} was measured with another version of the models: {mend}")
         rows[tuple(row[name] for name in CONFIGURATION)] = row
-    return rows, len(whole)
+    return rows, len(complete)
 
 
 def _line(cells: tuple[str, ...]) -> bytes:
@@ -115,7 +112,7 @@ def _line(cells: tuple[str, ...]) -> bytes:
 
 
 def _append(file: BinaryIO, cells: tuple[str, ...]) -> None:
-    """On the disk when it returns."""
+    """Write a line to the disk."""
     file.write(_line(cells))
     file.flush()
     os.fsync(file.fileno())
@@ -123,14 +120,9 @@ def _append(file: BinaryIO, cells: tuple[str, ...]) -> None:
 
 @contextlib.contextmanager
 def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
-    """The table in a folder, ready to append to, and the rows it holds. One sweep at a time.
-
-    Raises
-    ------
-    InputError
-    """
+    """The table in a folder, ready to append to, and the rows it holds. One sweep at a time. Raises InputError."""
     path = folder / "sweep.csv"
-    results.make(folder, [path.name])
+    files.make(folder, [path.name])
     file = path.open("a+b")
     with file:
         try:
@@ -147,9 +139,6 @@ def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
         yield file, rows
 
 
-# Where rows are measured.
-
-
 def on_all_cores(rows: list[Choices]) -> Generator[Row]:
     """Rows as they are done, in any order."""
     parallel = joblib.Parallel(n_jobs=-1, return_as="generator_unordered", batch_size=1)
@@ -158,19 +147,14 @@ def on_all_cores(rows: list[Choices]) -> Generator[Row]:
 
 @contextlib.contextmanager
 def cluster(address: str) -> Iterator[Any]:
-    """A client of the Dask cluster at host:port that has workers.
-
-    Raises
-    ------
-    InputError
-    """
+    """A client of the Dask cluster at host:port that has workers. Raises InputError."""
     if not re.fullmatch(r"(tcp://)?[\w.\-]+:\d{1,5}", address):
         raise InputError(f"DASK_SCHEDULER={address}: accepted is host:port")
     try:
         import dask.distributed as dask  # nothing else needs it
     except ImportError as error:
         raise InputError(f"DASK_SCHEDULER={address}: Dask is not installed: run `make setup`") from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it tells at length what is told below
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # its long messages repeat what this command prints
     try:
         client = dask.Client(address, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
@@ -186,12 +170,7 @@ def cluster(address: str) -> Iterator[Any]:
 def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
     """The same on the workers of a cluster, which are sent the models; they need numpy and scipy.
 
-    Raises
-    ------
-    InputError
-        Workers keep another version of the models.
-    RuntimeError
-        The cluster failed on the way.
+    Raises InputError: workers keep another version of the models; RuntimeError: the cluster failed on the way.
     """
     from dask.distributed import as_completed
 
@@ -215,7 +194,7 @@ def _packed(folder: Path) -> Path:
     path = folder / "tactile_depth_models.zip"
     with zipfile.ZipFile(path, "w") as archive:
         package = Path(accuracy.__file__).parent
-        for source in sorted(package.rglob("*.py")):
+        for source in sorted([*package.rglob("*.py"), *package.rglob("*.json")]):
             archive.write(source, source.relative_to(package.parent))
     return path
 
@@ -223,10 +202,7 @@ def _packed(folder: Path) -> Path:
 def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> list[Row]:
     """Measure the rows that the table in `folder` lacks; returns all of them, in the order of `rows`.
 
-    Raises
-    ------
-    InputError, RuntimeError
-        What was measured before is kept.
+    Raises InputError, RuntimeError: what was measured before is kept.
     """
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(cluster(scheduler)) if scheduler else None
@@ -258,7 +234,7 @@ def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
             if not row["problem"] and all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
         }
     width = Configuration().data_width
-    if not all(width in found for found in errors.values()):
+    if not all(width in by_width for by_width in errors.values()):
         return []
     line = f"{solver}: DEPTH_RANGE=worst, {errors['worst'][width]:.4f} % in place of {errors['default'][width]:.4f} %"
     enough = [wide for wide, error in errors["worst"].items() if error <= errors["default"][width]]
@@ -295,12 +271,8 @@ def summary(rows: list[Row]) -> str:
 
 def main() -> None:
     with variables.reported("sweep", "every row measured is kept, run it again to go on"):
-        given = variables.given(sys.argv[1:], ACCEPTED)
-        folder = Path(given.get("OUT", DEFAULT_OUT))
-        rows = sweep(plan(), folder, given.get("DASK_SCHEDULER"))
+        values = variables.given(sys.argv[1:], ACCEPTED)
+        folder = Path(values.get("OUT", DEFAULT_OUT))
+        rows = sweep(plan(), folder, values.get("DASK_SCHEDULER"))
     print(summary(rows))
     print(f"results: {os.path.relpath(folder / 'sweep.csv')}")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make tune`: the cheapest configuration whose error on given frames is within a tolerance.
+"""`make tune`: the cheapest configuration whose error on frames of the user is within a tolerance.
 
 Two thirds of the frames, drawn by SEED, are for tuning, by the bit-accurate model; on the rest the choice is proven in
 RTL. Cost is the share that a configuration takes of the multipliers plus the share it takes of the memory bits of the
@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import published, repository, results, run_request, variables
+from commands.common import published, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.run import sim
-from tactile_depth import reference
+from tactile_depth import files, reference
 from tactile_depth.accuracy import SMALLEST_PEAK_PX, depth_px, errors
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
 from tactile_depth.cost import Cost, cost
@@ -32,7 +32,8 @@ from tactile_depth.errors import InputError
 from tactile_depth.frames import Frames, load_frames
 from tactile_depth.sensor import Sensor
 
-OWN = ("TOLERANCE", "MAX_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
+OWN = ("TOLERANCE", "MAX_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")  # in the order of `Limits`
+LIMITS = (1e-9, 1e9)  # of each of them
 OF_SIM = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
     *("REFERENCE", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
@@ -124,7 +125,7 @@ class Search:
         return (math.inf, 0) if counted is None else (weight(counted), counted.first_depth_cycles)
 
     def cheapest(self, solvers: list[str]) -> Widths | None:
-        found: list[Widths] = []
+        candidates: list[Widths] = []
         for solver in solvers:
             widest = Widths(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])
             if not self.meets(widest):
@@ -134,7 +135,7 @@ class Search:
             for width in range(data, DATA_WIDTHS[1] + 1):
                 least = Widths(solver, width, COEFFICIENT_WIDTHS[0])
                 if self.build(least) is not None and (
-                    not self.allowed(least) or (found and self.rank(least) >= min(map(self.rank, found)))
+                    not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
                 ):
                     break  # no coefficient helps, nor do wider words
                 row = replace(widest, data=width)
@@ -145,8 +146,8 @@ class Search:
                 )
                 point = replace(row, coefficient=coefficient)
                 if self.meets(point) and self.allowed(point):
-                    found.append(point)
-        return min(found, key=self.rank) if found else None
+                    candidates.append(point)
+        return min(candidates, key=self.rank) if candidates else None
 
     def nearest(self, solvers: list[str]) -> Widths | None:
         """Within the limits, the point of the smallest error."""
@@ -187,10 +188,7 @@ def weight(counted: Cost) -> float:
 def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames, str]:
     """Frames for tuning, frames to prove on, and a line that says how; frames without contact are in neither.
 
-    Raises
-    ------
-    InputError
-        No contact in any frame.
+    Raises InputError: no contact in any frame.
     """
     contacts = np.flatnonzero(peaks >= SMALLEST_PEAK_PX)
     if not len(contacts):
@@ -205,48 +203,28 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
         pixels = np.concatenate((alone, np.clip(np.rint(alone + noise), 0, 255).astype(np.uint8)))
         labels = (label, *(f"{label} + noise {i}" for i in range(1, NOISY_COPIES)))
         frames, contacts = replace(frames, pixels=pixels, labels=labels), np.arange(NOISY_COPIES)
-        said = f"one frame{left_out}: tuned on it and copies with noise, proven on copies with other noise"
+        how = f"one frame{left_out}: tuned on it and copies with noise, proven on copies with other noise"
         order = contacts  # the frame itself is tuned on
     else:
         order = rng.permutation(contacts)
-        said = ""
+        how = ""
     count = max(1, round(len(order) * PROOF))
     tuning, proving = np.sort(order[:-count]), np.sort(order[-count:])
-    said = said or f"tuned on {len(tuning)} frames, to be proven on {count} others{left_out}"
+    how = how or f"tuned on {len(tuning)} frames, to be proven on {count} others{left_out}"
 
     def some(index: np.ndarray) -> Frames:
         return replace(frames, pixels=frames.pixels[index], labels=tuple(frames.labels[i] for i in index))
 
-    return some(tuning), some(proving), said
+    return some(tuning), some(proving), how
 
 
 def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]:
-    """KEY=VALUE arguments to a request of make sim, the limits and the solvers to choose from.
-
-    Raises
-    ------
-    InputError
-    """
-    given = variables.given(arguments, OWN + OF_SIM)
-    own = {key: value for key, value in given.items() if key in OWN}
-    passed = {"FRAMES": DEFAULT_FRAMES} | {key: value for key, value in given.items() if key not in OWN}
-
-    def above_zero(key: str, default: float) -> float:
-        try:
-            value = float(own.get(key, default))
-        except ValueError:
-            value = math.nan
-        if key in own and not 0 < value < math.inf:
-            raise InputError(f"{key}={own[key]}: accepted is a number above 0")
-        return value
-
-    limits = Limits(
-        tolerance=above_zero("TOLERANCE", DEFAULT_TOLERANCE),
-        latency_us=above_zero("MAX_LATENCY_US", math.inf),
-        clock_mhz=above_zero("CLOCK_MHZ", published.CLOCK_MHZ),
-        multipliers=above_zero("MAX_DSP", math.inf),
-        memory_kbit=above_zero("MAX_MEMORY_KBIT", math.inf),
-    )
+    """KEY=VALUE arguments to a request of make sim, the limits and the solvers to choose from. Raises InputError."""
+    values = variables.given(arguments, OWN + OF_SIM)
+    own = {key: value for key, value in values.items() if key in OWN}
+    passed = {"FRAMES": DEFAULT_FRAMES} | {key: value for key, value in values.items() if key not in OWN}
+    defaults = dict.fromkeys(OWN, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
+    limits = Limits(*(variables.number(own, name, default, *LIMITS, float) for name, default in defaults.items()))
     request = run_request.parse([f"{key}={value}" for key, value in passed.items()])
     return request, limits, [request.solver] if "SOLVER" in passed else list(COLUMNS)
 
@@ -287,7 +265,7 @@ def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:
 
 
 def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int:
-    """Everything after parsing; returns the exit status."""
+    """Tune, prove the choice in RTL, write it and return the exit status."""
     simulation.check(request.simulator)
     out = request.out or DEFAULT_OUT
     calibration = run_request.load_sensor(request)
@@ -296,9 +274,8 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
         return replace(request, solver=at.solver, data_width=at.data, coefficient_width=at.coefficient)
 
     _check_grid(request, solvers)
-    frames = load_frames(
-        request.frames, (request.rows, request.columns), request.reference, request.seed, request.press
-    )
+    shape = (request.rows, request.columns)
+    frames = load_frames(request.frames, shape, request.reference, request.seed, request.press)
     calibration = calibration.on_grid(frames)
     built: dict[Widths, Configuration | None] = {}
     refusals: list[InputError] = []
@@ -320,7 +297,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     print(how)
-    results.make(out, ("config.json", "report.json"))
+    files.make(out, ("config.json", "report.json"))
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
         measure = _measurement(tuning, calibration, widest, bar)
@@ -360,10 +337,10 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
             "tried": {str(at): error if math.isfinite(error) else None for at, error in sorted(search.tried.items())},
         },
     }
-    with results.workspace(out) as work:
+    with files.workspace(out) as work:
         for name, content in documents.items():
             (work / name).write_text(json.dumps(content, indent=1) + "\n")
-        results.replace(work, documents, out)
+        files.replace(work, documents, out)
     file = os.path.relpath(out / "config.json")
     print(f"proven: {worst:.4f} % of peak at worst, within {limits.tolerance:g}; make sim CONFIG={file}")
     return 0
@@ -439,7 +416,3 @@ def _none(search: Search, solvers: list[str]) -> str:
 def main() -> None:
     with variables.reported("tune"):
         sys.exit(run(*parse(sys.argv[1:])))
-
-
-if __name__ == "__main__":
-    main()

@@ -175,10 +175,7 @@ def gate(points: Mapping[Point, int]) -> list[str]:
 def judge_bins(hits: Mapping[str, int], bins: Mapping[str, str | None]) -> tuple[list[str], list[str]]:
     """Bins missed, and errors: bins that nobody knows, and impossible ones that were hit.
 
-    Parameters
-    ----------
-    hits : mapping of bin to count
-    bins : mapping of bin to why it is impossible, or None
+    `hits` has the count of each bin, `bins` the reason why a bin is impossible, or None.
     """
     missed = [name for name, reason in bins.items() if reason is None and not hits.get(name)]
     errors = [f"an unknown bin: {name}" for name in hits if name not in bins]
@@ -200,8 +197,8 @@ def run_tests() -> int:
     # The bins ask for every fault and disturbance with both solvers; the top repeats what seldom happens more often.
     for more, chosen in (({"MANY": str(MANY)}, [tests[TOP]]), ({}, cores)):
         command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-k", "verilator", *chosen]
-        given = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": "1", **more}
-        run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | given, check=False)
+        settings = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": "1", **more}
+        run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | settings, check=False)
         worst = max(worst, run.returncode)
     return worst
 
@@ -227,8 +224,8 @@ def functional() -> tuple[str, list[str]]:
 
 def main() -> None:
     with variables.reported("coverage"):
-        given = variables.given(sys.argv[1:], ("TESTS",))
-        failed = run(bool(variables.number(given, "TESTS", 1, 0, 1)))
+        values = variables.given(sys.argv[1:], ("TESTS",))
+        failed = run(bool(variables.number(values, "TESTS", 1, 0, 1)))
         if failed:
             raise variables.Mismatch("; ".join(failed))
 
@@ -253,7 +250,3 @@ def run(tests: bool) -> list[str]:
         failed.append("no coverage data")
     print(f"coverage: {time.monotonic() - begun:.0f} s, " + ("all gates met" if not failed else "FAILED:"))
     return failed
-
-
-if __name__ == "__main__":
-    main()

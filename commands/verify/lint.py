@@ -20,13 +20,14 @@ from pathlib import Path
 
 import numpy as np
 
-from commands.common import repository, variables
+from commands.common import repository, variables, wrapper
 from commands.common import simulator as simulation
 from commands.common.signals import threads
 from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
 from tactile_depth.calibration.auto_zero import no_floor
 from tactile_depth.calibration.flat_field import unit_gains
+from tactile_depth.camera.register_lists import pins, write_list
 from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
 from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
 from tactile_depth.sensor import load
@@ -38,6 +39,7 @@ FOLDER = repository.ROOT / "build" / "lint"
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
 DEFAULT_ROM = (128, 54)  # words and bits of hdl/common/rom.sv
+DEFAULT_ENTRIES = 16  # of hdl/camera/camera_setup.sv
 
 
 @dataclass(frozen=True)
@@ -87,19 +89,12 @@ def structures() -> list[Structure]:
 
 def output_of(command: Sequence[str | Path]) -> str:
     """Return everything that a command prints, or its exit status if it fails without a word."""
+    words, pipe = [str(word) for word in command], subprocess.PIPE
     result = subprocess.run(
-        [str(word) for word in command],
-        cwd=repository.ROOT,
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
+        words, cwd=repository.ROOT, stdout=pipe, stderr=pipe, text=True, timeout=TIMEOUT_S, check=False
     )
     text = (result.stdout + result.stderr).strip()
     return text or (f"exit status {result.returncode}" if result.returncode else "")
-
-
-# The tools.
 
 
 def verilator(structure: Structure, files: Sequence[Path]) -> str:
@@ -117,8 +112,8 @@ def icarus(structure: Structure, files: Sequence[Path]) -> str:
 
 
 def slang(tops: Sequence[str], parameters: dict[str, int], files: Sequence[Path]) -> str:
-    given = [f"-G{name}={value}" for name, value in parameters.items()]
-    return output_of([sys.executable, "-m", "commands.verify.slang_lint", ",".join(tops), *given, *files])
+    options = [f"-G{name}={value}" for name, value in parameters.items()]
+    return output_of([sys.executable, "-m", "commands.verify.slang_lint", ",".join(tops), *options, *files])
 
 
 def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
@@ -166,6 +161,7 @@ def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
     write_gains(folder, unit_gains(Configuration()))
     write_floor(folder, no_floor(Configuration()), Configuration().depth.width)
     write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
+    write_list(folder, [pins(False, True, 0)] * DEFAULT_ENTRIES)
     return yosys([Structure(name) for name in cores], files, folder)
 
 
@@ -201,23 +197,33 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
     ]
 
 
+def board_sources() -> list[Path]:
+    """Return the source files of all boards."""
+    return [path for sources in fpga.SOURCES.values() for path in sources]
+
+
+def wrappers_of_boards() -> list[Path]:
+    """Write the wrapper that each board instantiates, and return their paths."""
+    return [wrapper.write(FOLDER, name, wrapper.default_parameters()) for name in fpga.BOARDS]
+
+
 def checks() -> list[Check]:
     """Return the checks of every core, of the boards, of the whole in its structures, and of the Python files."""
     files = repository.sources()
     benches = sorted((repository.ROOT / "tb").glob("*.sv"))
-    boards = [path for sources in fpga.SOURCES.values() for path in sources]
-    with_boards = [*files, *boards]
+    boards = board_sources()
+    with_boards = [*files, *boards, *wrappers_of_boards()]
     others = [*boards, *benches, *fpga.TECHNOLOGY]
-    tops, whole = [Structure(name) for name in modules(boards)], structures()
-    small = [structure for structure in whole if structure.config and structure.config.columns == GRIDS[0]]
+    tops, designs = [Structure(name) for name in modules(boards)], structures()
+    small = [structure for structure in designs if structure.config and structure.config.columns == GRIDS[0]]
     python = [sys.executable, "-m"]
     return [
         *core_checks(list(repository.cores())),
-        *(Check("verilator", top.name, partial(verilator, top, files)) for top in whole),
+        *(Check("verilator", top.name, partial(verilator, top, files)) for top in designs),
         *(Check("verilator", top.name, partial(verilator, top, with_boards)) for top in tops),
-        *(Check("icarus", top.name, partial(icarus, top, files)) for top in whole),
+        *(Check("icarus", top.name, partial(icarus, top, files)) for top in designs),
         *(Check("icarus", top.name, partial(icarus, top, with_boards)) for top in tops),
-        *(Check("slang", top.name, partial(slang, [top.top], top.parameters, files)) for top in whole),
+        *(Check("slang", top.name, partial(slang, [top.top], top.parameters, files)) for top in designs),
         Check("slang", "boards", partial(slang, modules(boards), {}, with_boards)),
         *(Check("yosys", top.name, partial(yosys_structure, top, files)) for top in small),
         Check("verible", "rules", partial(verible, others)),
@@ -241,7 +247,8 @@ def run(all_checks: Sequence[Check]) -> int:
     begin = time.monotonic()
     failed: list[str] = []
     with threads(2) as pool:
-        pending = [(check, pool.submit(check.run)) for check in all_checks]
+        longest_first = sorted(all_checks, key=lambda check: check.tool != "mypy")
+        pending = [(check, pool.submit(check.run)) for check in longest_first]
         for tool in dict.fromkeys(check.tool for check in all_checks):
             results = [(check, future.result()) for check, future in pending if check.tool == tool]
             bad = [(check, text) for check, text in results if text]
@@ -255,7 +262,3 @@ def run(all_checks: Sequence[Check]) -> int:
         + (f", {len(failed)} not: {', '.join(failed)}" if failed else "")
     )
     return variables.MISMATCH if failed else variables.EQUAL
-
-
-if __name__ == "__main__":
-    main()

@@ -37,12 +37,7 @@ lint_off -rule UNOPTFLAT -file "*wrapper.sv"
 
 
 def yosys(script: str, folder: Path, name: str) -> None:
-    """Run a script of Yosys (the native one of pyosys) in a folder; its log is <name>.log.
-
-    Raises
-    ------
-    RuntimeError
-    """
+    """Run a script of Yosys (the native one of pyosys) in a folder; its log is <name>.log. Raises RuntimeError."""
     (folder / f"{name}.ys").write_text(script)
     code = f"from pyosys import libyosys; libyosys.run_pass('tee -q -o {name}.log script {name}.ys', libyosys.Design())"
     result = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False)
@@ -51,7 +46,7 @@ def yosys(script: str, folder: Path, name: str) -> None:
 
 
 def read_commands(core: str, structure: Structure, options: str = "") -> str:
-    sources = [str(path) for path in repository.sources(structure.sources)]
+    sources = [str(path) for path in repository.sources(core)]
     parameters = [f"-G {name}={value}" for name, value in structure.parameters.items()]
     return f"read_slang --threads 1 {options} --top {core} {' '.join(parameters)} {' '.join(sources)}"
 
@@ -106,23 +101,22 @@ def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
 def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: bool = True) -> str:
     """Script that makes one netlist of a core, base.il, and ports.json; not `flat`: with the cores in it as they are.
 
+    The units have no runs of their own: they become a part of the top.
+
     `outside`: registers that become ports of the netlist, to be where a testbench can write them.
     """
     read = read_commands(core, structure, "" if flat else "--keep-hierarchy")
+    units = " ".join(f"{unit}$*" for unit in repository.UNITS)
+    dissolve = f"setattr -mod -set keep_hierarchy 1 *\nsetattr -mod -unset keep_hierarchy {units}\nflatten\n"
     return (
-        f"{read}\nprep {'-flatten ' if flat else ''}-top {core}\nopt -full\nopt_clean -purge\n"
+        f"{read}\nprep {'-flatten ' if flat else ''}-top {core}\n"
+        f"{'' if flat else dissolve}opt -full\nopt_clean -purge\n"
         f"{''.join(OUTSIDE.format(name=name) for name in outside)}write_rtlil base.il\nwrite_json ports.json\n"
     )
 
 
 def make(
-    core: str,
-    structure: Structure,
-    count: int,
-    seed: int,
-    folder: Path,
-    outside: Sequence[str] = (),
-    flat: bool = True,
+    core: str, structure: Structure, count: int, seed: int, folder: Path, outside: Sequence[str] = (), flat: bool = True
 ) -> tuple[list[Mutant], bool]:
     """Write <folder>/mutants.v and mutants.il, module <core>_netlist; the mutants, and whether those are all there are.
 
@@ -176,16 +170,12 @@ def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
     return "\n".join([*lines, f"  {core}_netlist netlist (", "    " + ",\n    ".join(connections), "  );\n"])
 
 
-def wrapper(core: str, folder: Path, inside: Mapping[str, str], selector: str = SELECTOR) -> str:
-    """A module with the core's name, parameters and ports, around the netlist and the register that selects, if any.
-
-    `inside`: declarations of signals of the core that its testbench reads, by name.
-    """
+def wrapper(core: str, folder: Path, selector: str = SELECTOR) -> str:
+    """A module with the core's name, parameters and ports, around the netlist and the register that selects, if any."""
     header = re.search(rf"^module {core}\b.*?^\);\n", repository.cores()[core].hdl.read_text(), re.S | re.M)
     assert header is not None, core
-    signals = [f"  {declaration} {name};\n  assign {name} = netlist.{name};\n" for name, declaration in inside.items()]
     selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""
-    return f"{header.group()}\n{selecting}{instance(core, folder, selector)}{''.join(signals)}\nendmodule\n"
+    return f"{header.group()}\n{selecting}{instance(core, folder, selector)}\nendmodule\n"
 
 
 def run(
@@ -195,21 +185,16 @@ def run(
     folder: Path,
     simulator: str,
     *,
-    inside: Mapping[str, str],
-    tests: str,
     jobs: int,
     seed: int,
 ) -> list[dict]:
     """The core's testbench on each mutant; a dict of each with its verdict, the device itself being number 0.
 
-    Raises
-    ------
-    RuntimeError
-        The netlist without a mutant fails, or the simulator does.
+    Raises RuntimeError: the netlist without a mutant fails, or the simulator does.
     """
-    (folder / "wrapper.sv").write_text(wrapper(core, folder, inside))
+    (folder / "wrapper.sv").write_text(wrapper(core, folder))
     (folder / "public.vlt").write_text(PUBLIC.format(core=core))
-    package = [path for path in repository.sources(None) if path.stem.endswith("_pkg")]
+    package = [path for path in repository.sources() if path.stem.endswith("_pkg")]
     build = folder / simulator
     simulation.build(
         simulator,
@@ -222,15 +207,14 @@ def run(
     )
     results = folder / f"{simulator}.jsonl"
     results.unlink(missing_ok=True)
-    tests = tests or structure.environment.get("COCOTB_TEST_FILTER", "")
     environment = {
         **structure.environment,
         "MUTANT_NUMBERS": ",".join(str(mutant.number) for mutant in mutants),
         "MUTANT_JOBS": str(jobs),
         "MUTANT_RESULTS": str(results),
-        "COCOTB_TEST_FILTER": f"every_mutant|{tests}" if tests else "",
         "OPENBLAS_NUM_THREADS": "1",
         "REGRESS": "1",
+        "NETLIST": "1",
         "MANY": str(MANY),
     }
     _, failed = simulation.run(
@@ -242,11 +226,10 @@ def run(
         seed=seed,
         environment=environment,
         log=folder / f"{simulator}.log",
-        forks=True,
     )
-    seen = [json.loads(line) for line in results.read_text().splitlines()] if results.exists() else []
-    if failed or len(seen) != len(mutants) + 1:
-        told = f" ({seen[0]['reason']})" if seen and seen[0]["verdict"] != "survived" else ""
+    verdicts = [json.loads(line) for line in results.read_text().splitlines()] if results.exists() else []
+    if failed or len(verdicts) != len(mutants) + 1:
+        reason = f" ({verdicts[0]['reason']})" if verdicts and verdicts[0]["verdict"] != "survived" else ""
         log = folder / f"{simulator}.log"
-        raise RuntimeError(f"{core}: the tests fail without a mutant{told}, or the simulator does: {log}")
-    return seen
+        raise RuntimeError(f"{core}: the tests fail without a mutant{reason}, or the simulator does: {log}")
+    return verdicts

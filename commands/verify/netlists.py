@@ -9,7 +9,6 @@ Parameters are those at which `make mutate` runs the core. Exit status: 0 when a
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import sys
 import time
@@ -23,21 +22,19 @@ from tqdm import tqdm
 
 from commands.common import repository, variables
 from commands.common import simulator as simulation
+from commands.hardware import yosys
 from commands.verify import mutants, mutate
 from commands.verify.structures import Structure, structure
 from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.errors import InputError
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 OUT = repository.ROOT / "build" / "netlists"
+LIBRARY = "share/xilinx/cells_sim.v"  # Yosys' simulation models of the cells
 WHOLE = "tactile_depth"
 WHOLE_SIZE = 32
-# Of the testbench of the whole: frames alone and on end, contact, faults and a reset, gaps and stalls.
-WHOLE_TESTS = "configuration|one_frame|back_to_back|resets.*=2.*full|gaps_and_stalls/offers=random/accepts=random"
-WHOLE_FIRST = "configuration|one_frame"
-# Icarus sees X, but plays 500 clocks a minute of a whole: there it gets the first of these tests, Verilator all.
-WHOLE_SIMULATORS = {"icarus": WHOLE_FIRST, "verilator": WHOLE_TESTS}
+# How far the testbench of the whole goes, by simulator (tb/selection.py). Icarus sees X, but plays 500 clocks a minute.
+WHOLE_LEVELS = {"icarus": "first", "verilator": "stream"}
 LIBRARY_AS_IT_IS = "".join(
     f'lint_off {rule}-file "*{file}"\n'
     for file in ("cells_sim.v", "netlist.v")
@@ -52,7 +49,7 @@ class Case:
     core: str
     name: str
     structure: Structure
-    simulators: Mapping[str, str] = field(default_factory=lambda: {"icarus": ""})  # each with a filter of the tests
+    levels: Mapping[str, str] = field(default_factory=lambda: {"icarus": "whole"})  # by simulator
 
 
 @dataclass(frozen=True)
@@ -68,14 +65,14 @@ class Result:
 
 def cases(names: Sequence[str]) -> list[Case]:
     """Return the structures of `make mutate` for each core named, and both solvers for the whole."""
-    found = []
+    listed = []
     for name in names:
         if name == WHOLE:
-            found += [whole(solver) for solver in COLUMNS]
+            listed += [whole(solver) for solver in COLUMNS]
             continue
         for index in mutate.CORES[name].structures:
-            found.append(Case(name, f"{name}-{index}", structure(name, index)))
-    return found
+            listed.append(Case(name, f"{name}-{index}", structure(name, index)))
+    return listed
 
 
 def whole(solver: str) -> Case:
@@ -83,35 +80,16 @@ def whole(solver: str) -> Case:
     config = Configuration(**choices)
     built = Structure(
         WHOLE,
-        None,
         top_parameters(config),
         repository.testbench(WHOLE),
         lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         {"CONFIGURATION": json.dumps(choices)},
     )
-    return Case(WHOLE, f"{WHOLE}-{solver}", built, WHOLE_SIMULATORS)
-
-
-def library() -> Path:
-    """Yosys' simulation models of the cells.
-
-    Raises
-    ------
-    InputError
-    """
-    wheel = importlib.util.find_spec("pyosys")
-    if wheel is None or not wheel.submodule_search_locations:
-        raise InputError("pyosys is not installed in this Python environment: run `make setup`")
-    return Path(wheel.submodule_search_locations[0]) / "share" / "xilinx" / "cells_sim.v"
+    return Case(WHOLE, f"{WHOLE}-{solver}", built, WHOLE_LEVELS)
 
 
 def netlist(case: Case, folder: Path) -> dict[str, int]:
-    """Write netlist.v and wrapper.sv; its cells by type.
-
-    Raises
-    ------
-    RuntimeError
-    """
+    """Write netlist.v and wrapper.sv; its cells by type. Raises RuntimeError."""
     core, outside = case.core, mutate.CORES[case.core].outside
     if case.structure.roms:
         case.structure.roms(folder)
@@ -123,26 +101,21 @@ def netlist(case: Case, folder: Path) -> dict[str, int]:
         folder,
         "netlist",
     )
-    (folder / "wrapper.sv").write_text(mutants.wrapper(core, folder, mutate.CORES[core].inside, selector=""))
+    (folder / "wrapper.sv").write_text(mutants.wrapper(core, folder, selector=""))
     return json.loads((folder / "cells.json").read_text())["modules"][f"\\{top}"]["num_cells_by_type"]
 
 
 def run(case: Case, seed: int) -> Result:
-    """Synthesis, and the testbench on what comes of it.
-
-    Raises
-    ------
-    RuntimeError
-    """
+    """Synthesis, and the testbench on what comes of it. Raises RuntimeError."""
     began = time.monotonic()
     folder = OUT / case.name
     folder.mkdir(parents=True, exist_ok=True)
     cells = netlist(case, folder)
     (folder / "public.vlt").write_text(mutants.PUBLIC.format(core=case.core) + LIBRARY_AS_IT_IS)
-    files = [folder / "public.vlt", library(), folder / "netlist.v", folder / "wrapper.sv"]
-    package = [path for path in repository.sources(None) if path.stem.endswith("_pkg")]
+    files = [folder / "public.vlt", yosys.in_wheel("pyosys", LIBRARY), folder / "netlist.v", folder / "wrapper.sv"]
+    package = [path for path in repository.sources() if path.stem.endswith("_pkg")]
     count = failed = 0
-    for simulator, tests in case.simulators.items():
+    for simulator, level in case.levels.items():
         place = folder / simulator
         simulation.build(
             simulator,
@@ -160,7 +133,7 @@ def run(case: Case, seed: int) -> Result:
             folder,
             simulator=simulator,
             seed=seed,
-            environment={**case.structure.environment, **({"COCOTB_TEST_FILTER": tests} if tests else {})},
+            environment={**case.structure.environment, "LEVEL": level, "NETLIST": "1"},
             log=folder / f"{simulator}.log",
         )
         count, failed = count + ran, failed + wrong
@@ -182,23 +155,18 @@ def row(result: Result) -> str:
 
 
 def parse(arguments: list[str]) -> tuple[list[str], int]:
-    """Names of cores, and the seed.
-
-    Raises
-    ------
-    InputError
-    """
-    given = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
-    given |= variables.given(arguments, given)
-    names = repository.chosen(given["CORE"])
-    return names, variables.number(given, "SEED", 1, 0, 10**9)
+    """Names of cores, and the seed. Raises InputError."""
+    values = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
+    values |= variables.given(arguments, values)
+    names = repository.chosen(values["CORE"])
+    return names, variables.number(values, "SEED", 1, 0, 10**9)
 
 
 def main() -> None:
     with variables.reported("netlists"):
         names, seed = parse(sys.argv[1:])
-        library()
-        for simulator in WHOLE_SIMULATORS:
+        yosys.in_wheel("pyosys", LIBRARY)
+        for simulator in WHOLE_LEVELS:
             simulation.check(simulator)
         results = []
         print(HEAD)
@@ -218,7 +186,3 @@ def verdict(results: list[Result]) -> int:
     print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")
     print(f", not as the RTL: {', '.join(wrong)}" if wrong else ": all as the RTL")
     return variables.MISMATCH if wrong else variables.EQUAL
-
-
-if __name__ == "__main__":
-    main()

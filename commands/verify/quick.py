@@ -33,13 +33,7 @@ class Affected:
 
 
 def git(*words: str) -> str:
-    """Return the output of a git command in the root of the repository.
-
-    Raises
-    ------
-    InputError
-        The command failed.
-    """
+    """Return the output of a git command in the root of the repository. Raises InputError: the command failed."""
     ended = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
     if ended.returncode:
         raise InputError(f"git {' '.join(words)}: {ended.stderr.strip() or 'failed'}")
@@ -47,13 +41,7 @@ def git(*words: str) -> str:
 
 
 def base_commit(base: str) -> str:
-    """Return the commit to compare with.
-
-    Raises
-    ------
-    InputError
-        There is no such commit, or no BASE and no origin/main.
-    """
+    """Return the commit to compare with. Raises InputError: there is no such commit, or no BASE and no origin/main."""
     if base:
         if base.startswith("-"):
             raise InputError(f"BASE={base}: accepted is a commit, a branch or a tag")
@@ -79,7 +67,7 @@ def affected(names: Iterable[str]) -> Affected:
     owner = {
         str(file.relative_to(ROOT)): core.name
         for core in repository.cores().values()
-        for file in (core.hdl, core.model, core.bench, core.test, core.proof)
+        for file in (core.hdl, core.model, *bench_files(core), core.test, core.proof)
         if file
     }
     cores, tests, shared = set(), set(), []
@@ -92,6 +80,12 @@ def affected(names: Iterable[str]) -> Affected:
         elif path.suffix in (".py", ".sv", ".vlt", ".toml", ".txt") or path.name == "Makefile":
             shared.append(name)
     return Affected(sorted(cores), sorted(tests - set(tests_of(sorted(cores)))), shared)
+
+
+def bench_files(core: repository.Core) -> list[Path]:
+    """Return the files of a core's testbench: one, or all of the folder that is named after the core."""
+    folders = {bench.parent for bench in core.benches if bench.parent.name == core.name}
+    return [file for folder in folders for file in folder.glob("*.py")] or list(core.benches)
 
 
 def test_of(path: Path) -> str | None:
@@ -133,7 +127,3 @@ def main() -> None:
         sys.stdout.flush()
         if not all_succeed(plan(changes), **ONE_POWER_UP):
             raise variables.Mismatch("failed: see above")
-
-
-if __name__ == "__main__":
-    main()

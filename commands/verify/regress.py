@@ -191,15 +191,15 @@ class Progress:
     """One line that is rewritten on a terminal; elsewhere a line a minute."""
 
     def __init__(self, part: str):
-        self.part, self.began, self.said = part, time.monotonic(), 0.0
+        self.part, self.began, self.printed = part, time.monotonic(), 0.0
 
     def say(self, text: str) -> None:
         now = time.monotonic()
         line = f"{self.part:10} {now - self.began:6.0f} s  {text}"
         if sys.stdout.isatty():
             print(f"\r{line[:118]:118}", end="", flush=True)
-        elif now - self.said >= 60:
-            self.said = now
+        elif now - self.printed >= 60:
+            self.printed = now
             print(line, flush=True)
 
 
@@ -221,10 +221,10 @@ def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str],
         tail: list[str] = []
         for line in process.stdout:
             tail = [*tail[-200:], line.rstrip()]
-            if found := re.search(r"\[ *(\d+)%\] (\w+) (\S+)", line):
-                progress.say(f"{found[1]:>3} %  {found[3]}")
-                if found[2] != "PASSED":
-                    part.failures.append(f"{found[2]} {found[3]}")
+            if match := re.search(r"\[ *(\d+)%\] (\w+) (\S+)", line):
+                progress.say(f"{match[1]:>3} %  {match[3]}")
+                if match[2] != "PASSED":
+                    part.failures.append(f"{match[2]} {match[3]}")
         if process.wait() and not part.failures:
             part.failures.append("pytest: " + " | ".join(tail[-3:]))
         if part.failures:
@@ -249,16 +249,8 @@ def seeds(part: Part, progress: Progress, jobs: int) -> None:
         before = len(part.failures)
         environment = {"SEED": str(seed), "POWER_UPS": "1", "REGRESS": "1"}
         pytest_part(part, progress, jobs, ["tests", "--ignore=tests/test_faults.py", "-m", SEEDED], environment)
-        part.lines.append(
-            {
-                "part": part.name,
-                "what": f"SEED={seed}",
-                "simulator": "both",
-                "runs": 1,
-                "failed": len(part.failures) - before,
-                "seconds": time.monotonic() - began,
-            }
-        )
+        line = {"part": part.name, "what": f"SEED={seed}", "simulator": "both", "runs": 1}
+        part.lines.append(line | {"failed": len(part.failures) - before, "seconds": time.monotonic() - began})
 
 
 def codes(part: Part, progress: Progress, jobs: int) -> None:
@@ -314,11 +306,11 @@ def matrix(part: Part) -> str:
 
 def main() -> None:
     with variables.reported("regress"):
-        given = variables.given(sys.argv[1:], ("PARTS", "JOBS"))
-        names = given.get("PARTS", ",".join(PARTS)).split(",")
-        jobs = variables.number(given, "JOBS", 2, 1, 1000)
+        values = variables.given(sys.argv[1:], ("PARTS", "JOBS"))
+        names = values.get("PARTS", ",".join(PARTS)).split(",")
+        jobs = variables.number(values, "JOBS", 2, 1, 1000)
         if not PARTS.keys() >= set(names):
-            raise InputError(f"PARTS={given['PARTS']}: accepted are {', '.join(PARTS)}")
+            raise InputError(f"PARTS={values['PARTS']}: accepted are {', '.join(PARTS)}")
         sys.exit(run(names, jobs))
 
 
@@ -346,7 +338,3 @@ def run(names: list[str], jobs: int) -> int:
     total = sum(part.seconds for part in parts)
     print(f"\n{compared:,} codes compared; {total / 60:.1f} minutes, {used / 60:.1f} of processor; {failed} failed")
     return variables.MISMATCH if failed else variables.EQUAL
-
-
-if __name__ == "__main__":
-    main()

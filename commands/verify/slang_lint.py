@@ -86,14 +86,25 @@ WAIVERS = (
         lambda f: re.search(r"'unused_\w+'", f.text) is not None,
         "named so: it takes up what a port or a slice has too much",
     ),
+    Waiver(
+        "unused-package-parameter",
+        lambda f: "register_map_pkg" in f.place,
+        "the register map is generated whole; no core uses every reset value and bit",
+    ),
+    Waiver(
+        "unused-def",
+        lambda f: "hdl/camera/" in f.place,
+        "cores before s_axis: a design with a camera instantiates them, the board without one does not",
+    ),
+    Waiver("unused-wildcard-import", lambda f: "build/" in f.place, "a generated wrapper imports every package"),
 )
 
-# Only for one structure of the whole, which leaves the other solver's cores aside.
-NOT_IN_A_STRUCTURE = ("unused-def", "unused-package-parameter")
+# Only for one structure of the whole or one core, which leaves other cores and what they use of the packages aside.
+NOT_IN_A_STRUCTURE = ("unused-def", *(f"unused-package-{kind}" for kind in ("parameter", "subroutine", "typedef")))
 
 
 def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, int] | None = None) -> list[Finding]:
-    """Everything that slang says, waived or not."""
+    """Return all findings of slang, waived or not."""
     engine_driver = driver.Driver()
     engine_driver.addStandardArgs()
     arguments = [
@@ -116,7 +127,7 @@ def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str
     if parsed and not any(diagnostic.isError() for diagnostic in diagnostics):
         diagnostics += engine_driver.runAnalysis(compilation).getDiagnostics()
     engine, manager = engine_driver.diagEngine, engine_driver.sourceManager
-    found = []
+    reported = []
     for diagnostic in diagnostics:
         if engine.getSeverity(diagnostic.code, diagnostic.location) == DiagnosticSeverity.Ignored:
             continue
@@ -125,8 +136,8 @@ def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str
         place = f"{manager.getFileName(location)}:{manager.getLineNumber(location)}:{manager.getColumnNumber(location)}"
         text = engine.formatMessage(diagnostic)
         types = tuple(name for name in re.findall(r"'([^']+)'", text) if width(name) is not None)
-        found.append(Finding(engine.getOptionName(diagnostic.code), place, text, source, types))
-    return found
+        reported.append(Finding(engine.getOptionName(diagnostic.code), place, text, source, types))
+    return reported
 
 
 def waiver(finding: Finding) -> Waiver | None:
@@ -135,9 +146,9 @@ def waiver(finding: Finding) -> Waiver | None:
 
 
 def main() -> None:
-    tops, *rest = sys.argv[1:]
-    parameters = {name: int(value) for name, value in (word[2:].split("=") for word in rest if word.startswith("-G"))}
-    files = [Path(word) for word in rest if not word.startswith("-G")]
+    tops, *words = sys.argv[1:]
+    parameters = {name: int(value) for name, value in (word[2:].split("=") for word in words if word.startswith("-G"))}
+    files = [Path(word) for word in words if not word.startswith("-G")]
     left = Counter(str(f) for f in findings(tops.split(","), files, parameters) if waiver(f) is None)
     for line, count in left.items():
         print(line + (f" ({count} times)" if count > 1 else ""))

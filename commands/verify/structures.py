@@ -23,7 +23,6 @@ class Structure:
     """One build of a core: the arguments that its test passes to `run_tb`."""
 
     toplevel: str
-    sources: Sequence[str] | None
     parameters: Mapping[str, int | str]
     test_module: str
     roms: Callable[[Path], None] | None
@@ -48,7 +47,6 @@ def structure(core: str, index: int) -> Structure:
 
     def keep(
         toplevel: str,
-        sources: Sequence[str] | None,
         parameters: Mapping[str, int | str] | None = None,
         test_module: str | None = None,
         roms: Callable[[Path], None] | None = None,
@@ -57,7 +55,7 @@ def structure(core: str, index: int) -> Structure:
     ) -> None:
         assert not files, f"{core}: a bench of SystemVerilog"
         bench = test_module or repository.testbench(toplevel)
-        kept.append(Structure(toplevel, sources, parameters or {}, bench, roms, environment or {}))
+        kept.append(Structure(toplevel, parameters or {}, bench, roms, environment or {}))
 
     cases: list[tuple[Any, ...]] = [()]
     names: list[str] = []

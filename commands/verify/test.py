@@ -32,7 +32,7 @@ def pytest(tests: Sequence[str] = (), *, workers: str = "auto") -> list[str]:
 
 def tests_of(cores: Sequence[str]) -> list[str]:
     """Return the test files of cores, relative to the root of the repository."""
-    files = [repository.cores()[core].test for core in cores]
+    files = [repository.cores()[core].test for core in repository.tested(cores)]
     return [str(file.relative_to(repository.ROOT)) for file in files if file]
 
 
@@ -60,7 +60,3 @@ def main() -> None:
             processes = [lint(), pytest()]
         if not all_succeed(processes, **environment):
             raise variables.Mismatch("failed: see above")
-
-
-if __name__ == "__main__":
-    main()

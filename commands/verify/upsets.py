@@ -68,9 +68,9 @@ def table(results: list[dict[str, Any]]) -> str:
 
 def main() -> None:
     with variables.reported("upsets"):
-        given = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
-        upsets = variables.number(given, "UPSETS", 60, 1, 100_000)
-        seed = variables.number(given, "SEED", 1, 0, 10**9)
+        values = variables.given(sys.argv[1:], ("UPSETS", "SEED"))
+        upsets = variables.number(values, "UPSETS", 60, 1, 100_000)
+        seed = variables.number(values, "SEED", 1, 0, 10**9)
         sys.exit(campaign(upsets, seed))
 
 
@@ -91,7 +91,3 @@ def campaign(upsets: int, seed: int) -> int:
         bad += sum(not r["setting"] and r["outcome"] in ("hang", "stays wrong") for r in results.result())
     print(f"\n{bad} hang or stay wrong")
     return variables.MISMATCH if bad else variables.EQUAL
-
-
-if __name__ == "__main__":
-    main()

@@ -2,7 +2,7 @@
 // fv_auto_zero: whatever gain_map has for it, an arbitrary depth leaves less that floor, saturated, with its own marks,
 // 10 enabled clocks after it came; while en is low all of them hold. A clipped depth is counted once, nothing else is.
 // A frame is inside from the clock behind its first word until its last has left, whatever follows it. gain_map is told
-// where rows and frames begin; a floor that was written, by the bus or the capture, reads back.
+// where frames begin; a floor that was written, by the bus or the capture, reads back.
 //
 // Assumed: frames in raster order, whole but for a reset; nothing is written or read while a change-over is due (what
 // is then read: fv_gain_map); bus and capture one at a time.
@@ -26,10 +26,7 @@ module fv_auto_zero #(
   input logic [NodeWidth-1:0]    capture_write_node,
   input logic signed [Width-1:0] capture_floor,
   input logic                    in_valid,
-  input logic [3:0]              in_place,
-  input logic                    in_user,
-  input logic                    in_last,
-  input logic                    in_frame_end,
+  input logic [2:0]              in_position,
   input logic signed [Width-1:0] in_data,
   input logic                    choose  // the depth that is followed
 );
@@ -39,26 +36,28 @@ module fv_auto_zero #(
   localparam int Highest = (1 << (Width - 1)) - 1;
   localparam int Lowest = -Highest - 1;
 
-  logic table_in_use, out_valid, out_user, out_last, out_frame_end, active, saturation;
+  logic table_in_use, out_valid, active, saturation;
+  logic [2:0] out_position;  // frame_start, row_end, frame_end
   logic signed [Width-1:0] table_read_floor, out_data;
   auto_zero #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width)) dut (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_floor,
     .table_read_floor, .capture_write, .capture_write_node, .capture_floor,
-    .in_valid, .in_user, .in_last, .in_frame_end, .in_data,
-    .out_valid, .out_user, .out_last, .out_frame_end, .out_data, .active, .saturation
+    .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturation
   );
 
-  logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  logic [3:0] row, column, position;
+  raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
   logic started = 1'b0;
   logic [1:0] read_left;  // clocks until what was read stands
+  logic named;            // bank of the frame that came last
+  always_ff @(posedge clk) if (rst || (en && in_valid && in_position[2])) named <= table_bank;
   always_comb begin
     if (!started) assume (rst);
-    if (in_valid) begin
-      assume ({in_user, in_last, in_frame_end} == {in_place[1:0] == 2'b11, in_place[3], in_place[3:2] == 2'b11});
-    end
+    if (in_valid) assume (in_position == {&position[1:0], position[3], &position[3:2]});
     assume (32'(table_index) < Nodes && 32'(capture_write_node) < Nodes);
-    if (rst || table_bank != table_in_use || read_left != 0) assume (!table_write && !capture_write && !table_read);
+    if (rst || table_bank != table_in_use || named != table_in_use || read_left != 0) begin
+      assume (!table_write && !capture_write && !table_read);
+    end
     assume (2'(table_write) + 2'(capture_write) + 2'(table_read) < 2'd2);
   end
 
@@ -66,7 +65,7 @@ module fv_auto_zero #(
   logic [ToOut-1:0] valid;
   logic [3:0] age;  // enabled clocks since it came
   logic follows, subtracts, counted, moved, held, clips, clips_q, left;
-  logic [2:0] marks;
+  logic [2:0] position_followed;
   logic signed [Width-1:0] depth, expected;
   logic [Width+3:0] out_q;
   int difference;
@@ -78,10 +77,10 @@ module fv_auto_zero #(
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
-    out_q <= {out_valid, out_user, out_last, out_frame_end, out_data};
+    out_q <= {out_valid, out_position, out_data};
     moved <= en && !rst && valid[ToFloor-1];
     counted <= subtracts;
-    left <= en && !rst && out_valid && out_frame_end;
+    left <= en && !rst && out_valid && out_position[0];
     clips_q <= clips;
     if (en) begin
       valid <= {valid[ToOut-2:0], in_valid};
@@ -90,7 +89,7 @@ module fv_auto_zero #(
       if (choose && !follows && in_valid) begin
         follows <= 1'b1;
         age <= 4'd1;
-        marks <= {in_user, in_last, in_frame_end};
+        position_followed <= in_position;
         depth <= in_data;
       end
     end
@@ -118,7 +117,7 @@ module fv_auto_zero #(
       if (table_in_use) words_0[node_written] <= written;
       else words_1[node_written] <= written;
     end
-    read_left <= table_read ? 2'd2 : read_left - 2'(read_left != 0);
+    read_left <= table_read ? 2'd1 : read_left - 2'(read_left != 0);
     if (table_read) begin
       read_known <= 1'b1;
       read_word <= table_in_use ? words_0[table_index] : words_1[table_index];
@@ -134,32 +133,29 @@ module fv_auto_zero #(
       valid_travels: assert (out_valid == valid[ToOut-1]);
       if (follows && age == 4'(ToOut)) begin
         there: assert (out_valid);
-        marks_travel: assert ({out_user, out_last, out_frame_end} == marks);
+        position_travels: assert (out_position == position_followed);
         subtracted: assert (out_data == expected);
       end
-      if (held) holds: assert ({out_valid, out_user, out_last, out_frame_end, out_data} == out_q);
+      if (held) holds: assert ({out_valid, out_position, out_data} == out_q);
       if (counted) clipped_counted: assert (saturation == clips_q);
       if (!moved) once: assert (!saturation);
       frame_inside: assert (active == (row != '0 || column != '0 || valid != '0));
-      if (in_valid) begin
-        row_begins: assert (dut.u_map.in_place[1] == (column == '0));
-        frame_begins: assert (dut.u_map.in_place[0] == (row == '0) || column != '0);
-      end
+      if (in_valid) frame_begins: assert (dut.u_map.in_frame_start == (row == '0 && column == '0));  // as it assumes
       if (read_known && read_left == 0) entry: assert (32'(table_read_floor) == 32'(read_word) + Lowest);
 
-      clipped_below: cover (counted && saturation && out_data < 0 && out_last);
-      clipped_above: cover (counted && saturation && out_data > 0 && out_user);
+      clipped_below: cover (counted && saturation && out_data < 0 && out_position[1]);
+      clipped_above: cover (counted && saturation && out_data > 0 && out_position[2]);
       unclipped: cover (follows && age == 4'(ToOut) && held && depth == -1 && out_data == 1);
-      next_inside: cover (out_valid && out_frame_end && valid[ToOut-2:0] == '1 && en);
+      next_inside: cover (out_valid && out_position[0] && valid[ToOut-2:0] == '1 && en);
       empties: cover (left && !active);
       negative_read: cover (read_known && read_left == 0 && table_read_floor < 0 && table_in_use);
     end
   end
 
-  bind fv_auto_zero.dut.u_map.g_bank[0].g_channel[0].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
+  bind fv_auto_zero.dut.u_map.g_table[0].u_gains.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
-  bind fv_auto_zero.dut.u_map.g_bank[1].g_channel[0].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
+  bind fv_auto_zero.dut.u_map.g_table[0].u_gains.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
 

@@ -30,14 +30,14 @@ module fv_flat_field #(
   input logic [GainWidth-1:0]   table_gain,
   input logic                   in_valid,
   input logic [23:0]            in_pixel,
-  input logic [3:0]             in_place,
+  input logic [3:0]             in_position,
   input logic                   choose  // the pixel that is followed
 );
 
   logic table_in_use, out_valid, dark;
   logic [GainWidth-1:0] table_read_gain;
   logic [3*GainWidth-1:0] capture_read_gains;
-  logic [3:0] out_place;
+  logic [3:0] out_position;
   logic [OutWidth-1:0] out_red, out_green, out_blue;
   logic [1:0] saturations;
   flat_field #(
@@ -46,12 +46,12 @@ module fv_flat_field #(
   ) dut (
     .clk, .rst, .en, .dark_level, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
     .table_read_gain, .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0),
-    .capture_read_node('0), .capture_read_gains, .in_valid, .in_pixel, .in_place,
-    .out_valid, .out_place, .out_red, .out_green, .out_blue, .dark, .saturations
+    .capture_read_node('0), .capture_read_gains, .in_valid, .in_pixel, .in_position,
+    .out_valid, .out_position, .out_red, .out_green, .out_blue, .dark, .saturations
   );
 
   logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_position, .row, .column);
   logic started = 1'b0;
   always_ff @(posedge clk) started <= 1'b1;
   always_comb begin
@@ -61,14 +61,14 @@ module fv_flat_field #(
 
   if (Meets != 0) begin : g_meets
     bind fv_flat_field.dut flat_field_meets u_check (
-      .clk, .rst, .en, .choose(fv_flat_field.choose), .dark_level, .in_valid, .in_pixel, .in_place, .gain_valid,
-      .gain_place, .dim, .colours
+      .clk, .rst, .en, .choose(fv_flat_field.choose), .dark_level, .in_valid, .in_pixel, .in_position, .gain_valid,
+      .gain_position, .dim, .colours
     );
   end else begin : g_leaves
     bind fv_flat_field.dut flat_field_leaves #(
       .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset), .OutWidth(OutWidth), .Flat(Flat)
     ) u_check (
-      .clk, .rst, .en, .gain_valid, .gain_place, .dim, .colours, .gains, .out_valid, .out_place, .out_red, .out_green,
+      .clk, .rst, .en, .gain_valid, .gain_position, .dim, .colours, .gains, .out_valid, .out_position, .out_red, .out_green,
       .out_blue, .dark, .saturations
     );
   end
@@ -84,9 +84,9 @@ module flat_field_meets (
   input logic [7:0]  dark_level,
   input logic        in_valid,
   input logic [23:0] in_pixel,
-  input logic [3:0]  in_place,
+  input logic [3:0]  in_position,
   input logic        gain_valid,
-  input logic [3:0]  gain_place,
+  input logic [3:0]  gain_position,
   input logic        dim,
   input logic [23:0] colours      // blue, green, red
 );
@@ -100,7 +100,7 @@ module flat_field_meets (
   logic [3:0] age, place;  // enabled clocks since the pixel came
   logic follows;
   logic [24:0] pixel;
-  always_comb level_now = in_place[1:0] == 2'b11 ? dark_level : level;
+  always_comb level_now = in_position[1:0] == 2'b11 ? dark_level : level;
   always_ff @(posedge clk) begin
     if (en) begin
       if (in_valid) level <= level_now;
@@ -109,7 +109,7 @@ module flat_field_meets (
       if (choose && !follows && in_valid) begin
         follows <= 1'b1;
         age <= 4'd1;
-        place <= in_place;
+        place <= in_position;
         pixel <= {in_pixel[23:16] < level_now && in_pixel[15:8] < level_now && in_pixel[7:0] < level_now,
             in_pixel[15:8], in_pixel[7:0], in_pixel[23:16]};
       end
@@ -119,7 +119,7 @@ module flat_field_meets (
   always_comb begin
     if (started && follows && age == 4'(ToGain)) begin
       valid_meets: assert (gain_valid);
-      place_meets: assert (gain_place == place);
+      place_meets: assert (gain_position == place);
       pixel_meets: assert ({dim, colours} == pixel);
     end
     meets_dim: cover (started && follows && age == 4'(ToGain) && dim && colours[0]);
@@ -139,12 +139,12 @@ module flat_field_leaves #(
   input logic                   rst,
   input logic                   en,
   input logic                   gain_valid,
-  input logic [3:0]             gain_place,
+  input logic [3:0]             gain_position,
   input logic                   dim,
   input logic [23:0]            colours,
   input logic [3*GainWidth-1:0] gains,
   input logic                   out_valid,
-  input logic [3:0]             out_place,
+  input logic [3:0]             out_position,
   input logic [OutWidth-1:0]    out_red,
   input logic [OutWidth-1:0]    out_green,
   input logic [OutWidth-1:0]    out_blue,
@@ -196,7 +196,7 @@ module flat_field_leaves #(
         ? 2'(clips_q[3]) + 2'(clips_q[4]) + 2'(clips_q[5]) : '0;
     if (en) begin
       valid <= {valid[ToOut-2:0], gain_valid};
-      place <= {place[4*ToOut-5:0], gain_place};
+      place <= {place[4*ToOut-5:0], gain_position};
       dark_q <= {dark_q[0], is_dark};
       clips_q <= {clips_q[2:0], clips};
       results_q <= {results_q[3*OutWidth-1:0], OutWidth'(result[2]), OutWidth'(result[1]), OutWidth'(result[0])};
@@ -214,12 +214,12 @@ module flat_field_leaves #(
   always_comb begin
     if (started) begin
       valid_travels: assert (out_valid == valid[ToOut-1]);
-      if (out_valid) place_travels: assert (out_place == place[4*ToOut-1-:4]);
+      if (out_valid) place_travels: assert (out_position == place[4*ToOut-1-:4]);
       if (out_valid && known) colours_follow: assert ({out_blue, out_green, out_red} == expected);
       if (held) holds: assert ({out_blue, out_green, out_red} == out_q);
       dark_counted: assert (dark == expected_dark);
       clipped_counted: assert (saturations == expected_clips);
-      several_dark: cover (dark && !out_place[1] && out_red == '0 && out_valid);
+      several_dark: cover (dark && !out_position[1] && out_red == '0 && out_valid);
       clipped: cover (saturations == 2'd2);
     end
   end

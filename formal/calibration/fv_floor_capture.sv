@@ -24,9 +24,7 @@ module fv_floor_capture #(
   input logic                    request,
   input logic [3:0]              log2_frames,
   input logic                    in_valid,
-  input logic [3:0]              in_place,
-  input logic                    in_user,
-  input logic                    in_last,
+  input logic                    in_frame_start,
   input logic                    in_frame_end,
   input logic signed [Width-1:0] in_data,
   input logic [NodeWidth-1:0]    chosen
@@ -39,12 +37,12 @@ module fv_floor_capture #(
   logic [NodeWidth-1:0] map_write_node;
   logic signed [Width-1:0] map_write_floor;
   floor_capture #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .MaxLog2(MaxLog2)) dut (
-    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_user, .in_last, .in_frame_end, .in_data,
+    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_frame_start, .in_frame_end, .in_data,
     .map_write, .map_write_node, .map_write_floor
   );
 
-  logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  logic [3:0] row, column, position;
+  raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
   logic started = 1'b0;
   typedef enum logic [1:0] {Idle, Armed, Summing, Closing} state_e;
   state_e state;
@@ -54,7 +52,7 @@ module fv_floor_capture #(
   logic take, first, block_ends, last;
   logic [2:0] to_done;
   assign take = en && in_valid;
-  assign first = take && in_user;
+  assign first = take && in_frame_start;
   assign log2_next = 32'(log2_frames) > MaxLog2 ? 4'(MaxLog2) : log2_frames;
   assign node = NodeWidth'(32'(row) / 2 * (Columns / 2) + 32'(column) / 2);
   assign block_ends = take && 32'(row) < Rows / 2 * 2 && row[0] && column[0];
@@ -92,9 +90,7 @@ module fv_floor_capture #(
 
   always_comb begin
     if (!started) assume (rst);
-    if (in_valid) begin
-      assume ({in_user, in_last, in_frame_end} == {in_place[1:0] == 2'b11, in_place[3], in_place[3:2] == 2'b11});
-    end
+    if (in_valid) assume (in_frame_start == &position[1:0] && in_frame_end == &position[3:2]);
   end
 
   if (Sums == 0) begin : g_order
@@ -103,7 +99,7 @@ module fv_floor_capture #(
         when: assert (busy == (state != Idle) && done == (state == Closing && to_done == '0));
         written_when_due: assert (map_write == (closes[ToMap-1] && !rst));
         if (map_write) begin
-          in_place: assert (map_write_node == closed_node[NodeWidth*ToMap-1-:NodeWidth]);
+          to_its_node: assert (map_write_node == closed_node[NodeWidth*ToMap-1-:NodeWidth]);
           in_last_frame: assert (state == Closing || state == Summing && wanted == (MaxLog2 + 1)'(1));
           if (map_write_node == watched) once: assert (!written);
         end

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_gain_map: every gain is the interpolation, rounded to even, of the nodes of the bank that was named when its frame
-// began; valid and place travel with it, 9 enabled clocks; while en is low all of them hold. An entry that is read is
+// began; valid and data travel with it, 9 enabled clocks; while en is low all of them hold. An entry that is read is
 // that of the bank not in use. In two parts: down a column (Along 0), the weighted sum of two nodes of the row that the
 // pixel is in, of the right bank; along a row (Along 1), gains between any two such sums.
 //
@@ -35,32 +35,33 @@ module fv_gain_map #(
   input logic                 capture_read,
   input logic [NodeWidth-1:0] capture_read_node,
   input logic                 in_valid,
-  input logic [3:0]           in_place
+  input logic                 in_frame_start,
+  input logic                 in_data
 );
 
   localparam int Latency = 9;
 
-  logic table_in_use, out_valid;
-  logic [3:0] out_place;
+  logic table_in_use, out_valid, out_data, active;
   logic [Width-1:0] table_read_gain;
   logic [Channels*Width-1:0] capture_read_gains, out_gains;
-  gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width), .Channels(Channels)) dut (
+  gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width), .Channels(Channels), .DataWidth(1)) dut (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
     .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,
-    .capture_read_gains, .in_valid, .in_place, .out_valid, .out_place, .out_gains
+    .capture_read_gains, .in_valid, .in_frame_start, .in_data, .out_valid, .out_data, .out_gains, .active
   );
 
-  logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  logic [3:0] row, column, position;
+  raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
 
   logic started = 1'b0;
   logic [1:0] read_left;  // clocks until what was read stands
   always_comb begin
     if (!started) assume (rst);
+    if (in_valid) assume (in_frame_start == &position[1:0]);
     assume (32'(table_index[NodeWidth+1:2]) < Nodes);
     assume (32'(capture_write_node) < Nodes && 32'(capture_read_node) < Nodes);
     assume (!(capture_write && capture_read && capture_write_node == capture_read_node));
-    if (rst || table_bank != table_in_use || table_read || read_left != 0) begin
+    if (rst || table_bank != table_in_use || used != bank || table_read || read_left != 0) begin
       assume (!table_write && !capture_write && !capture_read);
     end
     if (rst || read_left != 0) assume (!table_read);
@@ -86,29 +87,27 @@ module fv_gain_map #(
     end
   end
 
-  logic used, valid_q;
-  logic [3:0] place_q;
-  assign used = valid_q && place_q[1:0] == 2'b11 ? table_bank : bank;
+  logic used, named, starts_q;
+  assign used = starts_q ? named : bank;
 
-  logic [Latency-1:0] valid;
-  logic [4*Latency-1:0] place;
+  logic [Latency-1:0] valid, data;
   logic held, read_known, changed;
   logic [Width-1:0] read_gain, out_q;
-  logic [4:0] out_side_q;
-  assign valid_q = valid[0];
-  assign place_q = place[3:0];
+  logic [1:0] out_side_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
     out_q <= out_gains[Channel*Width+:Width];
-    out_side_q <= {out_valid, out_place};
+    out_side_q <= {out_valid, out_data};
     if (en) begin
       valid <= {valid[Latency-2:0], in_valid};
-      place <= {place[4*Latency-5:0], in_place};
+      data <= {data[Latency-2:0], in_data};
+      starts_q <= in_valid & in_frame_start;
+      if (in_valid && in_frame_start) named <= table_bank;
       bank <= used;
     end
     if (started && !rst && bank != used && en) changed <= 1'b1;
-    read_left <= table_read ? 2'd2 : read_left - 2'(read_left != 0);
+    read_left <= table_read ? 2'd1 : read_left - 2'(read_left != 0);
     if (table_read) begin  // of the bank that is not in use behind this clock; the other channels: unknown
       read_known <= table_index[1:0] == 2'(Channel) || 32'(table_index[1:0]) >= Channels;
       read_gain <= 32'(table_index[1:0]) >= Channels ? '0
@@ -116,6 +115,7 @@ module fv_gain_map #(
     end
     if (rst) begin
       valid <= '0;
+      starts_q <= 1'b0;
       bank <= table_bank;
       read_left <= '0;
       read_known <= 1'b0;
@@ -127,10 +127,11 @@ module fv_gain_map #(
     if (started) begin
       bank_in_use: assert (table_in_use == bank);
       valid_travels: assert (out_valid == valid[Latency-1]);
-      if (out_valid) place_travels: assert (out_place == place[4*Latency-1-:4]);
-      if (held) holds: assert ({out_valid, out_place} == out_side_q && out_gains[Channel*Width+:Width] == out_q);
+      if (out_valid) data_travels: assert (out_data == data[Latency-1]);
+      inside: assert (active == (valid != '0));
+      if (held) holds: assert ({out_valid, out_data} == out_side_q && out_gains[Channel*Width+:Width] == out_q);
       if (read_known && read_left == 0) entry: assert (table_read_gain == read_gain);
-      new_frame_with_new_gains: cover (changed && out_valid && out_place[1:0] == 2'b11 && out_gains[Channel*Width]);
+      new_frame_with_new_gains: cover (changed && out_valid && places_q[8*ToSum-1-:8] == '0 && out_gains[Channel*Width]);
       read_at_the_change: cover (table_read && bank != used && en);
     end
   end
@@ -219,10 +220,10 @@ module fv_gain_map #(
     end
   end
 
-  bind fv_gain_map.dut.g_bank[0].g_channel[Channel].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
+  bind fv_gain_map.dut.g_table[Channel].u_gains.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
-  bind fv_gain_map.dut.g_bank[1].g_channel[Channel].u_gains ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
+  bind fv_gain_map.dut.g_table[Channel].u_gains.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
 

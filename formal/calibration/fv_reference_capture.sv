@@ -2,8 +2,7 @@
 // fv_reference_capture: a capture begins with the first whole frame behind a request, takes 2^k good frames in a row,
 // and is done a fixed number of clocks behind the last of them; no node is read before it was written, or in the clock
 // that writes it, and nothing is written while idle. In a second part (Sums 1): an arbitrary pixel of a capture, the
-// only
-// one that is not black, is added once to its node and to no other; what does nothing but add does so to all.
+// only one that is not black, is added once to its node and to no other; what does nothing but add does so to all.
 //
 // Of the three colours, red; the quotients are left to simulation. Assumed: places in raster order.
 
@@ -23,7 +22,7 @@ module fv_reference_capture #(
   input logic [3:0]           log2_frames,
   input logic                 in_valid,
   input logic [23:0]          in_pixel,
-  input logic [3:0]           in_place,
+  input logic [3:0]           in_position,
   input logic                 in_bad,
   input logic [NodeWidth-1:0] chosen
 );
@@ -37,7 +36,7 @@ module fv_reference_capture #(
   reference_capture #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .GainFraction(Width), .MaxLog2(MaxLog2)
   ) dut (
-    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_pixel, .in_place, .in_bad,
+    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_pixel, .in_position, .in_bad,
     .map_write, .map_write_node, .map_write_gains, .map_read, .map_read_node, .map_read_gains
   );
   ram #(.Width(3 * Width), .Depth(Nodes)) u_ram (
@@ -49,7 +48,7 @@ module fv_reference_capture #(
   );
 
   logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_place, .row, .column);
+  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_position, .row, .column);
   logic started = 1'b0;
   typedef enum logic [1:0] {Idle, Armed, Summing, Dividing} state_e;
   state_e state;
@@ -59,8 +58,8 @@ module fv_reference_capture #(
   logic seen, seen_here;       // the pixel, in the frames that count; at the watched node
   logic first, last, counts, in_watched;
   logic [8:0] to_done;
-  assign first = en && in_valid && in_place[1:0] == 2'b11;
-  assign last = en && in_valid && in_place[3:2] == 2'b11;
+  assign first = en && in_valid && in_position[1:0] == 2'b11;
+  assign last = en && in_valid && in_position[3:2] == 2'b11;
   assign counts = en && in_valid && (state == Summing || state == Armed && first);
   assign in_watched = 32'(row) < Rows / 2 * 2 && 32'(row) / 2 * (Columns / 2) + 32'(column) / 2 == 32'(watched);
   assign wanted_next = (MaxLog2 + 1)'(1) << (32'(log2_frames) > MaxLog2 ? 4'(MaxLog2) : log2_frames);
@@ -98,20 +97,27 @@ module fv_reference_capture #(
     if (counts && seen && !(first && state == Armed)) assume (!in_pixel[16]);
   end
 
+  // Clocks of a node so far: four to fetch it, then for each gain one to start the divider, which counts its bits down.
   localparam int GainSteps = Width + 3;
-  logic in_step;
+  localparam int Fetching = 3, Divides = 4;  // states of the core
+  logic in_step, fetches, starts, divides;
   int steps;
+  assign fetches = dut.state == 3'(Fetching) && !dut.divide_start && !dut.u_divide.dividing;
+  assign starts = dut.state == 3'(Divides) && dut.divide_start && !dut.u_divide.dividing && !dut.gains_valid;
+  assign divides = dut.state == 3'(Divides) && !dut.divide_start && dut.u_divide.dividing && !dut.gains_valid;
   always_comb begin
-    steps = (32'(dut.divide_node) + 32'(dut.write_back)) * (4 + 3 * GainSteps) + 32'(dut.step);
-    if (dut.phase != 2'd3) steps = steps + 4 + 32'(dut.phase) * GainSteps;
-    in_step = 32'(to_done) == Clocks - 1 - steps && 32'(dut.step) < (dut.phase == 2'd3 ? 4 : GainSteps)
-        && !(dut.write_back && (dut.phase != 2'd3 || dut.step != '0)) && dut.state == 2'd3;
+    steps = (32'(dut.divide_node) + 32'(dut.gains_valid)) * (4 + 3 * GainSteps);
+    if (fetches) steps = steps + 32'(dut.step);
+    else steps = steps + 4 + 32'(dut.channel) * GainSteps;
+    if (divides) steps = steps + GainSteps - 1 - 32'(dut.u_divide.bits_to_come);
+    in_step = 32'(to_done) == Clocks - 1 - steps && (fetches || ((starts || divides) && 32'(dut.channel) < 3))
+        && !(dut.gains_valid && dut.step != '0) && !(divides && 32'(dut.u_divide.bits_to_come) >= GainSteps - 1);
   end
 
   always_comb begin
     if (started) begin
       if (Sums == 0) begin
-        // The divider's place by its own counters, so that the proof needs no search for it.
+        // The divider's progress by its own counters, so that the proof needs no search for it.
         when: assert (busy == (state != Idle) && done == (state == Dividing && to_done == '0)
             && (state != Dividing || to_done == '0 || in_step) && (state != Idle || !map_write));
       end else begin

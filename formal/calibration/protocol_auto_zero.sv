@@ -20,18 +20,12 @@ module protocol_auto_zero #(
   input  logic                 capture_write,
   input  logic [NodeWidth-1:0] capture_write_node,
   input  logic                 in_valid,
-  input  logic                 in_user,
-  input  logic                 in_last,
-  input  logic                 in_frame_end,
+  input  logic [2:0]           in_position,  // frame_start, row_end, frame_end
   input  logic                 out_valid,
-  output logic                 given_in_user,
-  output logic                 given_in_last,
-  output logic                 given_in_frame_end,
+  output logic [2:0]           given_in_position,
   output logic                 holds,
   output logic                 counts_out_valid,
-  output logic                 counts_out_user,
-  output logic                 counts_out_last,
-  output logic                 counts_out_frame_end,
+  output logic                 counts_out_position,
   output logic                 counts_out_data,
   output logic                 counts_active,
   output logic                 counts_saturation,
@@ -39,23 +33,21 @@ module protocol_auto_zero #(
   output logic                 counts_table_read_floor
 );
 
-  localparam logic [NodeWidth:0] End = Nodes;
-  logic reset, live = 1'b0, bus_idle, read_stands;
+  logic live = 1'b0;
   logic [3:0] place;
-  assign reset = rst | ~holds;
-  always_ff @(posedge clk) live <= live | reset;
-  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset, .en, .in_valid, .place);
-  table_reads u_reads (.clk, .reset, .table_read, .idle(bus_idle), .stands(read_stands));
-  assign given_in_user = in_valid & ~rst ? &place[1:0] : in_user;
-  assign given_in_last = in_valid & ~rst ? place[3] : in_last;
-  assign given_in_frame_end = in_valid & ~rst ? &place[3:2] : in_frame_end;
-  assign holds = (~(table_write | capture_write) | (table_bank == table_in_use & ~rst & ~table_read & bus_idle))
-      & (~table_read | (~rst & bus_idle)) & (~table_write | ~capture_write)
-      & {1'b0, table_index} < End & {1'b0, capture_write_node} < End;
-  assign counts_out_valid = live & ~reset & en;
-  assign {counts_out_user, counts_out_last, counts_out_frame_end, counts_out_data} = {4{counts_out_valid & out_valid}};
-  assign {counts_active, counts_saturation} = {2{live & ~reset}};
-  assign counts_table_in_use = live;
-  assign counts_table_read_floor = live & read_stands;
+  always_ff @(posedge clk) live <= live | rst | ~holds;
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (
+    .clk, .reset(rst | ~holds), .en, .in_valid, .place
+  );
+  protocol_gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2)) u_floors (
+    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index({table_index, 2'd0}),
+    .capture_write, .capture_write_node, .capture_read(1'b0), .capture_read_node('0), .in_valid,
+    .in_frame_start(in_position[2]), .out_valid, .given_in_frame_start(), .holds, .counts_out_valid,
+    .counts_out_data(counts_out_data), .counts_out_gains(), .counts_active, .counts_table_in_use,
+    .counts_table_read_gain(counts_table_read_floor), .counts_capture_read_gains()
+  );
+  assign given_in_position = in_valid & ~rst ? {&place[1:0], place[3], &place[3:2]} : in_position;
+  assign counts_out_position = counts_out_data;
+  assign counts_saturation = live & ~rst & holds;
 
 endmodule

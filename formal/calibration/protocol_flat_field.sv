@@ -21,12 +21,12 @@ module protocol_flat_field #(
   input  logic                 capture_read,
   input  logic [NodeWidth-1:0] capture_read_node,
   input  logic                 in_valid,
-  input  logic [3:0]           in_place,
+  input  logic [3:0]           in_position,
   input  logic                 out_valid,
-  output logic [3:0]           given_in_place,
+  output logic [3:0]           given_in_position,
   output logic                 holds,
   output logic                 counts_out_valid,
-  output logic                 counts_out_place,
+  output logic                 counts_out_position,
   output logic                 counts_out_red,
   output logic                 counts_out_green,
   output logic                 counts_out_blue,
@@ -38,14 +38,19 @@ module protocol_flat_field #(
 );
 
   logic live = 1'b0, pixel;
+  logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst | ~holds;
   protocol_gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2)) u_gains (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .capture_write,
-    .capture_write_node, .capture_read, .capture_read_node, .in_valid, .in_place, .out_valid, .given_in_place, .holds,
-    .counts_out_valid, .counts_out_place(pixel), .counts_out_gains(), .counts_table_in_use, .counts_table_read_gain,
-    .counts_capture_read_gains
+    .capture_write_node, .capture_read, .capture_read_node, .in_valid, .in_frame_start(&in_position[1:0]), .out_valid,
+    .given_in_frame_start(), .holds, .counts_out_valid, .counts_out_data(pixel), .counts_out_gains(), .counts_active(),
+    .counts_table_in_use, .counts_table_read_gain, .counts_capture_read_gains
   );
-  assign {counts_out_place, counts_out_red, counts_out_green, counts_out_blue} = {4{pixel}};
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (
+    .clk, .reset(rst | ~holds), .en, .in_valid, .place
+  );
+  assign given_in_position = in_valid & ~rst ? place : in_position;
+  assign {counts_out_position, counts_out_red, counts_out_green, counts_out_blue} = {4{pixel}};
   assign {counts_dark, counts_saturations} = {2{live & ~rst & holds}};
 
 endmodule

@@ -9,12 +9,10 @@ module protocol_floor_capture #(
   input  logic rst,
   input  logic en,
   input  logic in_valid,
-  input  logic in_user,
-  input  logic in_last,
+  input  logic in_frame_start,
   input  logic in_frame_end,
   input  logic map_write,
-  output logic given_in_user,
-  output logic given_in_last,
+  output logic given_in_frame_start,
   output logic given_in_frame_end,
   output logic counts_busy,
   output logic counts_done,
@@ -27,8 +25,7 @@ module protocol_floor_capture #(
   logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst;
   raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset(rst), .en, .in_valid, .place);
-  assign given_in_user = in_valid & ~rst ? &place[1:0] : in_user;
-  assign given_in_last = in_valid & ~rst ? place[3] : in_last;
+  assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign given_in_frame_end = in_valid & ~rst ? &place[3:2] : in_frame_end;
   assign {counts_busy, counts_done} = {2{live & ~rst}};
   assign counts_map_write = live;

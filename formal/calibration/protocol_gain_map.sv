@@ -22,38 +22,41 @@ module protocol_gain_map #(
   input  logic                 capture_read,
   input  logic [NodeWidth-1:0] capture_read_node,
   input  logic                 in_valid,
-  input  logic [3:0]           in_place,
+  input  logic                 in_frame_start,
   input  logic                 out_valid,
-  output logic [3:0]           given_in_place,
+  output logic                 given_in_frame_start,
   output logic                 holds,
   output logic                 counts_out_valid,
-  output logic                 counts_out_place,
+  output logic                 counts_out_data,
   output logic                 counts_out_gains,
+  output logic                 counts_active,
   output logic                 counts_table_in_use,
   output logic                 counts_table_read_gain,
   output logic                 counts_capture_read_gains
 );
 
   localparam logic [NodeWidth:0] End = Nodes;
-  logic reset, live = 1'b0, captured = 1'b0, bus_idle, read_stands;
+  logic reset, live = 1'b0, captured = 1'b0, named = 1'b0, bus_idle, read_stands;
   logic [3:0] place;
   assign reset = rst | ~holds;
   always_ff @(posedge clk) begin
     live <= live | reset;
     captured <= capture_read & holds;
+    if (reset || (en && in_valid && &place[1:0])) named <= table_bank;
   end
   raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset, .en, .in_valid, .place);
   table_reads u_reads (.clk, .reset, .table_read, .idle(bus_idle), .stands(read_stands));
-  assign given_in_place = in_valid & ~rst ? place : in_place;
+  assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign holds = (~(table_write | capture_write | capture_read)
-          | (table_bank == table_in_use & ~rst & ~table_read & bus_idle))
+          | (table_bank == table_in_use & named == table_in_use & ~rst & ~table_read & bus_idle))
       & (~table_read | (~rst & bus_idle))
       & (~table_write | (~capture_write & ~capture_read))
       & (~capture_write | ~capture_read | capture_write_node != capture_read_node)
       & {1'b0, table_index[NodeWidth+1:2]} < End
       & {1'b0, capture_write_node} < End & {1'b0, capture_read_node} < End;
   assign counts_out_valid = live & ~reset & en;
-  assign {counts_out_place, counts_out_gains} = {2{counts_out_valid & out_valid}};
+  assign {counts_out_data, counts_out_gains} = {2{counts_out_valid & out_valid}};
+  assign counts_active = live & ~reset;
   assign counts_table_in_use = live;
   assign counts_table_read_gain = live & read_stands;
   assign counts_capture_read_gains = captured;

@@ -9,10 +9,10 @@ module protocol_reference_capture #(
   input  logic       rst,
   input  logic       en,
   input  logic       in_valid,
-  input  logic [3:0] in_place,
+  input  logic [3:0] in_position,
   input  logic       map_write,
   input  logic       map_read,
-  output logic [3:0] given_in_place,
+  output logic [3:0] given_in_position,
   output logic       counts_map_write_node,
   output logic       counts_map_write_gains,
   output logic       counts_map_read_node,
@@ -23,7 +23,7 @@ module protocol_reference_capture #(
   logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst;
   raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset(rst), .en, .in_valid, .place);
-  assign given_in_place = in_valid & ~rst ? place : in_place;
+  assign given_in_position = in_valid & ~rst ? place : in_position;
   assign counts = live & ~rst;
   assign {counts_map_write_node, counts_map_write_gains} = {2{counts & map_write}};
   assign counts_map_read_node = counts & map_read;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_threshold_comparator: contact rises in the clock after a depth above the threshold leaves, and at no other time;
-// it falls in the clock after the first depth of a frame, if that is not above and hold is low, and at no other time.
+// fv_threshold_comparator: contact rises in the clock after a depth above the threshold leaves, and at no other time.
+// While hold is high it does not fall. Otherwise it is high from such a depth on until the clock after the first depth of
+// the next frame, so it falls in the clock after hold is cleared if this frame has had no depth above the threshold.
 //
 // Assumed: what leaves first after a reset is the first depth of a frame (frame_output sends whole frames).
 
@@ -10,7 +11,7 @@ module fv_threshold_comparator #(
   input logic                    clk,
   input logic                    rst,
   input logic                    in_valid,
-  input logic                    in_user,
+  input logic                    in_frame_start,
   input logic signed [Width-1:0] in_data,
   input logic signed [31:0]      threshold,
   input logic                    hold
@@ -18,7 +19,7 @@ module fv_threshold_comparator #(
 
   logic contact;
   threshold_comparator #(.Width(Width)) dut (
-    .clk, .rst, .in_valid, .in_user, .in_data, .threshold, .hold, .contact
+    .clk, .rst, .in_valid, .in_frame_start, .in_data, .threshold, .hold, .contact
   );
 
   logic started = 1'b0;
@@ -26,31 +27,35 @@ module fv_threshold_comparator #(
 
   logic framed;  // a frame has begun since reset
   logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
-  assign in_force = in_valid & in_user ? threshold : of_frame;
+  assign in_force = in_valid & in_frame_start ? threshold : of_frame;
   logic signed [33:0] excess;
   assign excess = 34'(in_data) - 34'(in_force);
 
-  logic fired, cleared, contact_q, within_frame;
+  logic fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
   always_ff @(posedge clk) begin
     started <= 1'b1;
-    framed <= ~rst & (framed | (in_valid & in_user));
+    framed <= ~rst & (framed | (in_valid & in_frame_start));
     of_frame <= in_force;
     fired <= ~rst & in_valid & (excess > 0);
-    cleared <= rst | (in_valid & in_user & ~hold & (excess <= 0));
-    within_frame <= framed & in_valid & ~in_user;
-    contact_q <= contact;
+    of_this_frame <= ~rst & (in_valid ? excess > 0 | (of_this_frame & ~in_frame_start) : of_this_frame);
+    within_frame <= framed & in_valid & ~in_frame_start;
+    contact_q <= contact & ~rst;
+    hold_q <= hold;
+    beat_q <= in_valid;
   end
-  always_comb if (in_valid && !framed) assume (in_user);
+  always_comb if (in_valid && !framed) assume (in_frame_start);
 
   always_comb begin
     if (started) begin
       if (fired) fires_in_one_clock: assert (contact);
-      else if (cleared) clears: assert (!contact);
-      else keeps: assert (contact == contact_q);
+      else if (hold_q && contact_q) keeps: assert (contact);
+      else follows_this_frame: assert (contact == of_this_frame);
+      if (contact && !contact_q) rises_for_a_depth: assert (fired);
       fires_late: cover (fired && within_frame && !contact_q && of_frame < 0);
       refires: cover (fired && contact_q && !within_frame);
-      holds: cover (contact && !fired && !within_frame && in_valid && in_user);
+      holds: cover (contact && !fired && !within_frame && in_valid && in_frame_start);
       falls: cover (contact_q && !contact);
+      falls_as_hold_is_cleared: cover (contact_q && !contact && !beat_q && framed);
     end
   end
 

@@ -6,7 +6,9 @@
 //   Idle    between frames                      Open    `count` pixels of a frame taken, nothing wrong
 //   Broken  a fault in the frame: filled up     Dropped between frames behind a fault: words go until a start
 
-module fv_frame_guard #(
+module fv_frame_guard
+  import stream_pkg::*;
+#(
   parameter int Rows    = 3,
   parameter int Columns = 4
 ) (
@@ -25,13 +27,14 @@ module fv_frame_guard #(
   localparam logic [CountWidth-1:0] One = 1;
   localparam logic [CountWidth-1:0] Whole = Pixels;
 
-  logic s_ready, out_valid, out_first_row, out_first_column, out_last_row, out_last_column, out_frame_start;
-  logic out_frame_end, out_bad, row_short, row_long, start_missing, start_early, timed_out;
+  logic s_ready, out_valid, out_frame_start, out_frame_end, out_bad;
+  logic row_short, row_long, start_missing, start_early, timed_out;
+  position_t out_position;
   logic [23:0] out_data;
   frame_guard #(.Rows(Rows), .Columns(Columns)) dut (
     .clk, .rst, .en, .timeout, .s_valid, .s_ready, .s_data, .s_last, .s_user, .out_valid, .out_data,
-    .out_first_row, .out_first_column, .out_last_row, .out_last_column, .out_frame_start, .out_frame_end, .out_bad,
-    .row_short, .row_long, .start_missing, .start_early, .timed_out
+    .out_position, .out_frame_start, .out_frame_end, .out_bad,
+    .faults({timed_out, start_early, start_missing, row_long, row_short})
   );
 
   logic started = 1'b0;
@@ -77,7 +80,7 @@ module fv_frame_guard #(
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
-    out_q <= 31'({out_valid, out_data, out_first_row, out_first_column, out_last_row, out_last_column, out_bad});
+    out_q <= 31'({out_valid, out_data, out_position, out_bad});
     if (en) begin
       state <= state_next;
       count <= count_next;
@@ -128,17 +131,17 @@ module fv_frame_guard #(
       leaves_as_it_should: assert (out_valid == leaves);
       if (out_valid) begin
         pixels_in_order: assert (out_data == data && left == place);
-        first_row: assert (out_first_row == (left < CountWidth'(Columns)));
-        last_row: assert (out_last_row == (left >= CountWidth'(Pixels - Columns)));
-        first_column: assert (out_first_column == (left % CountWidth'(Columns) == '0));
-        last_column: assert (out_last_column == ((left + One) % CountWidth'(Columns) == '0));
+        first_row: assert (out_position.first_row == (left < CountWidth'(Columns)));
+        last_row: assert (out_position.last_row == (left >= CountWidth'(Pixels - Columns)));
+        first_column: assert (out_position.first_column == (left % CountWidth'(Columns) == '0));
+        last_column: assert (out_position.last_column == ((left + One) % CountWidth'(Columns) == '0));
       end
       frame_start: assert (out_frame_start == (out_valid && left == '0));
       frame_end: assert (out_frame_end == (out_valid && left == Whole - One));
       if (out_frame_end) marked: assert (out_bad == (flags_of_frame == 2'd1));
       if (out_frame_end) mark_expected: assert (out_bad == leaves_bad);
       if (held) holds: assert (out_q == 31'({
-          out_valid, out_data, out_first_row, out_first_column, out_last_row, out_last_column, out_bad}));
+          out_valid, out_data, out_position, out_bad}));
 
       good_after_fault: cover (out_frame_end && !out_bad && behind_fault);
       filled: cover (out_frame_end && out_bad && state == Dropped);

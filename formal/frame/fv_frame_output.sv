@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_frame_output: a frame that is due and good leaves whole, with user on its first word, last on the last of each row
-// and frame_end on its last; a bad one, or one that does not begin when due, does not leave at all; out_of_step is high
+// fv_frame_output: a frame that is due and good leaves whole, with frame_start on its first word, row_end on the last of
+// each row and frame_end on its last; a bad one, or one that does not begin when due, does not leave at all; out_of_step is high
 // exactly where bursts and frames do not begin as they should. Whatever bursts come; frames are due at least Rows *
 // Columns enabled clocks apart (frame_tags).
 
-module fv_frame_output #(
+module fv_frame_output
+  import stream_pkg::*;
+#(
   parameter int Width   = 1,
   parameter int Rows    = 3,
   parameter int Columns = 4
@@ -25,11 +27,12 @@ module fv_frame_output #(
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
 
-  logic in_due, active, frame_end, out_of_step, out_valid, out_last, out_user;
+  logic in_due, active, out_of_step, out_valid;
+  depth_position_t out_position;
   logic [Width-1:0] out_data;
   frame_output #(.Width(Width), .Rows(Rows), .Columns(Columns)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .in_due, .in_bad, .active, .frame_end, .out_of_step,
-    .out_valid, .out_data, .out_last, .out_user
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .in_due, .in_bad, .active, .out_of_step,
+    .out_valid, .out_position, .out_data
   );
 
   logic [CountWidth-1:0] left;  // words of the frame after this clock's
@@ -56,18 +59,16 @@ module fv_frame_output #(
   always_comb begin
     if (started) begin
       whole: assert (active == present && out_valid == (present && good));
-      if (frame_end) begin
+      if (out_position.frame_end) begin
         all_or_none: assert ((in_due ? '0 : sent) + CountWidth'(out_valid) == (good ? CountWidth'(Pixels) : '0));
       end
-      if (out_valid) begin
-        user_on_first: assert (out_user == (word == '0));
-        last_of_row: assert (out_last == ((word + CountWidth'(1)) % CountWidth'(Columns) == '0));
-        unchanged: assert (out_data == in_data);
-      end
-      frame_end_on_last: assert (frame_end == (present && word == CountWidth'(Pixels - 1)));
+      start_on_first: assert (out_position.frame_start == (present && word == '0));
+      last_of_row: assert (out_position.row_end == (present && (word + CountWidth'(1)) % CountWidth'(Columns) == '0));
+      if (out_valid) unchanged: assert (out_data == in_data);
+      frame_end_on_last: assert (out_position.frame_end == (present && word == CountWidth'(Pixels - 1)));
       in_step_or_said: assert (out_of_step == (in_start != row_begins || in_frame_start != in_due));
-      good_frame: cover (frame_end && good && !out_of_step);
-      not_begun: cover (frame_end && !good && !in_bad);
+      good_frame: cover (out_position.frame_end && good && !out_of_step);
+      not_begun: cover (out_position.frame_end && !good && !in_bad);
     end
   end
 

@@ -17,10 +17,7 @@ module protocol_frame_guard (
   output logic        counts_out_frame_start,
   output logic        counts_out_frame_end,
   output logic        counts_out_data,
-  output logic        counts_out_first_row,
-  output logic        counts_out_first_column,
-  output logic        counts_out_last_row,
-  output logic        counts_out_last_column,
+  output logic        counts_out_position,
   output logic        counts_out_bad,
   output logic        counts  // the handshake and the faults
 );
@@ -34,8 +31,7 @@ module protocol_frame_guard (
   assign counts = live & ~reset;
   assign {counts_out_valid, counts_out_frame_start, counts_out_frame_end} = {3{counts & en}};
   assign pixel = counts & en & out_valid;
-  assign counts_out_data = pixel;
-  assign {counts_out_first_row, counts_out_first_column, counts_out_last_row, counts_out_last_column} = {4{pixel}};
+  assign {counts_out_data, counts_out_position} = {2{pixel}};
   assign counts_out_bad = pixel & out_frame_end;
 
 endmodule

@@ -7,14 +7,12 @@ module protocol_frame_output (
   input  logic en,
   input  logic out_valid,
   output logic counts_out_data,
-  output logic counts_out_last,
-  output logic counts_out_user,
   output logic counts
 );
 
   logic live = 1'b0;
   always_ff @(posedge clk) live <= live | rst;
   assign counts = live & ~rst & en;
-  assign {counts_out_data, counts_out_last, counts_out_user} = {3{counts & out_valid}};
+  assign counts_out_data = counts & out_valid;
 
 endmodule

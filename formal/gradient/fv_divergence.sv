@@ -39,8 +39,8 @@ module fv_divergence #(
   logic out_valid, out_frame_start;
   logic signed [OutWidth-1:0] out_data;
   divergence #(.Width(Width), .Columns(Columns), .Neumann(Neumann)) dut (
-    .clk, .rst, .en, .in_valid, .in_first_row(first_row), .in_first_column(first_column), .in_last_row(last_row),
-    .in_last_column(last_column), .in_gx, .in_gy, .out_valid, .out_frame_start, .out_data
+    .clk, .rst, .en, .in_valid, .in_position({last_column, last_row, first_column, first_row}), .in_gx, .in_gy,
+    .out_valid, .out_frame_start, .out_data
   );
 
   int gx, gy, left, above;

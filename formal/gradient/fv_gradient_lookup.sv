@@ -4,8 +4,7 @@
 // outputs hold. An entry asked for stands on the read port 2 clocks later and until the next: that of the bank not in
 // use.
 //
-// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read;
-// the
+// Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read; the
 // first pixels of two frames do not follow each other.
 
 module fv_gradient_lookup #(
@@ -24,11 +23,11 @@ module fv_gradient_lookup #(
   input logic signed [Width-1:0] table_gy,
   input logic                    in_valid,
   input logic [23:0]             in_pixel,
-  input logic [3:0]              in_place
+  input logic [3:0]              in_position
 );
 
   logic out_valid, table_in_use;
-  logic [3:0] out_place;
+  logic [3:0] out_position;
   logic signed [Width-1:0] out_gx, out_gy, table_read_gx, table_read_gy;
   gradient_lookup #(.Width(Width), .BitsPerChannel(BitsPerChannel)) dut (.*);
 
@@ -50,9 +49,9 @@ module fv_gradient_lookup #(
 
   logic in_use = 1'b0;
   logic [1:0] written = '0;
-  logic begins, used;
-  assign begins = en && in_valid && (in_place & 4'b0011) == 4'b0011;
-  assign used = begins ? table_bank : in_use;
+  logic begins, used, named, starts_q;  // starts_q: a frame's first pixel waits in front of the table
+  assign begins = en && in_valid && (in_position & 4'b0011) == 4'b0011;
+  assign used = en && starts_q ? named : in_use;
 
   logic [3:0] valid;           // of the pixels 1 to 4 enabled clocks ago
   logic [15:0] place;
@@ -66,54 +65,57 @@ module fv_gradient_lookup #(
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
-    out_q <= {out_valid, out_place, out_gx, out_gy};
-    if (rst || begins) in_use <= table_bank;
+    out_q <= {out_valid, out_position, out_gx, out_gy};
+    in_use <= rst ? table_bank : used;
+    if (rst || begins) named <= table_bank;
+    if (en) starts_q <= begins;
     if (table_write) written[!in_use] <= 1'b1;
     if (table_write && in_use) bank_0[table_index] <= {table_gy, table_gx};
     if (table_write && !in_use) bank_1[table_index] <= {table_gy, table_gx};
     if (en) begin
       valid <= {valid[2:0], in_valid};
       begun <= begins;
-      place <= {place[11:0], in_place};
-      slopes <= {slopes[6*Width-1:0], used ? bank_1[index] : bank_0[index]};
+      place <= {place[11:0], in_position};
+      slopes <= {slopes[6*Width-1:0], (begins ? table_bank : named) ? bank_1[index] : bank_0[index]};
     end
     asked <= table_read;
-    if (table_read) asked_word <= in_use ? bank_0[table_index] : bank_1[table_index];
+    if (table_read) asked_word <= used ? bank_0[table_index] : bank_1[table_index];
     if (asked) begin
       read_known <= 1'b1;
       read_word <= asked_word;
     end
-    changed_over <= ~rst & (changed_over | (begins & table_bank != in_use));
+    changed_over <= ~rst & (changed_over | (used != in_use));
     if (rst) begin
       valid <= '0;
+      starts_q <= 1'b0;
       asked <= 1'b0;
       read_known <= 1'b0;
     end
   end
   always_comb begin
-    if (table_write) assume (table_bank == in_use && !rst && !table_read);
+    if (table_write) assume (table_bank == in_use && !(starts_q && named != in_use) && !rst && !table_read);
     if (table_read) assume (!rst);
-    if (begun && in_valid) assume (!(&in_place[1:0]));
+    if (begun && in_valid) assume (!(&in_position[1:0]));
   end
 
   always_comb begin
     if (started) begin
       bank_shown: assert (table_in_use == in_use);
       valid_travels: assert (out_valid == valid[3]);
-      if (out_valid) place_travels: assert (out_place == place[15:12]);
+      if (out_valid) place_travels: assert (out_position == place[15:12]);
       if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[6*Width+:2*Width]);
-      if (held) holds: assert ({out_valid, out_place, out_gx, out_gy} == out_q);
+      if (held) holds: assert ({out_valid, out_position, out_gx, out_gy} == out_q);
       if (read_known) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
       from_power_up: cover (out_valid && written == '0);
       from_write: cover (out_valid && changed_over && in_valid && valid == 4'b1111 && held);
-      read_in_change: cover (asked && read_known && begins && table_bank != in_use && written == 2'b11 && changed_over);
+      read_in_change: cover (asked && read_known && used != in_use && written == 2'b11 && changed_over);
     end
   end
 
-  bind fv_gradient_lookup.dut.g_bank[0].u_table ram_check #(.Depth(Depth), .Defined(0)) u_check (
+  bind fv_gradient_lookup.dut.u_table.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
-  bind fv_gradient_lookup.dut.g_bank[1].u_table ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
+  bind fv_gradient_lookup.dut.u_table.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_quadratic_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that
-// stood
+// fv_quadratic_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that stood
 // in the bank which the frame began with, from power-up or as last written; valid and place travel with the pixel, 11
-// enabled clocks; while en is low all outputs hold. A word read stands on the read port from the next clock until the
-// next read: that of the bank not in use.
+// enabled clocks; while en is low all outputs hold. A word read stands on the read port 2 clocks later and until the
+// next: that of the bank not in use. A colour's words change over 1, 2 or 3 enabled clocks behind the first pixel.
 //
 // One polynomial is followed: the deviations of the other colours are zero. Assumed, as axil_registers and frame_guard
 // have it: nothing is written while a change-over is due or in the clock of a read; frames are whole.
@@ -34,14 +33,14 @@ module fv_quadratic_gradient #(
   localparam int Width = WordWidth + 1;  // twice the lowest coefficient does not fit
 
   // Whole frames.
-  logic [3:0] row, column, in_place;
+  logic [3:0] row, column, in_position;
   logic begins, begins_row;
-  assign in_place = {column == 4'(Columns - 1), row == 4'(Rows - 1), column == '0, row == '0};
+  assign in_position = {column == 4'(Columns - 1), row == 4'(Rows - 1), column == '0, row == '0};
   assign begins = en && in_valid && row == '0 && column == '0;
   assign begins_row = en && in_valid && row != '0 && column == '0;
 
   logic out_valid, table_in_use;
-  logic [3:0] out_place;
+  logic [3:0] out_position;
   logic [1:0] saturations;
   logic signed [Width-1:0] out_gx, out_gy, slope;
   logic signed [WordWidth-1:0] table_read_word;
@@ -50,10 +49,10 @@ module fv_quadratic_gradient #(
     .Width(Width), .DeviationWidth(2), .CoeffWidth(WordWidth), .WordWidth(WordWidth), .Drop(0)
   ) dut (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_word,
-    .table_read_word, .in_valid, .in_place,
+    .table_read_word, .in_valid, .in_position,
     .in_red(Colour == 0 ? deviation : 2'd0), .in_green(Colour == 1 ? deviation : 2'd0),
     .in_blue(Colour == 2 ? deviation : 2'd0),
-    .out_valid, .out_place, .out_gx, .out_gy, .saturations
+    .out_valid, .out_position, .out_gx, .out_gy, .saturations
   );
 
   logic started = 1'b0;
@@ -67,9 +66,12 @@ module fv_quadratic_gradient #(
   assign own = 32'(table_index) >= Terms * Polynomial && 32'(table_index) < Terms * (Polynomial + 1);
   assign term = 3'(table_index - IndexWidth'(Terms * Polynomial));
 
-  logic in_use = 1'b0;
-  logic used;
+  logic in_use = 1'b0;  // by the frame that is taken, or was
+  logic used, named, of_colour, reported;
+  logic [2:0] begun;    // a first pixel, so many enabled clocks ago
   assign used = begins ? table_bank : in_use;
+  logic colour_used;
+  assign colour_used = en && begun[Colour] ? named : of_colour;
 
   // The polynomial at once, where it stands after the pixel that is taken.
   logic [WordWidth-1:0] value, step, row_value, row_step, row_rise, value_now, step_now;
@@ -82,15 +84,18 @@ module fv_quadratic_gradient #(
   logic [(WordWidth+2)*Latency-1:0] product;
   logic signed [WordWidth+1:0] exact;
   logic signed [1:0] deviation_q;
-  logic held, moved, read_known, changed_over, overwritten;
-  logic [WordWidth-1:0] read_word;
+  logic held, moved, asked, asked_own, read_known, changed_over, overwritten;
+  logic [WordWidth-1:0] asked_word, read_word;
   logic [4+2*Width:0] out_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
     moved <= en & ~rst;
-    out_q <= {out_valid, out_place, out_gx, out_gy};
-    if (rst || begins) in_use <= table_bank;
+    out_q <= {out_valid, out_position, out_gx, out_gy};
+    if (rst || begins) {in_use, named} <= {2{table_bank}};
+    of_colour <= rst ? table_bank : colour_used;
+    reported <= rst ? table_bank : en && begun[2] ? named : reported;
+    if (en) begun <= {begun[1:0], begins};
     if (table_write && own) words[{term, ~in_use}] <= table_word;
     if (table_write && own) overwritten <= 1'b1;
     if (en && in_valid) begin
@@ -106,25 +111,30 @@ module fv_quadratic_gradient #(
     end
     if (en) begin
       valid <= {valid[Latency-2:0], in_valid};
-      place <= {place[4*Latency-5:0], in_place};
+      place <= {place[4*Latency-5:0], in_position};
       product <= {
         product[(WordWidth+2)*(Latency-1)-1:0], (WordWidth + 2)'($signed(value_now)) * (WordWidth + 2)'(deviation)
       };
     end
-    if (table_read) begin
-      read_known <= own;
-      read_word <= words[{term, ~used}];
+    asked <= table_read;
+    asked_own <= own;
+    if (table_read) asked_word <= words[{term, ~colour_used}];
+    if (asked) begin
+      read_known <= asked_own;
+      read_word <= asked_word;
     end
     changed_over <= ~rst & (changed_over | (begins & table_bank != in_use));
     if (rst) begin
       valid <= '0;
       row <= '0;
       column <= '0;
+      asked <= 1'b0;
+      begun <= '0;
       read_known <= 1'b0;
     end
   end
   always_comb begin
-    if (table_write) assume (table_bank == in_use && !rst && !table_read);
+    if (table_write) assume (table_bank == reported && begun == '0 && !rst && !table_read);
     if (table_read) assume (!rst);
     if (table_write || table_read) assume (32'(table_index) < 6 * Terms);
   end
@@ -134,17 +144,17 @@ module fv_quadratic_gradient #(
   assign clips = exact[WordWidth+1] != exact[WordWidth];
   always_comb begin
     if (started) begin
-      bank_shown: assert (table_in_use == in_use);
+      bank_shown: assert (table_in_use == reported);
       valid_travels: assert (out_valid == valid[Latency-1]);
-      if (out_valid) place_travels: assert (out_place == place[4*Latency-1-:4]);
+      if (out_valid) place_travels: assert (out_position == place[4*Latency-1-:4]);
       if (out_valid && !clips) slope_of_place: assert (slope == exact[WordWidth:0]);
       if (out_valid && clips) saturated: assert (slope == {exact[WordWidth+1], {WordWidth{~exact[WordWidth+1]}}});
       if (moved && out_valid) clips_counted: assert (clips ? saturations != '0 : saturations < 2'd2);
       if (!moved || !out_valid) no_clips_counted: assert (saturations == '0);
-      if (held) holds: assert ({out_valid, out_place, out_gx, out_gy} == out_q);
+      if (held) holds: assert ({out_valid, out_position, out_gx, out_gy} == out_q);
       if (read_known) reads_spare: assert (table_read_word == $signed(read_word));
-      from_power_up: cover (out_valid && clips && out_place[2] && !changed_over);
-      from_write: cover (out_valid && clips && out_place[2] && changed_over && overwritten && held);
+      from_power_up: cover (out_valid && clips && out_position[2] && !changed_over);
+      from_write: cover (out_valid && clips && out_position[2] && changed_over && overwritten && held);
     end
   end
 

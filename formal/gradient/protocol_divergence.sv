@@ -4,23 +4,22 @@
 module protocol_divergence #(
   parameter int Columns = 128
 ) (
-  input  logic clk,
-  input  logic rst,
-  input  logic en,
-  input  logic in_valid,
-  input  logic in_first_row,
-  input  logic in_first_column,
-  input  logic in_last_row,
-  input  logic in_last_column,
-  input  logic out_valid,
-  output logic holds,
-  output logic counts_out_valid,
-  output logic counts_out_frame_start,
-  output logic counts_out_data
+  input  logic       clk,
+  input  logic       rst,
+  input  logic       en,
+  input  logic       in_valid,
+  input  logic [3:0] in_position,  // in the last column, last row, first column, first row
+  input  logic       out_valid,
+  output logic       holds,
+  output logic       counts_out_valid,
+  output logic       counts_out_frame_start,
+  output logic       counts_out_data
 );
 
   logic reset, live = 1'b0, first_row = 1'b1, last_row_before, still = 1'b0, valid_before, marks_right;
+  logic in_first_row, in_first_column, in_last_row, in_last_column;
   logic [15:0] column = '0;
+  assign {in_last_column, in_last_row, in_first_column, in_first_row} = in_position;
   assign reset = rst | ~holds;
   assign marks_right = (in_first_column == (column == '0)) & (in_last_column == (column == 16'(Columns - 1)))
       & (in_first_row == first_row) & (column == '0 | in_last_row == last_row_before);

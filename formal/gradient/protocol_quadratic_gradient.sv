@@ -13,11 +13,11 @@ module protocol_quadratic_gradient (
   input  logic       table_read,
   input  logic [5:0] table_index,
   input  logic       in_valid,
-  input  logic [3:0] in_place,
+  input  logic [3:0] in_position,
   input  logic       out_valid,
   output logic       holds,
   output logic       counts_out_valid,
-  output logic       counts_out_place,
+  output logic       counts_out_position,
   output logic       counts_out_gx,
   output logic       counts_out_gy,
   output logic       counts_table_in_use,
@@ -25,25 +25,27 @@ module protocol_quadratic_gradient (
   output logic       counts_saturations
 );
 
-  logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, read = 1'b0, still = 1'b0, valid_before, place_legal;
+  logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, read = 1'b0, asked = 1'b0, named = 1'b0, still = 1'b0, valid_before, place_legal;
   logic [1:0] column = '0;  // pixels of this row so far, up to three
   logic [3:0] place_before;
   assign reset = rst | ~holds;
-  assign place_legal = begun ? ~in_place[1] | (column == 2'd3 & (~in_place[0] | second_row)) : &in_place[1:0];
+  assign place_legal = begun ? ~in_position[1] | (column == 2'd3 & (~in_position[0] | second_row)) : &in_position[1:0];
   assign holds = (~in_valid | rst | place_legal)
-      & (~still | rst | (in_valid == valid_before & (~in_valid | in_place == place_before)))
-      & (~table_write | (live & ~rst & ~table_read & table_bank == table_in_use))
+      & (~still | rst | (in_valid == valid_before & (~in_valid | in_position == place_before)))
+      & (~table_write | (live & ~rst & ~table_read & table_bank == table_in_use & named == table_in_use))
       & table_index < 6'd36;
   always_ff @(posedge clk) begin
     live <= live | reset;
     still <= ~en & ~reset;
     valid_before <= in_valid;
-    place_before <= in_place;
-    read <= live & (read | (table_read & holds));
+    place_before <= in_position;
+    asked <= table_read & ~reset;
+    read <= live & ~reset & (read | asked);
+    if (reset || (en && in_valid && &in_position[1:0])) named <= table_bank;
     if (en && in_valid) begin
       begun <= 1'b1;
-      column <= in_place[1] ? '0 : column + 2'(column != 2'd3);
-      if (in_place[1]) second_row <= ~in_place[0];
+      column <= in_position[1] ? '0 : column + 2'(column != 2'd3);
+      if (in_position[1]) second_row <= ~in_position[0];
     end
     if (reset) begin
       begun <= 1'b0;
@@ -55,6 +57,6 @@ module protocol_quadratic_gradient (
   assign counts_table_read_word = read;
   assign counts_saturations = live & ~reset;
   assign counts_out_valid = live & ~reset & en;
-  assign {counts_out_place, counts_out_gx, counts_out_gy} = {3{counts_out_valid & out_valid}};
+  assign {counts_out_position, counts_out_gx, counts_out_gy} = {3{counts_out_valid & out_valid}};
 
 endmodule

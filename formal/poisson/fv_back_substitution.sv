@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 6 enabled clocks
-// behind d[i], with the coefficient of its own row and column; start and frame_start with their burst. No word of the
-// frame before, and none from power-up, enters: the specification has none, and the memory begins with any contents.
-// Rounding is proven of round_saturate.
+// fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 8 enabled clocks
+// behind d[i], in whichever lane it is, with the coefficient of its own row and column; start and frame_start with their
+// burst. No word of the frame before, and none from power-up, enters: the specification has none, and the memory begins
+// with any contents. Rounding is proven of round_saturate.
 
 module fv_back_substitution #(
   parameter int Rows  = 3,
   parameter int Size  = 8,
+  parameter int Lanes = 1,
   parameter int Words = 16,
   localparam int PositionWidth = $clog2(Size),
-  localparam int RowWidth = $clog2(Rows + 1)
+  localparam int RowWidth = $clog2(Rows + 1),
+  localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1
 ) (
   input logic                     clk,
   input logic                     rst,
   input logic                     en,
   input logic                     go,
   input logic                     restart,
-  input logic signed [1:0]        in_data,
+  input logic [2*Lanes-1:0]       in_data,
   input logic [PositionWidth-1:0] chosen
 );
 
@@ -33,30 +35,58 @@ module fv_back_substitution #(
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
 
-  logic in_start, in_frame_start, active, last_burst;
-  logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
-  logic [RowWidth-1:0] burst;
-  burst_source #(.Size(Size), .Rows(Rows)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row(burst),
-    .last_row(last_burst)
-  );
-
-  logic out_start, out_frame_start, saturations;
-  logic signed [Width-1:0] out_data;
+  logic [PositionWidth-1:0] column;  // chosen in the first clock, then constant
+  logic [Lanes-1:0] in_start, in_frame_start, active, present;  // present: the word of the column
+  logic [Lanes*PositionWidth-1:0] position;
+  logic [Lanes*RowWidth-1:0] row;
+  if (Lanes == 1) begin : g_one_lane  // gaps between bursts, and frames that begin before the last one is whole
+    logic unused_last;
+    burst_source #(.Size(Size), .Rows(Rows)) u_source (
+      .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row,
+      .last_row(unused_last)
+    );
+  end else begin : g_lanes
+    lane_source #(.Size(Size), .Rows(Rows), .Lanes(Lanes)) u_source (
+      .clk, .rst, .en, .go, .start(in_start), .frame_start(in_frame_start), .active, .position, .row
+    );
+  end
+  logic [Lanes-1:0] out_start, out_frame_start;
+  logic [Lanes*Width-1:0] out_data;
+  logic [$clog2(Lanes+1)-1:0] saturations;
   back_substitution #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .InWidth(InWidth), .Lift(Lift),
+    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes), .InWidth(InWidth), .Lift(Lift),
     .TableWords(Words), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
+
+  // The word of the column, and z of the one before it when that leaves.
+  logic [LaneWidth-1:0] lane, lane_q;
+  logic [RowWidth-1:0] burst;
+  logic signed [InWidth-1:0] in_word;
+  logic signed [Width-1:0] out_word;
+  always_comb begin
+    lane = '0;
+    burst = '0;
+    in_word = '0;
+    out_word = '0;
+    for (int e = 0; e < Lanes; e++) begin
+      present[e] = active[e] && position[e*PositionWidth+:PositionWidth] == column;
+      if (present[e]) lane = LaneWidth'(e);
+      if (present[e]) burst = row[e*RowWidth+:RowWidth];
+      if (present[e]) in_word = in_data[e*InWidth+:InWidth];
+      if (Lanes == 1 || lane_q == LaneWidth'(e)) out_word = out_data[e*Width+:Width];
+    end
+  end
 
   // The last row comes first; there the coefficient meets zero, so its shift does not matter.
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
   initial $readmemh("square.hex", square);
 
   // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier
-  // takes it. Bursts are longer than the way, so the next word of the column finds the last one done.
-  logic [Latency-1:0] start_q, frame_start_q, old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
+  // takes it. A step from lane to lane is as long as the way, so the next word of the column finds the last one done.
+  logic [Latency*Lanes-1:0] start_q, frame_start_q;
+  logic [Latency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
   logic signed [InWidth-1:0] d;
   logic signed [CoeffWidth-1:0] c;
   logic [LastShiftWidth-1:0] unused_shift;
@@ -69,21 +99,22 @@ module fv_back_substitution #(
   );
 
   logic held;
-  logic [Width+1:0] out_q;
+  logic [Lanes*(Width+2)-1:0] out_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
     out_q <= {out_start, out_frame_start, out_data};
     if (!started) column <= chosen;
     if (en) begin
-      start_q <= Latency'({start_q, in_start});
-      frame_start_q <= Latency'({frame_start_q, in_frame_start});
-      old <= Latency'({old, active & (position == column)});
-      if (active && position == column) begin
-        d <= in_data;
+      start_q <= (Latency * Lanes)'({start_q, in_start});
+      frame_start_q <= (Latency * Lanes)'({frame_start_q, in_frame_start});
+      old <= Latency'({old, |present});
+      if (|present) begin
+        lane_q <= lane;
+        d <= in_word;
         {unused_shift, c} <= square[(Rows - 1 - 32'(burst)) * Size + 32'(column)];
         of_last_row <= burst == '0;
-        of_first_row <= last_burst;
+        of_first_row <= burst == RowWidth'(Rows - 1);
       end
       if (old[2]) below_q <= of_last_row ? '0 : below;
       if (old[4]) product <= below_q * c;
@@ -99,16 +130,14 @@ module fv_back_substitution #(
 
   always_comb begin
     if (started) begin
-      start_when_due: assert (out_start == start_q[Latency-1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
-      if (old[Latency-1]) substituted: assert (out_data == below);
+      start_when_due: assert (out_start == start_q[(Latency-1)*Lanes+:Lanes]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[(Latency-1)*Lanes+:Lanes]);
+      if (old[Latency-1]) substituted: assert (out_word == below);
       if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
       last_out: cover (old[Latency-1] && of_first_row && below != '0 && held);
     end
   end
 
-  bind fv_back_substitution.dut.u_row_below ram_check #(.Depth(Depth), .Defined(0)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule

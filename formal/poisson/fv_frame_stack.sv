@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_frame_stack: an arbitrary word leaves at its place of its row, last row first, unchanged; the last row 3 enabled
-// clocks behind its own first word, the others behind it without a pause; frame_start with the first. Any gaps between
-// bursts, any en, any frame number, and frames that begin before the last one is whole.
+// clocks behind its own first word, from lane 0, the others from the lanes in turn, each Size / Lanes clocks behind the
+// one before; frame_start with the first of each lane. Any gaps between bursts, any en, any frame number, and frames
+// that begin before the last one is whole.
 
 module fv_frame_stack #(
   parameter int Width       = 1,
   parameter int Rows        = 3,
   parameter int Size        = 4,
+  parameter int Lanes       = 1,
   parameter int WordsPerRow = 1,
+  localparam int Step = Size / Lanes,
+  localparam int Clocks = (Rows - 1) * Step + Size,  // in which a frame leaves
   localparam int PositionWidth = $clog2(Size),
   localparam int RowWidth = $clog2(Rows + 1),
-  localparam int PlaceWidth = $clog2(Rows * Size)
+  localparam int PlaceWidth = $clog2(Clocks),
+  localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1
 ) (
   input logic             clk,
   input logic             rst,
@@ -32,22 +37,34 @@ module fv_frame_stack #(
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
-  logic out_start, out_frame_start;
-  logic [Width-1:0] out_data;
-  frame_stack #(.Width(Width), .Rows(Rows), .Size(Size), .WordsPerRow(WordsPerRow)) dut (
+  logic [Lanes-1:0] out_start, out_frame_start;
+  logic [Lanes*Width-1:0] out_data;
+  frame_stack #(.Width(Width), .Rows(Rows), .Size(Size), .Lanes(Lanes), .WordsPerRow(WordsPerRow)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
 
+  // A place is a clock of the frame that leaves; with the word goes the lane that it leaves from.
   logic due, present, watched;
   logic [PlaceWidth-1:0] place;
-  logic [Width-1:0] value;
-  follow_word #(.Width(Width), .Words(Rows * Size), .Latency(3)) u_follow (
+  logic [LaneWidth-1:0] in_lane, lane;
+  logic [Width-1:0] value, out_word;
+  assign in_lane = LaneWidth'((Rows - 1 - 32'(row)) % Lanes);
+  follow_word #(.Width(LaneWidth + Width), .Words(Clocks), .Latency(3)) u_follow (
     .clk, .rst, .en, .pick, .in_word(active), .in_first(in_frame_start), .in_closed(last_row & ~in_start),
-    .in_place(PlaceWidth'((Rows - 1 - 32'(row)) * Size + 32'(position))), .in_data, .close(in_start & last_row),
-    .due, .present, .place, .watched, .value
+    .in_place(PlaceWidth'((Rows - 1 - 32'(row)) * Step + 32'(position))), .in_data({in_lane, in_data}),
+    .close(in_start & last_row), .due, .present, .place, .watched, .value({lane, value})
   );
+  logic [Lanes-1:0] starts, frame_starts;
+  for (genvar e = 0; e < Lanes; e++) begin : g_lane
+    assign starts[e] = present && 32'(place) / Step < Rows && 32'(place) % Size == e * Step;
+    assign frame_starts[e] = starts[e] && 32'(place) == e * Step;
+  end
+  always_comb begin
+    out_word = '0;
+    for (int e = 0; e < Lanes; e++) if (Lanes == 1 || lane == LaneWidth'(e)) out_word = out_data[e*Width+:Width];
+  end
   logic held;
-  logic [Width-1:0] out_data_q;
+  logic [Lanes*Width-1:0] out_data_q;
   always_ff @(posedge clk) begin
     held <= ~en;
     out_data_q <= out_data;
@@ -55,17 +72,15 @@ module fv_frame_stack #(
 
   always_comb begin
     if (started) begin
-      frame_when_due: assert (out_frame_start == due);
-      row_when_due: assert (out_start == (present && place % PlaceWidth'(Size) == '0));
-      if (watched) in_place: assert (out_data == value);
+      frame_when_due: assert (out_frame_start == frame_starts);
+      row_when_due: assert (out_start == starts);
+      if (watched) in_place: assert (out_word == value);
       if (held) holds: assert (out_data == out_data_q);
-      last_word: cover (watched && place == PlaceWidth'(Rows * Size - 1));
-      last_word_behind_next: cover (watched && place == PlaceWidth'(Rows * Size - 1) && active && held);
+      last_word: cover (watched && place == PlaceWidth'(Clocks - 1));
+      last_word_behind_next: cover (watched && place == PlaceWidth'(Clocks - 1) && active && held);
     end
   end
 
-  bind fv_frame_stack.dut.u_ram ram_check #(.Depth(Depth)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule

@@ -2,7 +2,7 @@
 // axil_client: on each channel of an AXI4-Lite port, what is offered stays until it is taken.
 
 module axil_client #(
-  parameter int AddressWidth = 8
+  parameter int AddressWidth = 10
 ) (
   input  logic                    clk,
   input  logic                    rst,

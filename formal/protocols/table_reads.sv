@@ -14,7 +14,7 @@ module table_reads (
   assign idle = left == '0;
   assign stands = read & idle;
   always_ff @(posedge clk) begin
-    left <= table_read ? 2'd2 : idle ? '0 : left - 2'd1;
+    left <= table_read ? 2'd1 : idle ? '0 : left - 2'd1;
     read <= read | table_read;
     if (reset) begin
       left <= '0;

@@ -2,85 +2,73 @@
 // fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
 //
 // Nothing is assumed of the master, the pipeline, the tables or reset. The registers of the specification change by
-// what
-// was seen on the ports alone.
+// what was seen on the ports alone.
 
 module fv_axil_registers
   import register_map_pkg::*;
+  import stream_pkg::*;
 #(
-  parameter int Rows             = 8,
-  parameter int Columns          = 16,
-  parameter int DataWidth        = 24,
-  parameter int GradientWidth    = 21,
-  parameter int GradientFraction = 20,
-  parameter int BitsPerChannel   = 4,
-  parameter int CoefficientWords = 36,
-  parameter int ReferenceWords   = 1024,
-  parameter int FloorWords       = 256,
-  localparam int RecordWords = (RecordCentroidOffset - RecordEventOffset) / 4 + 1,
+  parameter int Quadratic        = 0,
+  parameter int DepthMantissa    = 24'hABCDEF,
+  parameter int DepthExponent    = -41,
+  parameter int SlopeMantissa    = 24'h812345,
+  parameter int SlopeExponent    = 3,
+  parameter int PitchNm          = 63400,
+  localparam int Rows             = 8,
+  localparam int Columns          = 16,
+  localparam int DataWidth        = 24,
+  localparam int GradientWidth    = 21,
+  localparam int GradientFraction = 20,
+  localparam int BitsPerChannel   = 4,
+  localparam int GradientWords    = Quadratic != 0 ? 0 : 1 << 3 * BitsPerChannel,
+  localparam int CoefficientWords = Quadratic != 0 ? 36 : 0,
+  localparam int FloorWords       = 4 * 8,
+  localparam int ReferenceWords   = 4 * FloorWords,
   localparam int Tables = TableSelectSelectCount,
-  localparam int SelectWidth = TableSelectSelectWidth,
-  localparam int IndexWidth = 3 * BitsPerChannel
+  localparam int IndexWidth = $clog2(GradientWords > ReferenceWords ? GradientWords : ReferenceWords)
 ) (
   input logic                    clk,
   input logic                    rst,
+  input logic                    cold_rst,
   input logic [AddressWidth-1:0] s_axil_awaddr,
+  input logic [2:0]              s_axil_awprot,
   input logic                    s_axil_awvalid,
   input logic [31:0]             s_axil_wdata,
   input logic [3:0]              s_axil_wstrb,
   input logic                    s_axil_wvalid,
   input logic                    s_axil_bready,
   input logic [AddressWidth-1:0] s_axil_araddr,
+  input logic [2:0]              s_axil_arprot,
   input logic                    s_axil_arvalid,
   input logic                    s_axil_rready,
-  input logic                    event_row_short,
-  input logic                    event_row_long,
-  input logic                    event_start_missing,
-  input logic                    event_start_early,
-  input logic                    event_timeout,
-  input logic                    event_out_of_step,
-  input logic                    event_frame_in,
-  input logic                    event_frame_out,
-  input logic                    event_frame_dropped,
-  input logic                    event_dark,
-  input logic                    event_depth_dropped,
-  input logic                    event_record_lost,
-  input logic [7:0]              saturations,
+  input events_t                 events,
+  input levels_t                 levels,
   input logic [31:0]             first_depth_latency,
   input logic                    first_depth_latency_valid,
-  input logic                    busy,
-  input logic                    contact,
-  input logic                    touching,
   input logic [32*RecordWords-1:0] record,
-  input logic                    capture_busy,
-  input logic                    capture_done,
-  input logic                    floor_busy,
-  input logic                    floor_done,
   input logic                    frame_start,
-  input logic [31:0]             table_read_high,
-  input logic [31:0]             table_read_low,
-  input logic [Tables-1:0]       table_in_use
+  input table_answer_t           table_answer,
+  input logic [Tables-1:0]       table_in_use,
+  input capture_status_t         reference_status,
+  input capture_status_t         floor_status
 );
 
   localparam logic [1:0] Okay = 2'b00;
   localparam logic [1:0] SlaveError = 2'b10;
 
-  logic s_axil_awready, s_axil_wready, s_axil_bvalid, s_axil_arready, s_axil_rvalid;
+  logic s_axil_awready, s_axil_wready, s_axil_bvalid, s_axil_arready, s_axil_rvalid, irq;
   logic [1:0] s_axil_bresp, s_axil_rresp;
   logic [31:0] s_axil_rdata, timeout;
-  logic signed [31:0] threshold, off_threshold;
-  logic [31:0] minimum_area;
-  logic [7:0] debounce, dark_level;
-  logic [3:0] capture_log2_frames, floor_log2_frames;
-  logic hold_contact, drop_frames, capture_request, floor_request, table_write, table_read;
-  logic [SelectWidth-1:0] table_select;
-  logic [IndexWidth-1:0] table_index;
-  logic [31:0] table_high, table_low;
+  logic [7:0] dark_level;
   logic [Tables-1:0] table_bank;
+  contact_settings_t contact_settings;
+  table_command_t table_command;
+  capture_command_t reference_command, floor_command;
   axil_registers #(
-    .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
-    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
-    .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords), .FloorWords(FloorWords)
+    .Tridiagonal(1), .Neumann(1), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
+    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel), .FlatField(1), .Quadratic(Quadratic),
+    .AutoZero(1), .BlockLog2(1), .PolynomialWords(36), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
+    .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
   ) dut (.*);
 
   logic started = 1'b0;
@@ -109,17 +97,17 @@ module fv_axil_registers
   logic [31:0] next_index;
   logic [31:0] index;
   always_comb begin
-    size = select == TableSelectGradient ? 1 << IndexWidth : select == TableSelectCoefficients ? CoefficientWords
+    size = select == TableSelectGradient ? GradientWords : select == TableSelectCoefficients ? CoefficientWords
         : select == TableSelectReference ? ReferenceWords : FloorWords;
     has = '0;
-    has[TableCommitGradientBit] = 1'b1;
+    has[TableCommitGradientBit] = GradientWords != 0;
     has[TableCommitCoefficientsBit] = CoefficientWords != 0;
     has[TableCommitReferenceBit] = ReferenceWords != 0;
     has[TableCommitFloorBit] = FloorWords != 0;
     waits = 4'(requested | ((bank ^ table_in_use) & has));
     closed = waits;
-    if (capture_busy) closed[TableCommitReferenceBit] = 1'b1;
-    if (floor_busy) closed[TableCommitFloorBit] = 1'b1;
+    if (reference_status.busy) closed[TableCommitReferenceBit] = 1'b1;
+    if (floor_status.busy) closed[TableCommitFloorBit] = 1'b1;
     next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
   end
 
@@ -134,16 +122,18 @@ module fv_axil_registers
     refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
         || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
         || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
+        || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
         || offset == OffThresholdOffset || offset == MinimumAreaOffset || offset == DebounceOffset
         || (offset == CaptureOffset && (ReferenceWords != 0 || !(data[CaptureStartBit] && strobes[CaptureStartBit/8])))
         || (offset == FloorCaptureOffset
-            && (FloorWords != 0 && !waits[TableCommitFloorBit] && !floor_done
+            && (FloorWords != 0 && !waits[TableCommitFloorBit] && !floor_status.done
                 || !(data[FloorCaptureStartBit] && strobes[FloorCaptureStartBit/8])))
         || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
   end
   logic writes_control, writes_status, writes_threshold, writes_timeout;
   logic writes_select, writes_index, writes_high, writes_low, writes_commit;
   logic writes_dark, writes_capture, writes_floor, writes_off, writes_area, writes_debounce;
+  logic writes_interrupt, writes_mask, writes_pitch;
   assign writes_control = effective & (offset == ControlOffset);
   assign writes_status = effective & (offset == StatusOffset);
   assign writes_threshold = effective & (offset == ThresholdOffset);
@@ -158,6 +148,9 @@ module fv_axil_registers
   assign writes_floor = effective & (offset == FloorCaptureOffset) & ~refused;
   assign writes_off = effective & (offset == OffThresholdOffset);
   assign writes_area = effective & (offset == MinimumAreaOffset);
+  assign writes_interrupt = effective & (offset == InterruptStatusOffset);
+  assign writes_mask = effective & (offset == InterruptMaskOffset);
+  assign writes_pitch = effective & (offset == PitchOffset);
   assign writes_debounce = effective & (offset == DebounceOffset);
 
   function automatic logic [31:0] written(input logic [31:0] word);
@@ -174,18 +167,27 @@ module fv_axil_registers
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
   assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
-  logic [31:0] sticky, happened;
+  // Events reach status and counters a clock later; those of a clock in reset do not.
+  events_t seen;
+  logic seen_frame_dropped;
+  always_ff @(posedge clk) seen <= rst ? '0 : events;
+  assign seen_frame_dropped = seen.faults != '0;
+  logic [31:0] sticky, happened, interrupts, interrupts_happened, unmasked, width_nm;
+  logic raised;
   always_comb begin
     happened = '0;
-    happened[StatusRowShortBit] = event_row_short;
-    happened[StatusRowLongBit] = event_row_long;
-    happened[StatusStartMissingBit] = event_start_missing;
-    happened[StatusStartEarlyBit] = event_start_early;
-    happened[StatusTimeoutBit] = event_timeout;
-    happened[StatusOutOfStepBit] = event_out_of_step;
-    happened[StatusSaturationBit] = saturations != 0;
-    happened[StatusDarkBit] = event_dark;
-    happened[StatusDepthDroppedBit] = event_depth_dropped;
+    happened[StatusRowShortBit] = seen.faults.row_short;
+    happened[StatusRowLongBit] = seen.faults.row_long;
+    happened[StatusStartMissingBit] = seen.faults.start_missing;
+    happened[StatusStartEarlyBit] = seen.faults.start_early;
+    happened[StatusTimeoutBit] = seen.faults.timed_out;
+    happened[StatusOutOfStepBit] = seen.out_of_step;
+    happened[StatusSaturationBit] = seen.saturations != 0;
+    happened[StatusDarkBit] = seen.dark;
+    happened[StatusDepthDroppedBit] = seen.depth_dropped;
+    interrupts_happened = '0;
+    interrupts_happened[InterruptStatusRecordBit] = seen.record_valid;
+    interrupts_happened[InterruptStatusFrameDroppedBit] = seen_frame_dropped;
   end
 
   // What a read of this clock shall return.
@@ -195,15 +197,15 @@ module fv_axil_registers
   assign read_offset = 32'(s_axil_araddr) / 4 * 4;
   always_comb begin
     now = sticky;
-    now[StatusBusyBit] = busy;
-    now[StatusContactBit] = contact;
-    now[StatusTouchingBit] = touching;
+    now[StatusBusyBit] = levels.busy;
+    now[StatusContactBit] = levels.contact;
+    now[StatusTouchingBit] = levels.touching;
     known = 1'b1;
     word = '0;
     if (read_offset == IdOffset) word = IdReset;
     else if (read_offset == GridOffset) word = 32'(Columns * 65536 + Rows);
     else if (read_offset == FormatOffset) begin
-      word = 32'(((BitsPerChannel * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
+      word = 32'((((Quadratic != 0 ? 0 : BitsPerChannel) * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
     end
     else if (read_offset == ControlOffset) begin
       word[ControlHoldContactBit] = hold;
@@ -224,11 +226,11 @@ module fv_axil_registers
     else if (read_offset == DarkLevelOffset) word = dim;
     else if (read_offset == CaptureOffset) begin
       word = averaged;
-      word[CaptureBusyBit] = capture_busy;
+      word[CaptureBusyBit] = reference_status.busy;
     end
     else if (read_offset == FloorCaptureOffset) begin
       word = floor_averaged;
-      word[FloorCaptureBusyBit] = floor_busy;
+      word[FloorCaptureBusyBit] = floor_status.busy;
     end
     else if (read_offset == DarkPixelsOffset) word = dark;
     else if (read_offset == DepthDroppedOffset) word = given_up;
@@ -236,6 +238,12 @@ module fv_axil_registers
     else if (read_offset == OffThresholdOffset) word = off;
     else if (read_offset == MinimumAreaOffset) word = area;
     else if (read_offset == DebounceOffset) word = frames_needed;
+    else if (read_offset == InterruptStatusOffset) word = interrupts;
+    else if (read_offset == InterruptMaskOffset) word = unmasked;
+    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 4);
+    else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
+    else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
+    else if (read_offset == PitchOffset) word = width_nm;
     else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
       word = 32'(record >> 8 * (read_offset - RecordEventOffset));
     end
@@ -261,7 +269,7 @@ module fv_axil_registers
     write_due <= effective;
     refused_q <= refused;
     read_due <= (ar & ~asks) | (since == 3'd4);
-    word_q <= since == 3'd0 ? word : !has_entry ? '0 : upper ? table_read_high : table_read_low;
+    word_q <= since == 3'd0 ? word : !has_entry ? '0 : upper ? table_answer.high : table_answer.low;
     known_q <= since == 3'd0 ? known : has_entry;
     if (asks) begin
       since <= 3'd1;
@@ -295,17 +303,21 @@ module fv_axil_registers
       if (frame_start && requested[table_number]) requested[table_number] <= 1'b0;
       else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !closed[table_number])
         requested[table_number] <= 1'b1;
-      if (capture_done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
-      if (floor_done && table_number == TableSelectFloor && has[table_number]) requested[table_number] <= 1'b1;
+      if (reference_status.done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
+      if (floor_status.done && table_number == TableSelectFloor && has[table_number]) requested[table_number] <= 1'b1;
     end
+    interrupts <= (interrupts & ~(writes_interrupt ? data & mask : '0)) | interrupts_happened;
+    if (writes_mask) unmasked <= written(unmasked) & 32'h3;
+    if (writes_pitch) width_nm <= written(width_nm);
+    raised <= |(interrupts & unmasked);
     sticky <= (sticky & ~(writes_status ? data & mask : '0)) | happened;
-    frames_in <= counted(clears ? '0 : frames_in, 32'(event_frame_in));
-    frames_out <= counted(clears ? '0 : frames_out, 32'(event_frame_out));
-    frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(event_frame_dropped));
-    clipped <= counted(clears ? '0 : clipped, 32'(saturations));
-    dark <= counted(clears ? '0 : dark, 32'(event_dark));
-    given_up <= counted(clears ? '0 : given_up, 32'(event_depth_dropped));
-    lost <= counted(clears ? '0 : lost, 32'(event_record_lost));
+    frames_in <= counted(clears ? '0 : frames_in, 32'(seen.frame_in));
+    frames_out <= counted(clears ? '0 : frames_out, 32'(seen.frame_out));
+    frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(seen_frame_dropped));
+    clipped <= counted(clears ? '0 : clipped, 32'(seen.saturations));
+    dark <= counted(clears ? '0 : dark, 32'(seen.dark));
+    given_up <= counted(clears ? '0 : given_up, 32'(seen.depth_dropped));
+    lost <= counted(clears ? '0 : lost, 32'(seen.record_lost));
     if (first_depth_latency_valid) latency <= first_depth_latency;
 
     if (rst) begin
@@ -316,12 +328,16 @@ module fv_axil_registers
       frames_needed <= 32'd1;
       {drop, dim, averaged, floor_averaged, dark, given_up, lost} <= '0;
       requested <= '0;
+      {interrupts, unmasked, raised} <= '0;
+      width_nm <= PitchNm;
       {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
     end
+    if (cold_rst) bank <= '0;
   end
 
   always_comb begin
-    never_in_reset: assert (!((table_write || table_read || capture_request || floor_request) && rst));
+    never_in_reset: assert (!((table_command.write || table_command.read || reference_command.request
+        || floor_command.request) && rst));
     if (started) begin
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
@@ -336,39 +352,43 @@ module fv_axil_registers
       end
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
       // What leaves for the pipeline.
-      outputs: assert ($unsigned(threshold) == limit && timeout == silence && hold_contact == hold);
-      contact_settings: assert ($unsigned(off_threshold) == off && minimum_area == area
-          && 32'(debounce) == frames_needed);
-      stream_settings: assert (drop_frames == drop && 32'(dark_level) == dim && 32'(capture_log2_frames) == averaged
-          && 32'(floor_log2_frames) == floor_averaged);
-      captures: assert (capture_request
+      outputs: assert (contact_settings.threshold == limit && timeout == silence
+          && contact_settings.hold_contact == hold);
+      contact_words: assert (contact_settings.off_threshold == off && contact_settings.minimum_area == area
+          && 32'(contact_settings.debounce) == frames_needed);
+      stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
+          && 32'(reference_command.log2_frames) == averaged && 32'(floor_command.log2_frames) == floor_averaged);
+      interrupt: assert (irq == raised);
+      captures: assert (reference_command.request
           == (writes_capture && data[CaptureStartBit] && mask[CaptureStartBit] && !rst));
-      floor_captures: assert (floor_request
+      floor_captures: assert (floor_command.request
           == (writes_floor && data[FloorCaptureStartBit] && mask[FloorCaptureStartBit] && !rst));
       // Tables.
-      table_written: assert (table_write == (writes_low && !rst));
-      table_asked: assert (table_read == (since == 3'd1 && index < size && !rst));
-      table_word: assert (table_select == select && 32'(table_index) == index && table_high == high);
-      if (table_write) table_data: assert (table_low == data && index < size);
-      never_both: assert (!(table_write && since != 3'd0));
+      table_written: assert (table_command.write == (writes_low && !rst));
+      table_asked: assert (table_command.read == (since == 3'd1 && index < size && !rst));
+      table_word: assert (table_command.select == select && 32'(table_command.index) == index
+          && table_command.high == high);
+      if (table_command.write) table_data: assert (table_command.low == data && index < size);
+      never_both: assert (!(table_command.write && since != 3'd0));
       banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
-      if (table_write) only_settled: assert (table_bank[select] == table_in_use[select]);
-      if (table_write) not_captured: assert (!(capture_busy && select == TableSelectReference)
-          && !(floor_busy && select == TableSelectFloor));
+      if (table_command.write) only_settled: assert (table_bank[select] == table_in_use[select]);
+      if (table_command.write) not_captured: assert (!(reference_status.busy && select == TableSelectReference)
+          && !(floor_status.busy && select == TableSelectFloor));
       absent: assert ((table_bank & ~has) == '0);
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
-      set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && event_row_long
+      interrupted: cover (irq && interrupts == 32'h2);
+      set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
           && sticky[StatusRowLongBit]);
-      refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[0]);
-      refused_outside: cover (effective && offset == TableLowOffset && index == 36 && size == 36 && refused);
-      captured: cover (frame_start && requested == 4'b1100 && capture_busy && !floor_busy);
+      refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitFloorBit]);
+      refused_outside: cover (effective && offset == TableLowOffset && index == size && size == FloorWords && refused);
+      captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !floor_status.busy);
       reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
-      changes_over: cover (frame_start && requested == 4'b0011);
-      last_entry: cover (table_read && !upper && index == 35 && size == 36);
-      second_bin: cover (table_write && table_index == IndexWidth'(1));
+      changes_over: cover (frame_start && requested == has);
+      last_entry: cover (table_command.read && !upper && index == 31 && size == FloorWords);
+      second_bin: cover (table_command.write && table_command.index == 24'd1);
       data_first: cover (has_data && !has_address && aw);
-      cleared: cover (clears && frames_in != 0 && event_frame_in);
+      cleared: cover (clears && frames_in != 0 && seen.frame_in);
     end
   end
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_axil_registers: the client keeps to AXI4-Lite; any events of the pipeline.
+// protocol_axil_registers: the client keeps to AXI4-Lite; anything on all other inputs.
 
 module protocol_axil_registers
   import register_map_pkg::*;
@@ -18,12 +18,10 @@ module protocol_axil_registers
   input  logic                    s_axil_arvalid,
   input  logic                    s_axil_arready,
   input  logic                    s_axil_rvalid,
-  input  logic                    table_write,
   output logic                    holds,
   output logic                    counts_s_axil_bresp,
   output logic                    counts_s_axil_rdata,
   output logic                    counts_s_axil_rresp,
-  output logic                    counts_table_low,
   output logic                    counts
 );
 
@@ -38,6 +36,5 @@ module protocol_axil_registers
   assign counts = live;
   assign counts_s_axil_bresp = live & s_axil_bvalid;
   assign {counts_s_axil_rdata, counts_s_axil_rresp} = {2{live & s_axil_rvalid}};
-  assign counts_table_low = live & table_write;
 
 endmodule

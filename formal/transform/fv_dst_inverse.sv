@@ -15,17 +15,7 @@ module fv_dst_inverse #(
   input logic signed [Width-1:0] in_data
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic in_start, in_frame_start, active, last_row;
-  logic [$clog2(Size)-1:0] position;
-  logic [1:0] row;
-  burst_source #(.Size(Size), .Rows(2)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
-  logic out_start, out_frame_start;
+  logic in_start, in_frame_start, out_start, out_frame_start;
   logic signed [Width-1:0] out_data;
   logic [7:0] saturations;
   dst_inverse #(
@@ -34,26 +24,8 @@ module fv_dst_inverse #(
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
 
-  logic [Latency-1:0] start_q, frame_start_q;
-  always_ff @(posedge clk) begin
-    started <= 1'b1;
-    if (en) begin
-      start_q <= Latency'({start_q, in_start});
-      frame_start_q <= Latency'({frame_start_q, in_frame_start});
-    end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-    end
-  end
-
-  always_comb begin
-    if (started) begin
-      start_when_due: assert (out_start == start_q[Latency-1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
-      next_burst_behind: cover (out_start && !out_frame_start && start_q[Size-1] && en);
-      next_frame: cover (out_frame_start && start_q[Size-1:0] == '0);
-    end
-  end
+  timed_bursts #(.Size(Size), .Latency(Latency)) u_bursts (
+    .clk, .rst, .en, .go, .restart, .in_start, .in_frame_start, .out_start, .out_frame_start
+  );
 
 endmodule

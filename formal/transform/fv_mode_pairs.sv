@@ -48,7 +48,6 @@ module fv_mode_pairs #(
   logic following, has_mirror;
   logic [AgeWidth-1:0] age, mirror_age;  // enabled clocks since the word was present; when it shall be beside another
   logic signed [Width-1:0] value;
-  logic [Latency-1:0] start_q, frame_start_q;
   logic held;
   logic [2*Width+1:0] out_q;
   logic done;
@@ -58,8 +57,6 @@ module fv_mode_pairs #(
     held <= ~en & ~rst;
     out_q <= {out_start, out_frame_start, out_mode, out_mirrored};
     if (en) begin
-      start_q <= Latency'({start_q, in_start});
-      frame_start_q <= Latency'({frame_start_q, in_frame_start});
       if (!following || done) begin
         following <= pick & active;
         age <= AgeWidth'(1);
@@ -70,17 +67,14 @@ module fv_mode_pairs #(
         age <= age + AgeWidth'(1);
       end
     end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      following <= 1'b0;
-    end
+    if (rst) following <= 1'b0;
   end
 
+  burst_timing #(.Size(Size), .Latency(Latency)) u_timing (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
+  );
   always_comb begin
     if (started) begin
-      start_when_due: assert (out_start == start_q[Latency-1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
       if (following && age == AgeWidth'(Latency)) mode_in_place: assert (out_mode == value);
       if (following && has_mirror && age == mirror_age) mirror_in_place: assert (out_mirrored == value);
       if (out_start) mode_0_alone: assert (out_mirrored == '0);

@@ -80,7 +80,6 @@ module fv_sdf_butterfly #(
   assign is_a = active & (32'(position) % (2 * Delay) < Delay);
   logic [3:0] clipped_q;
   logic [Delay:0] active_q;
-  logic [Delay+1:0] start_q, frame_start_q;
   logic [2*Width+1:0] out_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
@@ -88,8 +87,6 @@ module fv_sdf_butterfly #(
     out_q <= {out_start, out_frame_start, out_re, out_im};
     was_enabled <= en & ~rst;
     if (en) begin
-      start_q <= (Delay + 2)'({start_q, in_start});
-      frame_start_q <= (Delay + 2)'({frame_start_q, in_frame_start});
       active_q <= (Delay + 1)'({active_q, active});
       if (!following || age == AgeWidth'(2 * Delay + 2)) begin
         following <= pick & is_a;
@@ -108,8 +105,6 @@ module fv_sdf_butterfly #(
       end
     end
     if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
       active_q <= '0;
       following <= 1'b0;
     end
@@ -117,10 +112,11 @@ module fv_sdf_butterfly #(
   logic none_leaves;  // nothing was rounded in the clock before
   always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
 
+  burst_timing #(.Size(Size), .Latency(Delay + 2)) u_timing (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
+  );
   always_comb begin
     if (started) begin
-      start_when_due: assert (out_start == start_q[Delay+1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Delay+1]);
       if (following && age == AgeWidth'(Delay + 2)) begin
         sum: assert (out_re == sum_re_q && out_im == sum_im_q);
         if (was_enabled) sum_counted: assert (32'(saturations) == 32'(clipped_q[0]) + 32'(clipped_q[1]));

@@ -51,15 +51,12 @@ module fv_twiddle_multiply #(
   logic following, held;
   logic [2:0] age;
   logic signed [OutWidth-1:0] re, im;
-  logic [Latency-1:0] start_q, frame_start_q;
   logic [2*OutWidth+1:0] out_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
     out_q <= {out_start, out_frame_start, out_re, out_im};
     if (en) begin
-      start_q <= Latency'({start_q, in_start});
-      frame_start_q <= Latency'({frame_start_q, in_frame_start});
       if (!following || age == 3'(Latency)) begin
         following <= pick & active;
         age <= 3'd1;
@@ -69,17 +66,14 @@ module fv_twiddle_multiply #(
         age <= age + 3'd1;
       end
     end
-    if (rst) begin
-      start_q <= '0;
-      frame_start_q <= '0;
-      following <= 1'b0;
-    end
+    if (rst) following <= 1'b0;
   end
 
+  burst_timing #(.Size(Size), .Latency(Latency)) u_timing (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
+  );
   always_comb begin
     if (started) begin
-      start_when_due: assert (out_start == start_q[Latency-1]);
-      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
       if (following && age == 3'(Latency)) own_factor: assert (out_re == re && out_im == im);
       if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
       none_clipped: assert (saturations == '0);

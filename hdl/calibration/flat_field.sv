@@ -6,12 +6,17 @@
 // With Offset 0 these are codes, unsigned (128 I / ref); else deviations, signed (I / ref - 1). A pixel is dark if all
 // its colours are under dark_level, as it stood when the frame's first pixel came, or if the gain of one of them has
 // its top bit set. It takes over what left for the pixel before it in its row, the first of a row Flat; `dark` is high
-// one clock for each. Nothing that a dark pixel would clip counts as saturation.
+// one cycle for each. Nothing that a dark pixel would clip counts as saturation.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0. Stream out: colours relative to the reference.
 // Latency: 12 cycles. Banks, bus and capture: see gain_map. Bit-accurate model:
 // models/tactile_depth/calibration/flat_field.py.
 
-module flat_field #(
+`default_nettype none
+
+module flat_field
+  import stream_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
@@ -22,67 +27,66 @@ module flat_field #(
   parameter int Flat      = 128,
   localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)))
 ) (
-  input  logic                   clk,
-  input  logic                   rst,
-  input  logic                   en,
-  input  logic [7:0]             dark_level,
+  input  wire                    clk,
+  input  wire                    rst,
+  input  wire                    en,
+  input  wire  [7:0]             dark_level,
 
-  input  logic                   table_bank,
+  input  wire                    table_bank,
   output logic                   table_in_use,
-  input  logic                   table_write,
-  input  logic                   table_read,
-  input  logic [NodeWidth+1:0]   table_index,
-  input  logic [GainWidth-1:0]   table_gain,
+  input  wire                    table_write,
+  input  wire                    table_read,
+  input  wire  [NodeWidth+1:0]   table_index,
+  input  wire  [GainWidth-1:0]   table_gain,
   output logic [GainWidth-1:0]   table_read_gain,
 
-  input  logic                   capture_write,
-  input  logic [NodeWidth-1:0]   capture_write_node,
-  input  logic [3*GainWidth-1:0] capture_gains,
-  input  logic                   capture_read,
-  input  logic [NodeWidth-1:0]   capture_read_node,
+  input  wire                    capture_write,
+  input  wire  [NodeWidth-1:0]   capture_write_node,
+  input  wire  [3*GainWidth-1:0] capture_gains,
+  input  wire                    capture_read,
+  input  wire  [NodeWidth-1:0]   capture_read_node,
   output logic [3*GainWidth-1:0] capture_read_gains,
 
-  input  logic                   in_valid,
-  input  logic [23:0]            in_pixel,
-  input  logic [3:0]             in_place,    // in the first row, first column, last row, last column
+  input  wire                    in_valid,
+  input  wire  [23:0]            in_pixel,    // three codes of 8 bits
+  input  wire position_t         in_position,
   output logic                   out_valid,
-  output logic [3:0]             out_place,
-  output logic [OutWidth-1:0]    out_red,     // signed where Offset is not 0
+  output position_t              out_position,
+  output logic [OutWidth-1:0]    out_red,     // code, or deviation, signed, where Offset is not 0
   output logic [OutWidth-1:0]    out_green,
   output logic [OutWidth-1:0]    out_blue,
   output logic                   dark,
-  output logic [1:0]             saturations  // values clipped in this clock
+  output logic [1:0]             saturations  // values clipped in this cycle
 );
 
-  localparam int MapLatency = 9;
   localparam int ToOut = 2;  // stages between the gain and the output
   localparam int ProductWidth = 8 + GainWidth + 2;  // of two signs more
   localparam int RoundedWidth = OutWidth + (Offset == 0 ? 1 : 0);  // round_saturate is signed
 
-  logic gain_valid;
-  logic [3:0] gain_place;
+  // Colours in the order of the gains: red, green, blue from the lowest.
+
+  logic frame_start, dim_in, dim, gain_valid, unused_active;
+  logic [7:0] red, green, blue, level, level_q;
+  logic [23:0] colours;
+  position_t gain_position;
   logic [3*GainWidth-1:0] gains;
+  assign {red, blue, green} = in_pixel;
+  assign frame_start = in_position.first_row & in_position.first_column;
+  assign level = frame_start ? dark_level : level_q;
+  assign dim_in = red < level & green < level & blue < level;
   gain_map #(
-    .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth)
+    .Name({TableFolder, "gain"}), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
+    .DataWidth(29)
   ) u_map (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
     .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,
-    .capture_read_gains, .in_valid, .in_place, .out_valid(gain_valid), .out_place(gain_place), .out_gains(gains)
-  );
-
-  // Colours in the order of the gains: red, green, blue from the lowest.
-
-  logic [7:0] level;
-  logic [23:0] colours_q, colours;
-  logic dim_q, dim;
-  assign dim_q = colours_q[7:0] < level & colours_q[15:8] < level & colours_q[23:16] < level;
-  delay_line #(.Width(25), .Delay(MapLatency - 1)) u_delay (
-    .clk, .rst, .en, .in({dim_q, colours_q}), .out({dim, colours})
+    .capture_read_gains, .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
+    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_gains(gains), .active(unused_active)
   );
 
   logic dead;
   logic [ToOut-1:0] valid_q, dark_q;
-  logic [4*ToOut-1:0] place_q;
+  position_t [ToOut-1:0] position_q;
   logic [2:0] clipped;
   assign dead = gains[GainWidth-1] | gains[2*GainWidth-1] | gains[3*GainWidth-1];
 
@@ -105,20 +109,20 @@ module flat_field #(
       if (en) begin
         sum <= product - (ProductWidth'(Offset) <<< Drop);
         if (valid_q[1] & ~dark_q[1]) out[c*OutWidth+:OutWidth] <= rounded[OutWidth-1:0];
-        else if (valid_q[1] & place_q[5]) out[c*OutWidth+:OutWidth] <= OutWidth'(Flat);
+        else if (valid_q[1] & position_q[1].first_column) out[c*OutWidth+:OutWidth] <= OutWidth'(Flat);
       end
     end
   end
 
   always_ff @(posedge clk) begin
     if (en) begin
-      if (in_valid & in_place[0] & in_place[1]) level <= dark_level;
-      colours_q <= {in_pixel[15:8], in_pixel[7:0], in_pixel[23:16]};
+      if (in_valid) level_q <= level;
       valid_q <= {valid_q[0], gain_valid};
-      place_q <= {place_q[3:0], gain_place};
+      position_q[0] <= gain_position;
+      position_q[1] <= position_q[0];
       dark_q <= {dark_q[0], dim | dead};
       out_valid <= valid_q[1];
-      out_place <= place_q[7:4];
+      out_position <= position_q[1];
     end
     dark <= en & valid_q[1] & dark_q[1];
     saturations <= en & valid_q[1] & ~dark_q[1] ? 2'(clipped[0]) + 2'(clipped[1]) + 2'(clipped[2]) : '0;
@@ -130,8 +134,11 @@ module flat_field #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Offset % 2 != 0) $fatal(1, "%m: Offset must be even: it is subtracted before rounding to even");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Offset % 2 != 0) begin : g_refused
+    Offset_must_be_even_it_is_subtracted_before_rounding_to_even u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

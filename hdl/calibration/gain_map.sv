@@ -5,55 +5,60 @@
 //
 // along rows and columns alike for blocks of b = 2^BlockLog2 pixels; exact, then one rounding half to even.
 // Down a column by a multiplication of each node as it is read, along a row by an accumulator: two nodes a block.
-// Stream in: places of pixels in raster order. Stream out: their gains {B, G, R}, unsigned. Latency: 9 cycles; a gap or
-// en low changes no gain. Gains are held in two banks. A frame uses the bank that table_bank names one enabled clock
-// after its first place came, or in reset; table_in_use says which. The other is written and read by the bus (a gain at
-// index 4 node + channel: red 0, green 1, blue 2; a channel that is not there is not written and reads 0) or by the
-// capture (all gains of a node, read one clock later). Nothing is written while a change-over is due (table_bank is not
-// table_in_use). A table_read stands on table_read_gain from 3 clocks later until the next, en or not; no write until
-// then. What the bus reads while the capture reads is left open. <Name>_0, 1 and 2.hex give both banks at power-up; a
-// memory without contents there must be written before the first frame. Bit-accurate model:
-// models/tactile_depth/calibration/gain_map.py.
+// Stream in: data of the pixels of whole frames, raster order. Stream out: the same, with the gains {B, G, R} of each
+// pixel. Latency: 9 cycles; a gap in, a gap out.
+// Gains are held in banked tables. A frame uses the bank that table_bank names with its first pixel, or in reset;
+// table_in_use says which. The other is written and read by the bus (a gain at index 4 node + channel: red 0, green
+// 1, blue 2; a channel that is not there is not written and reads 0) or by the capture (all gains of a node, read one
+// cycle later). Nothing is written while a change-over is due (table_bank is not table_in_use). A table_read stands on
+// table_read_gain from 2 cycles later until the next, en or not; no write until then. What the bus reads while the
+// capture reads is left open. <Name>_0, 1 and 2.hex give both banks at power-up; a memory without contents there must
+// be written before the first frame. Bit-accurate model: models/tactile_depth/calibration/gain_map.py.
+
+`default_nettype none
 
 module gain_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
-  parameter int Width     = 24,
+  parameter int Width     = 24,  // of a gain; its fraction bits are those of the nodes
   parameter int Channels  = 3,   // at most 3
+  parameter int DataWidth = 24,
   parameter     Name      = "gain",
   localparam int NodeColumns = Columns / (1 << BlockLog2),
   localparam int NodeRows = Rows / (1 << BlockLog2),
   localparam int NodeWidth = $clog2(NodeRows * NodeColumns)
 ) (
-  input  logic                 clk,
-  input  logic                 rst,
-  input  logic                 en,
+  input  wire                       clk,
+  input  wire                       rst,
+  input  wire                       en,
 
-  input  logic                 table_bank,
-  output logic                 table_in_use,
-  input  logic                 table_write,
-  input  logic                 table_read,
-  input  logic [NodeWidth+1:0] table_index,
-  input  logic [Width-1:0]     table_gain,
-  output logic [Width-1:0]     table_read_gain,
+  input  wire                       table_bank,
+  output logic                      table_in_use,
+  input  wire                       table_write,
+  input  wire                       table_read,
+  input  wire  [NodeWidth+1:0]      table_index,
+  input  wire  [Width-1:0]          table_gain,
+  output logic [Width-1:0]          table_read_gain,
 
-  input  logic                 capture_write,
-  input  logic [NodeWidth-1:0] capture_write_node,
-  input  logic [Channels*Width-1:0] capture_gains,
-  input  logic                 capture_read,
-  input  logic [NodeWidth-1:0] capture_read_node,
+  input  wire                       capture_write,
+  input  wire  [NodeWidth-1:0]      capture_write_node,
+  input  wire  [Channels*Width-1:0] capture_gains,
+  input  wire                       capture_read,
+  input  wire  [NodeWidth-1:0]      capture_read_node,
   output logic [Channels*Width-1:0] capture_read_gains,
 
-  input  logic                 in_valid,
-  input  logic [3:0]           in_place,  // in the first row, first column, last row, last column
-  output logic                 out_valid,
-  output logic [3:0]           out_place,
-  output logic [Channels*Width-1:0] out_gains
+  input  wire                       in_valid,
+  input  wire                       in_frame_start,  // with the first pixel of a frame
+  input  wire  [DataWidth-1:0]      in_data,
+  output logic                      out_valid,
+  output logic [DataWidth-1:0]      out_data,
+  output logic [Channels*Width-1:0] out_gains,       // unsigned
+  output logic                      active           // a pixel is inside
 );
 
   localparam int Latency = 9;
-  localparam int ToSum = 6;  // stages from the place to the accumulator
+  localparam int ToSum = 6;  // stages from the position to the accumulator
   localparam int Half = 1 << (BlockLog2 - 1);
   localparam int ColumnWidth = $clog2(Columns);
   localparam int RowWidth = $clog2(Rows) + 1;
@@ -62,25 +67,28 @@ module gain_map #(
   localparam int SumWidth = Width + ShareBits;
   localparam int GainWidth = SumWidth + ShareBits;
 
-  // Where the pixel is. Columns are counted from half a block on, so that a node begins at phase 0; columns before the
-  // first and behind the last node's centre both count as the last node's: there the gain stands still.
+  delay_line #(.Width(DataWidth), .Delay(Latency)) u_delay (.clk, .rst, .en, .in(in_data), .out(out_data));
+
+  // Row and column of the pixel. Columns are counted from half a block on, so that a node begins at phase 0; columns
+  // before the first and behind the last node's centre both count as the last node's: there the gain stands still.
 
   logic [Latency-1:0] valid_q;
-  logic [4*Latency-1:0] place_q;
+  logic frame_start_q, row_start_q, row_starts, begins, inner, segment;
   logic [ColumnWidth-1:0] column, shifted;
   logic [RowWidth-1:0] row, row_shifted;
   logic [NodeColumnWidth-1:0] node;
-  logic starts, begins, inner, segment;
-  assign starts = valid_q[0] & place_q[1];
+  assign row_starts = valid_q[0] & row_start_q;
   assign shifted = column - ColumnWidth'(Half);
   assign node = shifted[ColumnWidth-1:BlockLog2];
   assign begins = shifted[BlockLog2-1:0] == '0;
   assign inner = node != '1;
   assign segment = valid_q[0] & begins & inner;
+  assign active = |valid_q;
+  assign out_valid = valid_q[Latency-1];
 
   logic [RowWidth-BlockLog2-1:0] node_row, lower_row;
   logic [BlockLog2-1:0] row_phase;
-  logic above, below;
+  logic above, below;  // the first node's centre, the last node's
   assign row_shifted = row - RowWidth'(Half);
   assign above = row < RowWidth'($unsigned(Half));
   assign {node_row, row_phase} = row_shifted;
@@ -91,15 +99,16 @@ module gain_map #(
     if (above) lower_row = '0;
   end
 
-  // Reads of a row's first node come with its first pixel, those of every other node one clock after the pixel at the
-  // centre of the node before it. So two rows, or two frames, never meet, and at b = 2 a node is read in every clock.
+  // Reads of a row's first node come with its first pixel, those of every other node one cycle after the pixel at the
+  // centre of the node before it. So two rows, or two frames, never meet, and at b = 2 a node is read in every cycle.
+  // The last node of a frame is used up in the cycle of the next frame's first read.
 
-  logic starts_q, segment_q, segment_q2, upper, below_too, reading;
+  logic row_starts_q, segment_q, segment_q2, upper, below_too, reading;
   logic [NodeColumnWidth-1:0] next_q, next_q2, read_column;
   logic [RowWidth-BlockLog2-1:0] read_row;
   logic [NodeWidth-1:0] read_node;
-  assign upper = starts_q | segment_q2;
-  assign reading = en & (starts | segment_q | upper);
+  assign upper = row_starts_q | segment_q2;
+  assign reading = row_starts | segment_q | upper;
   assign below_too = upper & ~above & ~below;
   assign read_row = lower_row + (RowWidth - BlockLog2)'(below_too);
   always_comb begin
@@ -114,55 +123,30 @@ module gain_map #(
   assign share = {row_phase, 1'b1};  // of the node below: above the first and below the last both are one
   assign weight = upper ? {1'b0, share} : {1'b1, {ShareBits{1'b0}}} - {1'b0, share};
 
-  // The banks. The last node of a frame is used up in the clock that changes over, and that has en, so the bank left is
-  // free from the next clock on; in that clock itself the other is already being read, so a table_read waits one clock.
+  // The tables, one for each channel. Capture and bus share the ports of the free bank.
 
-  logic bank, used, changes, late, fetch, fetched, fetched_bank;
-  logic [1:0] fetched_channel;
-  logic [NodeWidth+1:0] late_index, fetch_index;
-  logic [1:0][Channels*Width-1:0] words;
-  assign used = en & starts & place_q[0] ? table_bank : bank;
-  assign changes = used != bank;
-  assign fetch = (table_read & ~changes) | late;
-  assign fetch_index = late ? late_index : table_index;
-  assign table_in_use = bank;
-
-  for (genvar b = 0; b < 2; b++) begin : g_bank
-    logic pixel, free;
-    logic [NodeWidth-1:0] read_address;
-    logic [Channels*Width-1:0] gains;
-    assign pixel = reading & (used == 1'(b));
-    assign free = bank != 1'(b);
-    assign read_address = pixel ? read_node : capture_read ? capture_read_node : fetch_index[NodeWidth+1:2];
-    for (genvar c = 0; c < Channels; c++) begin : g_channel
-      ram #(
-        .Width(Width),
-        .Depth(NodeRows * NodeColumns),
-        .Style(1),
-        .File ({Name, "_", 8'(48 + c), ".hex"})
-      ) u_gains (
-        .clk,
-        .write_en     (free & (capture_write | (table_write & table_index[1:0] == 2'(c)))),
-        .write_address(capture_write ? capture_write_node : table_index[NodeWidth+1:2]),
-        .write_data   (capture_write ? capture_gains[c*Width+:Width] : table_gain),
-        .read_en      (pixel | (free & (capture_read | fetch))),
-        .read_address (read_address),
-        .read_data    (gains[c*Width+:Width])
-      );
-    end
-    assign words[b] = gains;
+  logic [NodeWidth-1:0] table_node, write_node, free_node;
+  logic [1:0] channel, fetched_channel;
+  logic fetched;
+  logic [3:0][Width-1:0] free_gains;
+  logic [Channels*Width-1:0] gains;
+  logic [Channels-1:0] in_use;
+  assign {table_node, channel} = table_index;
+  assign write_node = capture_write ? capture_write_node : table_node;
+  assign free_node = capture_read ? capture_read_node : table_node;
+  assign table_in_use = &in_use;  // they change over together
+  for (genvar c = 0; c < Channels; c++) begin : g_table
+    banked_table #(.Width(Width), .Depth(NodeRows * NodeColumns), .File({Name, "_", 8'(48 + c), ".hex"})) u_gains (
+      .clk, .rst, .en, .table_bank, .table_in_use(in_use[c]),
+      .frame_start(in_valid & in_frame_start), .change(valid_q[0] & frame_start_q),
+      .read(reading), .read_address(read_node), .read_word(gains[c*Width+:Width]),
+      .free_write(capture_write | (table_write & channel == 2'(c))), .free_write_address(write_node),
+      .free_write_word(capture_write ? capture_gains[c*Width+:Width] : table_gain),
+      .free_read(capture_read | table_read), .free_read_address(free_node), .free_word(free_gains[c])
+    );
+    assign capture_read_gains[c*Width+:Width] = free_gains[c];
   end
-
-  logic [Channels*Width-1:0] used_gains;
-  logic [Channels*Width-1:0] fetched_gains;
-  logic [3:0][Width-1:0] fetched_gain;  // of each channel
-  assign fetched_gains = words[fetched_bank];
-  for (genvar c = 0; c < Channels; c++) begin : g_fetched
-    assign fetched_gain[c] = fetched_gains[c*Width+:Width];
-  end
-  assign fetched_gain[3:Channels] = '0;
-  assign used_gains = words[bank];
-  assign capture_read_gains = bank ? words[0] : words[1];
+  assign free_gains[3:Channels] = '0;
 
   // Stages behind the read.
 
@@ -172,51 +156,36 @@ module gain_map #(
   always_ff @(posedge clk) begin
     if (en) begin
       valid_q <= {valid_q[Latency-2:0], in_valid};
-      place_q <= {place_q[4*Latency-5:0], in_place};
       if (in_valid) begin
-        column <= in_place[1] ? '0 : column + ColumnWidth'(1);
-        if (in_place[1]) row <= in_place[0] ? '0 : row + RowWidth'(1);
+        frame_start_q <= in_frame_start;
+        row_start_q <= in_frame_start | column == '1;
+        {row, column} <= in_frame_start ? '0 : {row, column} + (RowWidth + ColumnWidth)'(1);
       end
-      starts_q <= starts;
-      segment_q <= segment;
-      segment_q2 <= segment_q;
-      next_q <= node + NodeColumnWidth'(1);
-      next_q2 <= next_q;
+      row_starts_q <= row_starts;
+      {segment_q2, segment_q} <= {segment_q, segment};
+      {next_q2, next_q} <= {next_q, node + NodeColumnWidth'(1)};
       weight_q <= weight;
       upper_q <= upper;
-      segment_read_q <= segment_q2;
       first_q2 <= ~upper_q;
-      segment_read_q2 <= segment_read_q;
+      {segment_read_q2, segment_read_q} <= {segment_read_q, segment_q2};
       node_done <= ~first_q2;
       segment_done <= segment_read_q2;
       begins_q <= {begins_q[ToSum-2:0], begins};
       inner_q <= {inner_q[ToSum-2:0], inner};
-      start_q <= {start_q[ToSum-2:0], place_q[1]};
+      start_q <= {start_q[ToSum-2:0], row_start_q};
     end
-    if (rst || (en && starts && place_q[0])) bank <= table_bank;
-    late <= table_read & changes;
-    late_index <= table_index;
-    fetched <= fetch;
-    fetched_bank <= ~bank;
-    fetched_channel <= fetch_index[1:0];
-    if (fetched) table_read_gain <= fetched_gain[fetched_channel];
+    fetched <= table_read;
+    if (table_read) fetched_channel <= channel;
+    if (fetched) table_read_gain <= free_gains[fetched_channel];
     if (rst) begin
       valid_q <= '0;
-      starts_q <= 1'b0;
+      row_starts_q <= 1'b0;
       upper_q <= 1'b0;
       first_q2 <= 1'b1;
-      segment_q <= 1'b0;
-      segment_q2 <= 1'b0;
-      segment_read_q <= 1'b0;
-      segment_read_q2 <= 1'b0;
-      node_done <= 1'b0;
-      segment_done <= 1'b0;
-      late <= 1'b0;
-      fetched <= 1'b0;
+      {segment_q2, segment_q, segment_read_q2, segment_read_q} <= '0;
+      {node_done, segment_done} <= '0;
     end
   end
-  assign out_valid = valid_q[Latency-1];
-  assign out_place = place_q[4*Latency-1-:4];
 
   // Each channel: weigh a node and the one below it, then run along the row from node to node.
 
@@ -226,11 +195,11 @@ module gain_map #(
   assign node_begins = begins_q[ToSum-1];
   assign between = inner_q[ToSum-1];
   for (genvar c = 0; c < Channels; c++) begin : g_along
-    logic [SumWidth-1:0] sum, far, near;
+    logic [SumWidth-1:0] sum, left, right;  // right: of the node that was done last; left: of the one before it
     assign sum = sums[c*SumWidth+:SumWidth];
     logic signed [Width+ShareBits+2:0] product;
     multiply #(.AWidth(Width + 1), .BWidth(ShareBits + 2)) u_product (
-      .clk, .en, .a({1'b0, used_gains[c*Width+:Width]}), .b({1'b0, weight_q}), .product
+      .clk, .en, .a({1'b0, gains[c*Width+:Width]}), .b({1'b0, weight_q}), .product
     );
     logic unused_signs;
     assign unused_signs = ^product[Width+ShareBits+2:SumWidth];
@@ -239,7 +208,7 @@ module gain_map #(
     logic signed [GainWidth-1:0] add;
     logic signed [Width:0] rounded;
     logic unused_clipped, unused_sign;
-    assign from = start ? {far, {ShareBits{1'b0}}} : node_begins & between ? {near, {ShareBits{1'b0}}} : gain;
+    assign from = start ? {right, {ShareBits{1'b0}}} : node_begins & between ? {left, {ShareBits{1'b0}}} : gain;
     assign add = node_begins ? GainWidth'(step) : between ? GainWidth'(step) <<< 1 : '0;
     round_saturate #(.InWidth(GainWidth + 1), .Drop(2 * ShareBits), .OutWidth(Width + 1)) u_round (
       .in({1'b0, gain}), .out(rounded), .clipped(unused_clipped)
@@ -247,12 +216,12 @@ module gain_map #(
     assign unused_sign = rounded[Width];
     always_ff @(posedge clk) begin
       if (en) begin
-        // In this form: where the sum stands first, Yosys 0.70 packs it into a DSP48 with the choice inverted.
+        // In this form: with the sum first, Yosys 0.70 packs it into a DSP48 with the choice inverted.
         sums[c*SumWidth+:SumWidth] <= (first_q2 ? '0 : sum) + product[SumWidth-1:0];
-        if (node_done) far <= sum;
+        if (node_done) right <= sum;
         if (segment_done) begin
-          near <= far;
-          step <= $signed({1'b0, sum}) - $signed({1'b0, far});
+          left <= right;
+          step <= $signed({1'b0, sum}) - $signed({1'b0, right});
         end
         if (valid_q[ToSum]) gain <= from + $unsigned(add);
         out_gains[c*Width+:Width] <= rounded[Width-1:0];
@@ -260,12 +229,17 @@ module gain_map #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial begin
-    if (BlockLog2 < 1) $fatal(1, "%m: BlockLog2 must be at least 1: a node is read in a clock, and two are needed");
-    if (Columns != 1 << ColumnWidth) $fatal(1, "%m: Columns must be a power of two");
-    if (NodeColumns < 2 || NodeRows < 1) $fatal(1, "%m: two blocks a row and one a column are needed");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (BlockLog2 < 1) begin : g_refused_0
+    BlockLog2_must_be_at_least_1_a_node_is_read_in_a_clock_and_two_are_needed u_refused ();
   end
-`endif
+  if (Columns != 1 << ColumnWidth) begin : g_refused_1
+    Columns_must_be_a_power_of_two u_refused ();
+  end
+  if (NodeColumns < 2 || NodeRows < 1) begin : g_refused_2
+    two_blocks_a_row_and_one_a_column_are_needed u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -5,16 +5,18 @@
 // s_ready too, comes from a register: no combinational path crosses it. It never waits for s_valid to raise s_ready.
 // Cycle-accurate model: models/tactile_depth/common/axis_skid.py, a queue.
 
+`default_nettype none
+
 module axis_skid #(
   parameter int Width = 26
 ) (
-  input  logic             clk,
-  input  logic             rst,
-  input  logic             s_valid,
+  input  wire              clk,
+  input  wire              rst,
+  input  wire              s_valid,
   output logic             s_ready,
-  input  logic [Width-1:0] s_data,
+  input  wire  [Width-1:0] s_data,
   output logic             m_valid,
-  input  logic             m_ready,
+  input  wire              m_ready,
   output logic [Width-1:0] m_data
 );
 
@@ -38,3 +40,5 @@ module axis_skid #(
   end
 
 endmodule
+
+`default_nettype wire

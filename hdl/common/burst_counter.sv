@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // burst_counter: position of the word now present in a burst of Size words.
 //
-// A burst is Size words in successive enabled clocks; start comes with the first. position and active are combinational
+// A burst is Size words in successive enabled cycles; start comes with the first. position and active are combinational
 // with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
 // Bit-accurate model: models/tactile_depth/common/burst_counter.py.
+
+`default_nettype none
 
 module burst_counter #(
   parameter int Size = 128,
   localparam int PositionWidth = $clog2(Size)
 ) (
-  input  logic                     clk,
-  input  logic                     rst,
-  input  logic                     en,
-  input  logic                     start,
+  input  wire                      clk,
+  input  wire                      rst,
+  input  wire                      en,
+  input  wire                      start,
   output logic [PositionWidth-1:0] position,
   output logic                     active    // a word of a burst is present
 );
@@ -34,8 +36,11 @@ module burst_counter #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Size < 2) $fatal(1, "%m: Size must be at least 2");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 2) begin : g_refused
+    Size_must_be_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

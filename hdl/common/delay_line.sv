@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// delay_line: out is in, Delay enabled clocks later.
+// delay_line: out is in, Delay enabled cycles later.
 //
 // Time moves with en alone, not with the data: what is inside drains by itself. Short lines are registers, long ones a
 // memory whose pointer runs round. Bit-accurate model: models/tactile_depth/common/delay_line.py.
+
+`default_nettype none
 
 module delay_line #(
   parameter int Width = 54,
   parameter int Delay = 64
 ) (
-  input  logic             clk,
-  input  logic             rst,
-  input  logic             en,
-  input  logic [Width-1:0] in,
+  input  wire              clk,
+  input  wire              rst,
+  input  wire              en,
+  input  wire  [Width-1:0] in,
   output logic [Width-1:0] out
 );
 
@@ -29,7 +31,7 @@ module delay_line #(
     logic unused_rst;
     assign unused_rst = rst;
   end else begin : g_memory
-    // The word read now leaves the read register one clock later: it is the one written Delay - 1 clocks ago.
+    // The word read now leaves the read register one cycle later: it is the one written Delay - 1 cycles ago.
     localparam int AddressWidth = $clog2(Delay);
     logic [AddressWidth-1:0] pointer;
     logic [AddressWidth-1:0] pointer_next;
@@ -53,8 +55,11 @@ module delay_line #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Delay < 1) $fatal(1, "%m: Delay must be at least 1");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Delay < 1) begin : g_refused
+    Delay_must_be_at_least_1 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

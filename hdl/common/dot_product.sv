@@ -4,16 +4,18 @@
 // Registered and staggered as two cascaded DSP48E2 take it: operands, product (multiply), sum. No reset on the way.
 // Bit-accurate model: models/tactile_depth/common/dot_product.py.
 
+`default_nettype none
+
 module dot_product #(
   parameter int AWidth = 27,
   parameter int BWidth = 18
 ) (
-  input  logic                            clk,
-  input  logic                            en,
-  input  logic signed [AWidth-1:0]        a0,
-  input  logic signed [BWidth-1:0]        b0,
-  input  logic signed [AWidth-1:0]        a1,
-  input  logic signed [BWidth-1:0]        b1,
+  input  wire                             clk,
+  input  wire                             en,
+  input  wire  signed [AWidth-1:0]        a0,
+  input  wire  signed [BWidth-1:0]        b0,
+  input  wire  signed [AWidth-1:0]        a1,
+  input  wire  signed [BWidth-1:0]        b1,
   output logic signed [AWidth+BWidth:0]   sum
 );
 
@@ -38,3 +40,5 @@ module dot_product #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // multiply: a b, exact and signed. Latency: 1 cycle.
 //
-// The one place to put a multiplier of the technology: every product of the design is one of these, its operands and
-// what becomes of it stand in registers without reset, under the same enable.
+// The one place to put a multiplier of the technology: every product of two variables in the design is one of these.
+// The product register has no reset and one enable, as a DSP block asks; operands may come from a register, a memory or
+// logic, and either may be the wider one.
 // Bit-accurate model: models/tactile_depth/common/multiply.py.
+
+`default_nettype none
 
 module multiply #(
   parameter int AWidth = 27,
   parameter int BWidth = 18
 ) (
-  input  logic                            clk,
-  input  logic                            en,
-  input  logic signed [AWidth-1:0]        a,
-  input  logic signed [BWidth-1:0]        b,
+  input  wire                             clk,
+  input  wire                             en,
+  input  wire  signed [AWidth-1:0]        a,
+  input  wire  signed [BWidth-1:0]        b,
   output logic signed [AWidth+BWidth-1:0] product
 );
 
   always_ff @(posedge clk) if (en) product <= a * b;
 
 endmodule
+
+`default_nettype wire

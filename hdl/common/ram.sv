@@ -5,6 +5,8 @@
 // left open. A File (one line per word, $readmemh) gives the contents at power-up.
 // Bit-accurate model: models/tactile_depth/common/ram.py.
 
+`default_nettype none
+
 module ram #(
   parameter int Width = 24,
   parameter int Depth = 16384,
@@ -12,12 +14,12 @@ module ram #(
   parameter     File  = "",
   localparam int AddressWidth = $clog2(Depth)
 ) (
-  input  logic                    clk,
-  input  logic                    write_en,
-  input  logic [AddressWidth-1:0] write_address,
-  input  logic [Width-1:0]        write_data,
-  input  logic                    read_en,
-  input  logic [AddressWidth-1:0] read_address,
+  input  wire                     clk,
+  input  wire                     write_en,
+  input  wire  [AddressWidth-1:0] write_address,
+  input  wire  [Width-1:0]        write_data,
+  input  wire                     read_en,
+  input  wire  [AddressWidth-1:0] read_address,
   output logic [Width-1:0]        read_data
 );
 
@@ -51,11 +53,14 @@ module ram #(
     end
   endcase
 
-`ifndef SYNTHESIS
-  initial begin
-    if (Depth < 2) $fatal(1, "%m: Depth must be at least 2");
-    if (Style == 2 && File != "") $fatal(1, "%m: an ultra memory has no contents at power-up");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Depth < 2) begin : g_refused_0
+    Depth_must_be_at_least_2 u_refused ();
   end
-`endif
+  if (Style == 2 && File != "") begin : g_refused_1
+    an_ultra_memory_has_no_contents_at_power_up u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -4,15 +4,17 @@
 // Contents come from File (one line per word, $readmemh), written by models/tactile_depth/rom_files.py.
 // Bit-accurate model: models/tactile_depth/common/rom.py.
 
+`default_nettype none
+
 module rom #(
   parameter int Width = 54,
   parameter int Depth = 128,
   parameter     File  = "rom.hex",
   localparam int AddressWidth = $clog2(Depth)
 ) (
-  input  logic                    clk,
-  input  logic                    en,
-  input  logic [AddressWidth-1:0] address,
+  input  wire                     clk,
+  input  wire                     en,
+  input  wire  [AddressWidth-1:0] address,
   output logic [Width-1:0]        data
 );
 
@@ -28,8 +30,11 @@ module rom #(
     always_ff @(posedge clk) if (en) data <= words[address];
   end
 
-`ifndef SYNTHESIS
-  initial if (Depth < 2) $fatal(1, "%m: Depth must be at least 2");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Depth < 2) begin : g_refused
+    Depth_must_be_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

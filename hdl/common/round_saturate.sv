@@ -6,12 +6,14 @@
 // Rounding can carry out of the top bit (0111.1 -> 1000), so the sum keeps a guard bit and the saturation works on
 // that. Bit-accurate model: models/tactile_depth/common/round_saturate.py.
 
+`default_nettype none
+
 module round_saturate #(
   parameter int InWidth  = 46,
   parameter int Drop     = 17,
   parameter int OutWidth = 27
 ) (
-  input  logic signed [InWidth-1:0]  in,
+  input  wire  signed [InWidth-1:0]  in,
   output logic signed [OutWidth-1:0] out,
   output logic                       clipped  // out is not the rounded value
 );
@@ -40,11 +42,14 @@ module round_saturate #(
     assign out = OutWidth'(sum);
   end
 
-`ifndef SYNTHESIS
-  initial begin
-    if (Drop >= InWidth) $fatal(1, "%m: Drop must leave a bit of the input");
-    if (OutWidth < 2) $fatal(1, "%m: OutWidth must be at least 2");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Drop >= InWidth) begin : g_refused_0
+    Drop_must_leave_a_bit_of_the_input u_refused ();
   end
-`endif
+  if (OutWidth < 2) begin : g_refused_1
+    OutWidth_must_be_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -1,43 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// threshold_comparator: contact, one clock after the deciding depth value leaves.
+// threshold_comparator: contact, one cycle after the beat with the deciding depth value leaves.
 //
 //   contact <- 1 when a depth above the threshold leaves
-//   contact <- 0 when the first depth of a frame leaves, unless hold; setting wins over clearing
+//   contact <- 0 when the first beat of a frame leaves, unless hold; setting wins over clearing
+//   contact <- 0 when hold is cleared, unless this frame has had a depth above the threshold
 //
-// Stream in: depth codes as they leave (valid and ready together); it never stalls them. A threshold written inside a
-// frame counts from the next one on. Latency: 1 cycle. Bit-accurate model:
+// Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat; it never stalls them. A
+// threshold written inside a frame counts from the next one on. Latency: 1 cycle. Bit-accurate model:
 // models/tactile_depth/contact/threshold_comparator.py.
 
+`default_nettype none
+
 module threshold_comparator #(
-  parameter int Width = 24
+  parameter int Width = 24,
+  parameter int Lanes = 1  // depths in a beat
 ) (
-  input  logic                    clk,
-  input  logic                    rst,
-  input  logic                    in_valid,
-  input  logic                    in_user,    // first depth of a frame
-  input  logic signed [Width-1:0] in_data,
-  input  logic signed [31:0]      threshold,
-  input  logic                    hold,
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     in_valid,
+  input  wire                     in_frame_start,  // first beat of a frame
+  input  wire  [Lanes*Width-1:0]  in_data,         // depth codes, signed
+  input  wire  signed [31:0]      threshold,       // depth code
+  input  wire                     hold,
   output logic                    contact
 );
 
   logic signed [31:0] threshold_q, threshold_now;
-  assign threshold_now = in_user ? threshold : threshold_q;
+  assign threshold_now = in_frame_start ? threshold : threshold_q;
 
+  logic [Lanes-1:0] higher;
   logic above;
-  assign above = 32'(in_data) > threshold_now;
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    logic signed [Width-1:0] depth;
+    assign depth = in_data[lane*Width+:Width];
+    assign higher[lane] = 32'(depth) > threshold_now;
+  end
+  assign above = |higher;
+
+  logic raised, raised_next;  // by a depth of this frame
+  assign raised_next = in_valid ? above | (raised & ~in_frame_start) : raised;
 
   always_ff @(posedge clk) begin
-    if (in_valid) begin
-      threshold_q <= threshold_now;
-      if (above) contact <= 1'b1;
-      else if (in_user && !hold) contact <= 1'b0;
+    if (in_valid) threshold_q <= threshold_now;
+    raised <= raised_next;
+    contact <= raised_next | (hold & contact);
+    if (rst) begin
+      raised <= 1'b0;
+      contact <= 1'b0;
     end
-    if (rst) contact <= 1'b0;
   end
 
-`ifndef SYNTHESIS
-  initial if (Width < 2 || Width > 32) $fatal(1, "%m: Width must be 2 to 32");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Width < 2 || Width > 32) begin : g_refused_0
+    Width_must_be_2_to_32 u_refused ();
+  end
+  if (Lanes < 1) begin : g_refused_1
+    Lanes_must_be_at_least_1 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -5,41 +5,38 @@
 //   row_short      tlast before the last column  marked, filled up
 //   row_long       no tlast in the last column   marked, filled up
 //   start_early    tuser inside a frame          marked, filled up; the early start waits, then begins the next frame
-//   timed_out      silence of `timeout` clocks   marked, filled up                           (timeout 0: wait for ever)
+//   timed_out      silence of `timeout` cycles   marked, filled up                           (timeout 0: wait for ever)
 //   start_missing  no tuser where a frame begins dropped up to the next tuser
 //
-// Each fault is one clock of its output, once a broken frame. What is left of a broken frame on the input is dropped;
+// Each fault is one cycle of its output, once a broken frame. What is left of a broken frame on the input is dropped;
 // the filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order;
 // with the last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
 // Bit-accurate model: models/tactile_depth/frame/frame_guard.py.
 
-module frame_guard #(
+`default_nettype none
+
+module frame_guard
+  import stream_pkg::*;
+#(
   parameter int Rows    = 128,
   parameter int Columns = 128
 ) (
-  input  logic        clk,
-  input  logic        rst,
-  input  logic        en,
-  input  logic [31:0] timeout,
-  input  logic        s_valid,
+  input  wire         clk,
+  input  wire         rst,
+  input  wire         en,
+  input  wire  [31:0] timeout,          // cycles
+  input  wire         s_valid,
   output logic        s_ready,
-  input  logic [23:0] s_data,
-  input  logic        s_last,
-  input  logic        s_user,
+  input  wire  [23:0] s_data,           // three codes of 8 bits
+  input  wire         s_last,
+  input  wire         s_user,
   output logic        out_valid,
   output logic [23:0] out_data,
-  output logic        out_first_row,
-  output logic        out_first_column,
-  output logic        out_last_row,
-  output logic        out_last_column,
+  output position_t   out_position,
   output logic        out_frame_start,
   output logic        out_frame_end,
-  output logic        out_bad,
-  output logic        row_short,
-  output logic        row_long,
-  output logic        start_missing,
-  output logic        start_early,
-  output logic        timed_out
+  output logic        out_bad,          // with out_frame_end: the frame was malformed
+  output faults_t     faults            // each for one cycle
 );
 
   localparam int ColumnWidth = $clog2(Columns);
@@ -51,7 +48,8 @@ module frame_guard #(
   logic filling;  // completing a broken frame
   logic hunting;  // dropping up to the next start of frame
 
-  logic origin, last_column, frame_end, take, emit, fault_in_frame;
+  logic origin, last_column, frame_end, take, emit;
+  logic row_short, row_long, start_missing, start_early, timed_out, fault_in_frame;
   assign origin = (column == '0) & (row == '0);
   assign last_column = column == ColumnWidth'(Columns - 1);
   assign frame_end = last_column & (row == RowWidth'(Rows - 1));
@@ -68,16 +66,14 @@ module frame_guard #(
   assign start_early = en & s_valid & ~origin & ~filling & s_user;
   assign timed_out = en & ~s_valid & ~origin & ~filling & (timeout != '0) & (silence >= timeout);
   assign fault_in_frame = row_short | row_long | start_early | timed_out;
+  assign faults = {timed_out, start_early, start_missing, row_long, row_short};
   assign emit = take | filling;
 
   always_ff @(posedge clk) begin
     if (en) begin
       out_valid <= emit;
       if (take) out_data <= s_data;
-      out_first_row <= row == '0;
-      out_first_column <= column == '0;
-      out_last_row <= row == RowWidth'(Rows - 1);
-      out_last_column <= last_column;
+      out_position <= {last_column, row == RowWidth'(Rows - 1), column == '0, row == '0};
       out_frame_start <= take & origin;
       out_frame_end <= emit & frame_end;
       out_bad <= filling | row_long;  // at the end of a frame nothing else can be wrong
@@ -103,8 +99,11 @@ module frame_guard #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Rows < 2 || Columns < 2) $fatal(1, "%m: Rows and Columns must be at least 2");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Rows < 2 || Columns < 2) begin : g_refused
+    Rows_and_Columns_must_be_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

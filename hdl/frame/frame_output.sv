@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// frame_output: side-band signals for the depth stream; frames that are bad, or not where they are due, do not leave.
+// frame_output: gives depth its position; frames that are malformed, or not where they are due, do not leave.
 //
 // Stream in: bursts of Columns words, Rows of them a frame, one after another. in_due: now a frame's first word is due;
-// in_bad belongs to that frame. Stream out: the words of good frames with user (first of a frame), last (last of a
-// row). The side-bands count from in_due, so a frame has its form whatever comes in; where bursts and frames do not
-// begin as they should, out_of_step is high. Combinational. Bit-accurate model:
-// models/tactile_depth/frame/frame_output.py.
+// in_bad belongs to that frame. Stream out: the words of good frames, each with its position. Positions count from
+// in_due, so a frame has its form whatever comes in; where bursts and frames do not begin as they should, out_of_step
+// is high. Latency: 0 cycles. Bit-accurate model: models/tactile_depth/frame/frame_output.py.
 
-module frame_output #(
+`default_nettype none
+
+module frame_output
+  import stream_pkg::*;
+#(
   parameter int Width   = 24,
   parameter int Rows    = 128,
   parameter int Columns = 128  // a power of two
 ) (
-  input  logic             clk,
-  input  logic             rst,
-  input  logic             en,
-  input  logic             in_start,
-  input  logic             in_frame_start,  // with in_start: the first burst of a frame
-  input  logic [Width-1:0] in_data,
-  input  logic             in_due,
-  input  logic             in_bad,
+  input  wire              clk,
+  input  wire              rst,
+  input  wire              en,
+  input  wire              in_start,
+  input  wire              in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  [Width-1:0] in_data,         // depth code
+  input  wire              in_due,
+  input  wire              in_bad,
   output logic             active,          // a word of a frame is present, good or bad
-  output logic             frame_end,       // the last one
   output logic             out_of_step,
   output logic             out_valid,
-  output logic [Width-1:0] out_data,
-  output logic             out_last,
-  output logic             out_user
+  output depth_position_t  out_position,    // of bad frames too; 0 between frames
+  output logic [Width-1:0] out_data         // depth code
 );
 
   localparam int Pixels = Rows * Columns;
@@ -43,19 +44,22 @@ module frame_output #(
   assign out_of_step = (in_frame_start != in_due) | (in_start != row_due);
 
   assign bad = in_due ? in_bad | ~in_frame_start : bad_q;
-  assign frame_end = active & (position == PositionWidth'(Pixels - 1));
   assign out_valid = active & ~bad;
   assign out_data = in_data;
-  assign out_last = position[ColumnWidth-1:0] == ColumnWidth'(Columns - 1);
-  assign out_user = in_due;
+  assign out_position = ~active ? '0 : {
+    in_due, position[ColumnWidth-1:0] == ColumnWidth'(Columns - 1), position == PositionWidth'(Pixels - 1)
+  };
 
   always_ff @(posedge clk) if (en) bad_q <= bad;
 
-`ifndef SYNTHESIS
-  initial begin
-    if (Rows < 2) $fatal(1, "%m: Rows must be at least 2");
-    if (Columns < 2 || Columns != (1 << $clog2(Columns))) $fatal(1, "%m: Columns must be a power of two, at least 2");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Rows < 2) begin : g_refused_0
+    Rows_must_be_at_least_2 u_refused ();
   end
-`endif
+  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_1
+    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -7,14 +7,19 @@
 // Stream in: I / reference - 1 of each colour, raster order, gaps anywhere. Stream out: slopes dz/dx, dz/dy, z positive
 // into the gel. Latency: 11 cycles. A frame has two rows or more, of four pixels or more; it begins afresh.
 //
-// The 36 words, at (3 axis + colour) 6 + term, terms A, B, D, E, F, H, modulo 2^WordWidth, are held in two banks, both
-// with the calibration at power-up. A frame uses the bank that table_bank names when its first pixel is taken, or in
-// reset; table_in_use says which. The other is written by table_write, whenever no change-over is due (table_bank is
-// table_in_use), and read by table_read: the word stands on table_read_word until the next, en or not. Never both in
-// one clock. Bit-accurate model: models/tactile_depth/gradient/quadratic_gradient.py;
-// models/tactile_depth/rom_files.py writes the words.
+// The 36 words, at (3 axis + colour) 6 + term, terms A, B, D, E, F, H, modulo 2^WordWidth, are held in banked tables,
+// both banks with the calibration at power-up. A frame uses the bank that table_bank names when its first pixel is
+// taken, or in reset; table_in_use says which, 4 cycles later. The other is written by table_write, whenever no
+// change-over is due (table_bank is table_in_use), and read by table_read: the word stands on table_read_word from 2
+// cycles later until the next, en or not. Never both in one cycle. Bit-accurate model:
+// models/tactile_depth/gradient/quadratic_gradient.py; models/tactile_depth/rom_files.py writes the words.
 
-module quadratic_gradient #(
+`default_nettype none
+
+module quadratic_gradient
+  import stream_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Width          = 21,  // of a slope
   parameter int DeviationWidth = 14,
   parameter int CoeffWidth     = 18,
@@ -24,23 +29,23 @@ module quadratic_gradient #(
   localparam int Words = 6 * Terms,
   localparam int IndexWidth = $clog2(Words)
 ) (
-  input  logic                             clk,
-  input  logic                             rst,
-  input  logic                             en,
-  input  logic                             table_bank,
+  input  wire                              clk,
+  input  wire                              rst,
+  input  wire                              en,
+  input  wire                              table_bank,
   output logic                             table_in_use,
-  input  logic                             table_write,
-  input  logic                             table_read,
-  input  logic [IndexWidth-1:0]            table_index,
-  input  logic signed [WordWidth-1:0]      table_word,
+  input  wire                              table_write,
+  input  wire                              table_read,
+  input  wire  [IndexWidth-1:0]            table_index,
+  input  wire  signed [WordWidth-1:0]      table_word,
   output logic signed [WordWidth-1:0]      table_read_word,
-  input  logic                             in_valid,
-  input  logic [3:0]                       in_place,  // in the first row, first column, last row, last column
-  input  logic signed [DeviationWidth-1:0] in_red,
-  input  logic signed [DeviationWidth-1:0] in_green,
-  input  logic signed [DeviationWidth-1:0] in_blue,
+  input  wire                              in_valid,
+  input  wire position_t                   in_position,
+  input  wire  signed [DeviationWidth-1:0] in_red,
+  input  wire  signed [DeviationWidth-1:0] in_green,
+  input  wire  signed [DeviationWidth-1:0] in_blue,
   output logic                             out_valid,
-  output logic [3:0]                       out_place,
+  output position_t                        out_position,
   output logic signed [Width-1:0]          out_gx,
   output logic signed [Width-1:0]          out_gy,
   output logic [1:0]                       saturations  // values clipped in this cycle
@@ -55,41 +60,34 @@ module quadratic_gradient #(
   localparam int ProductWidth = DeviationWidth + CoeffWidth;
   localparam int SumWidth = ProductWidth + 2;
 
-  // Banks.
-
-  logic bank, begins, used;
-  assign begins = en & in_valid & in_place[0] & in_place[1];
-  assign used = begins ? table_bank : bank;
-  assign table_in_use = bank;
-  always_ff @(posedge clk) if (rst || begins) bank <= table_bank;
-
-  // A second read port, in the manner of distributed memories: all words once more.
-  ram #(
-    .Width(WordWidth),
-    .Depth(2 * Words),
-    .Style(0),
-    .File ("quadratic.hex")
-  ) u_read_back (
-    .clk,
-    .write_en     (table_write),
-    .write_address({table_index, ~bank}),
-    .write_data   (table_word),
-    .read_en      (table_read),
-    .read_address ({table_index, ~used}),
-    .read_data    (table_read_word)
-  );
-
-  // A pixel and its place, by the clocks with en since it was taken.
+  // A pixel and its position, by the cycles with en since it was taken.
 
   logic [ToSum:1] valid_q;
-  logic [4*ToSum-1:0] place_q;  // the oldest on top
+  position_t [ToSum-1:0] position_q;  // the oldest on top
   logic [LastLoad:1] first;   // it is the first of a frame
   for (genvar age = 1; age <= LastLoad; age++) begin : g_first
-    assign first[age] = valid_q[age] & place_q[4*age-4] & place_q[4*age-3];
+    assign first[age] = valid_q[age] & position_q[age-1].first_row & position_q[age-1].first_column;
   end
   logic [LastUpdate:1] row;   // it is the first of another row
   for (genvar age = 1; age <= LastUpdate; age++) begin : g_row
-    assign row[age] = valid_q[age] & ~place_q[4*age-4] & place_q[4*age-3];
+    assign row[age] = valid_q[age] & ~position_q[age-1].first_row & position_q[age-1].first_column;
+  end
+
+  // The tables of a colour change over with its first read; those of the last colour are the last.
+
+  logic frame_start, table_fetched;
+  logic [2*Colours-1:0] in_use;
+  logic [2*Colours-1:0][WordWidth-1:0] fetched_words;
+  logic [WordWidth-1:0] fetched_word;
+  assign frame_start = in_valid & in_position.first_row & in_position.first_column;
+  assign table_in_use = in_use[2*Colours-1];
+  always_comb begin
+    fetched_word = '0;
+    for (int i = 0; i < 2 * Colours; i++) fetched_word = fetched_word | fetched_words[i];
+  end
+  always_ff @(posedge clk) begin
+    table_fetched <= table_read;
+    if (table_fetched) table_read_word <= fetched_word;
   end
 
   logic [Colours-1:0][DeviationWidth-1:0] deviation;
@@ -104,47 +102,43 @@ module quadratic_gradient #(
       localparam int Polynomial = Colours * axis + colour;
       localparam int Before = colour == 0 ? Polynomial : Polynomial - 1;
 
-      // The words of this polynomial, one a clock: at a frame's first pixel A, B, D, E; at other rows' F, H.
+      // The words of this polynomial, one a cycle: at a frame's first pixel A, B, D, E; at other rows' F, H.
       logic [IndexWidth-1:0] offset;  // of the entry on the bus
-      logic own_entry;
+      logic own_entry, fetched;
+      logic [WordWidth-1:0] word, free_word;
+      logic [TermWidth-1:0] term;
       assign offset = table_index - IndexWidth'(Terms * Polynomial);
       assign own_entry = 32'(offset) < $unsigned(Terms);
-      logic [TermWidth-1:0] term;
       assign term = first[1+colour] ? TermWidth'(0)
           : first[2+colour] ? TermWidth'(1)
           : first[3+colour] ? TermWidth'(2)
           : first[4+colour] ? TermWidth'(3)
           : row[1+colour] ? TermWidth'(4) : TermWidth'(5);
-      logic [WordWidth-1:0] word;
-      ram #(
-        .Width(WordWidth),
-        .Depth(2 * Terms),
-        .Style(0),
-        .File ({"quadratic_", 8'(48 + Polynomial), ".hex"})
+      banked_table #(
+        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "quadratic_", 8'(48 + Polynomial), ".hex"})
       ) u_words (
-        .clk,
-        .write_en     (table_write & own_entry),
-        .write_address({offset[TermWidth-1:0], ~bank}),
-        .write_data   (table_word),
-        .read_en      (en),
-        .read_address ({term, bank}),
-        .read_data    (word)
+        .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first[1+colour]),
+        .read(1'b1), .read_address(term), .read_word(word),
+        .free_write(table_write & own_entry), .free_write_address(offset[TermWidth-1:0]), .free_write_word(table_word),
+        .free_read(table_read & own_entry), .free_read_address(offset[TermWidth-1:0]), .free_word
       );
+      always_ff @(posedge clk) fetched <= table_read & own_entry;
+      assign fetched_words[Polynomial] = fetched ? free_word : '0;
 
       // Along the raster, by second differences. Those of the row are ready when its first pixel comes.
       logic begins_row;
-      assign begins_row = place_q[4*(ToCoefficient-1+colour)-3];
-      logic [WordWidth-1:0] row_value, row_step, row_rise, value, step, bend;
+      assign begins_row = position_q[ToCoefficient-2+colour].first_column;
+      logic [WordWidth-1:0] row_value, row_step, row_rise, value, step, second_difference;
       always_ff @(posedge clk) begin
         if (en) begin
           if (first[2+colour]) row_value <= word;
           if (row[2+colour]) row_value <= row_value + row_rise;
           if (first[3+colour] | row[3+colour]) row_step <= word + (row[3+colour] ? row_step : '0);
-          if (first[4+colour]) bend <= word;
+          if (first[4+colour]) second_difference <= word;
           if (first[5+colour] | row[2+colour]) row_rise <= word + (row[2+colour] ? row_rise : '0);
           if (valid_q[ToCoefficient-1+colour]) begin
             value <= begins_row ? row_value : value + step;
-            step <= begins_row ? row_step : step + bend;
+            step <= begins_row ? row_step : step + second_difference;
           end
         end
       end
@@ -180,9 +174,10 @@ module quadratic_gradient #(
   always_ff @(posedge clk) begin
     if (en) begin
       valid_q <= {valid_q[ToSum-1:1], in_valid};
-      place_q <= {place_q[4*ToSum-5:0], in_place};
+      position_q[0] <= in_position;
+      for (int stage = 1; stage < ToSum; stage++) position_q[stage] <= position_q[stage-1];
       out_valid <= valid_q[ToSum];
-      out_place <= place_q[4*ToSum-1-:4];
+      out_position <= position_q[ToSum-1];
       {out_gy, out_gx} <= slopes;
     end
     saturations <= (en && valid_q[ToSum]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
@@ -193,8 +188,11 @@ module quadratic_gradient #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (CoeffWidth > WordWidth) $fatal(1, "%m: CoeffWidth must be at most WordWidth");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (CoeffWidth > WordWidth) begin : g_refused
+    CoeffWidth_must_be_at_most_WordWidth u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

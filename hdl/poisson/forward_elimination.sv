@@ -6,11 +6,14 @@
 //   which gives it zero mean after the substitution.
 //
 // Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of
-// d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier; between dependent
-// values lie at least Size clocks, so it pipelines freely. Bit-accurate model:
+// d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier, with Neumann
+// two more for the mean; between dependent values lie at least Size cycles, so it pipelines freely. Bit-accurate model:
 // models/tactile_depth/poisson/forward_elimination.py.
 
+`default_nettype none
+
 module forward_elimination #(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Width          = 27,
   parameter int CoeffWidth     = 18,
   parameter int Rows           = 128,
@@ -21,16 +24,16 @@ module forward_elimination #(
   parameter int TableWords     = 1379,
   parameter int SettledWidth   = 7,
   parameter int LastShiftWidth = 1,
-  parameter int MomentDrop     = 13,  // Neumann: of the mean
+  parameter int MomentDrop     = 7,  // Neumann: of the mean
   parameter int MeanReciprocal = 65536,
-  parameter int MeanDrop       = 10
+  parameter int MeanDrop       = 16
 ) (
-  input  logic                       clk,
-  input  logic                       rst,
-  input  logic                       en,
-  input  logic                       in_start,
-  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [Width-1:0]    in_data,
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_start,
+  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0]    in_data,
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,
@@ -54,7 +57,7 @@ module forward_elimination #(
   logic signed [CoeffWidth-1:0] coefficient;
   logic [LastShiftWidth-1:0] shift, shift_q;
   thomas_table #(
-    .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(TableWords),
+    .TableFolder(TableFolder), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(TableWords),
     .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
   ) u_table (
     .clk, .en, .position, .row, .coefficient, .shift
@@ -200,3 +203,5 @@ module forward_elimination #(
   end
 
 endmodule
+
+`default_nettype wire

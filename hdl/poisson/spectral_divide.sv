@@ -9,6 +9,8 @@
 // address is kept by adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
 // Bit-accurate model: models/tactile_depth/poisson/spectral_divide.py, which also writes the ROM.
 
+`default_nettype none
+
 module spectral_divide #(
   parameter int Width      = 27,
   parameter int CoeffWidth = 18,
@@ -17,12 +19,12 @@ module spectral_divide #(
   parameter int Drop       = 23,
   parameter     File       = "reciprocal.hex"  // Size (Size + 1) / 2 words {S, M}
 ) (
-  input  logic                    clk,
-  input  logic                    rst,
-  input  logic                    en,
-  input  logic                    in_start,
-  input  logic                    in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [Width-1:0] in_data,
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     en,
+  input  wire                     in_start,
+  input  wire                     in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_data,
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_data,
@@ -105,8 +107,11 @@ module spectral_divide #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused
+    Size_must_be_a_power_of_two_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

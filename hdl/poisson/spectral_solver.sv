@@ -11,7 +11,10 @@
 // models/tactile_depth/configuration.py.
 // Bit-accurate model: models/tactile_depth/poisson/spectral_solver.py.
 
+`default_nettype none
+
 module spectral_solver #(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Size             = 128,
   parameter int InWidth          = 23,
   parameter int DataWidth        = 24,  // of a stored word, and of a depth code
@@ -27,12 +30,12 @@ module spectral_solver #(
   parameter int Neumann          = 0,   // 1: zero slope at the edge and zero mean, by cosine transforms
   parameter int StoreStyle       = 1    // of the frame stores, hdl/common/ram.sv
 ) (
-  input  logic                        clk,
-  input  logic                        rst,
-  input  logic                        en,
-  input  logic                        in_valid,
-  input  logic                        in_frame_start,   // the first word of a frame
-  input  logic signed [InWidth-1:0]   in_data,
+  input  wire                         clk,
+  input  wire                         rst,
+  input  wire                         en,
+  input  wire                         in_valid,
+  input  wire                         in_frame_start,   // the first word of a frame
+  input  wire  signed [InWidth-1:0]   in_data,
   output logic                        out_start,
   output logic                        out_frame_start,  // the first burst of a frame
   output logic signed [DataWidth-1:0] out_data,
@@ -58,7 +61,7 @@ module spectral_solver #(
   );
 
   dst_forward #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
@@ -71,7 +74,7 @@ module spectral_solver #(
   );
 
   dst_forward #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
   ) u_column_forward (
     .clk, .rst, .en, .in_start(column_start), .in_frame_start(column_frame_start), .in_data(column_data),
@@ -79,7 +82,7 @@ module spectral_solver #(
   );
 
   spectral_divide #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size),
+    .File({TableFolder, "reciprocal.hex"}), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size),
     .ShiftWidth(DivideShiftWidth), .Drop(DivideDrop)
   ) u_divide (
     .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
@@ -87,7 +90,7 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
   ) u_column_inverse (
     .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_data(divided),
@@ -101,7 +104,7 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
     .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_data(depth_row_data),
@@ -124,3 +127,5 @@ module spectral_solver #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -9,7 +9,10 @@
 // models/tactile_depth/poisson/thomas_table.py, which also writes
 // the ROMs.
 
+`default_nettype none
+
 module thomas_table #(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int CoeffWidth     = 18,
   parameter int Rows           = 128,
   parameter int Size           = 128,  // modes in a row
@@ -20,10 +23,10 @@ module thomas_table #(
   localparam int RowWidth = $clog2(Rows),
   localparam int AddressWidth = $clog2(Words)
 ) (
-  input  logic                         clk,
-  input  logic                         en,
-  input  logic [PositionWidth-1:0]     position,
-  input  logic [RowWidth-1:0]          row,
+  input  wire                          clk,
+  input  wire                          en,
+  input  wire  [PositionWidth-1:0]     position,
+  input  wire  [RowWidth-1:0]          row,
   output logic signed [CoeffWidth-1:0] coefficient,
   output logic [LastShiftWidth-1:0]    shift
 );
@@ -34,7 +37,7 @@ module thomas_table #(
   logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
-  rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File("thomas_index.hex")) u_index (
+  rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File({TableFolder, "thomas_index.hex"})) u_index (
     .clk, .en, .address(position_q), .data({base, settled})
   );
 
@@ -57,10 +60,10 @@ module thomas_table #(
 
   logic signed [CoeffWidth-1:0] inner, last;
   logic [LastShiftWidth-1:0] last_shift;
-  rom #(.Width(CoeffWidth), .Depth(Words), .File("thomas.hex")) u_inner (
+  rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, "thomas.hex"})) u_inner (
     .clk, .en, .address, .data(inner)
   );
-  rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File("thomas_last.hex")) u_last (
+  rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File({TableFolder, "thomas_last.hex"})) u_last (
     .clk, .en, .address(position_q3), .data({last_shift, last})
   );
   always_ff @(posedge clk) begin
@@ -70,11 +73,14 @@ module thomas_table #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial begin
-    if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
-    if (Rows < 2) $fatal(1, "%m: Rows must be at least 2");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused_0
+    Size_must_be_a_power_of_two_at_least_2 u_refused ();
   end
-`endif
+  if (Rows < 2) begin : g_refused_1
+    Rows_must_be_at_least_2 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

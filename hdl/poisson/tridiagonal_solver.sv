@@ -4,16 +4,22 @@
 //   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
 //   row_reorder -> dst_forward -> forward_elimination -> frame_stack -> back_substitution -> dst_inverse -> row_reorder
+//                                                             \-> back_substitution -> dst_inverse -> corner_turn
 //
+// The second line: with more than one lane, each with its own part of the chain, a row each.
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
-// one burst of Size words a row. Latency: fixed, 3.5 Size and a few registers behind the last pixel;
-// models/tactile_depth/latency.py.
+// one burst of Size / Lanes clocks a row, Lanes codes a clock, the first in the lowest bits. Latency: fixed, 3.5 Size
+// and a few registers behind the last pixel; models/tactile_depth/latency.py.
 // Formats: models/tactile_depth/configuration.py. Bit-accurate model:
 // models/tactile_depth/poisson/tridiagonal_solver.py.
 
+`default_nettype none
+
 module tridiagonal_solver #(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Rows           = 128,
   parameter int Size           = 128,  // columns, a power of two
+  parameter int Lanes          = 1,    // rows at a time on the way up, depth codes in a clock
   parameter int InWidth        = 23,
   parameter int DataWidth      = 24,   // of a stored word, and of a depth code
   parameter int Width          = 27,   // of the arithmetic
@@ -30,32 +36,35 @@ module tridiagonal_solver #(
   parameter int MeanReciprocal = 65536,
   parameter int MeanDrop       = 16,
   parameter int StoreStyle     = 1,    // of the frame store, hdl/common/ram.sv
-  parameter int WordsPerRow    = 1     // of its memory
+  parameter int WordsPerRow    = 1,    // of its memory
+  localparam int ClippedWidth = 8 + $clog2(Lanes)
 ) (
-  input  logic                        clk,
-  input  logic                        rst,
-  input  logic                        en,
-  input  logic                        in_valid,
-  input  logic                        in_frame_start,   // the first word of a frame
-  input  logic signed [InWidth-1:0]   in_data,
-  output logic                        out_start,
-  output logic                        out_frame_start,  // the first burst of a frame
-  output logic signed [DataWidth-1:0] out_data,
-  output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_valid,
+  input  wire                        in_frame_start,   // the first word of a frame
+  input  wire  signed [InWidth-1:0]  in_data,
+  output logic                       out_start,
+  output logic                       out_frame_start,  // the first burst of a frame
+  output logic [Lanes*DataWidth-1:0] out_data,
+  output logic [ClippedWidth-1:0]    saturations  // values clipped in a cycle, a little ago
 );
 
   localparam int Alternate = Neumann != 0 ? 0 : 1;
 
-  logic row_start, modes_start, eliminated_start, stacked_start, solved_start, depth_start, depth_valid;
-  logic row_frame_start, modes_frame_start, eliminated_frame_start, stacked_frame_start, solved_frame_start;
-  logic depth_frame_start;
+  logic row_start, modes_start, eliminated_start, row_frame_start, modes_frame_start, eliminated_frame_start;
   logic [InWidth-1:0] row_data;
-  logic signed [Width-1:0] modes, solved;
-  logic signed [DataWidth-1:0] eliminated, depth;
-  logic [DataWidth-1:0] stacked, depth_reordered;
-  logic [7:0] clipped_forward, clipped_inverse;
+  logic signed [Width-1:0] modes;
+  logic signed [DataWidth-1:0] eliminated;
+  logic [Lanes-1:0] stacked_start, stacked_frame_start, solved_start, solved_frame_start;
+  logic [Lanes-1:0] depth_start, depth_frame_start;
+  logic [Lanes*DataWidth-1:0] stacked, depth;
+  logic [Lanes*Width-1:0] solved;
+  logic [7:0] clipped_forward;
+  logic [8*Lanes-1:0] clipped_inverse;
   logic [2:0] clipped_down;
-  logic clipped_up;
+  logic [$clog2(Lanes+1)-1:0] clipped_up;
 
   row_reorder #(.Width(InWidth), .Size(Size), .ToBurst(1)) u_row_in (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
@@ -63,7 +72,7 @@ module tridiagonal_solver #(
   );
 
   dst_forward #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(Width), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
@@ -71,7 +80,7 @@ module tridiagonal_solver #(
   );
 
   forward_elimination #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .StoreDrop(StoreDrop),
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .StoreDrop(StoreDrop),
     .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(TableWords), .SettledWidth(SettledWidth),
     .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
     .MeanDrop(MeanDrop)
@@ -82,41 +91,61 @@ module tridiagonal_solver #(
   );
 
   frame_stack #(
-    .Width(DataWidth), .Rows(Rows), .Size(Size), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
+    .Width(DataWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
   ) u_stack (
     .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_data(eliminated),
     .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_data(stacked)
   );
 
   back_substitution #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .InWidth(DataWidth), .Lift(StoreDrop),
-    .TableWords(TableWords), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes),
+    .InWidth(DataWidth), .Lift(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth),
+    .LastShiftWidth(LastShiftWidth)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
     .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved), .saturations(clipped_up)
   );
 
-  dst_inverse #(
-    .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
-    .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
-  ) u_row_inverse (
-    .clk, .rst, .en, .in_start(solved_start), .in_frame_start(solved_frame_start), .in_data(solved),
-    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_inverse)
-  );
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    dst_inverse #(
+      .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+      .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
+    ) u_row_inverse (
+      .clk, .rst, .en, .in_start(solved_start[lane]), .in_frame_start(solved_frame_start[lane]),
+      .in_data(solved[lane*Width+:Width]), .out_start(depth_start[lane]), .out_frame_start(depth_frame_start[lane]),
+      .out_data(depth[lane*DataWidth+:DataWidth]), .saturations(clipped_inverse[8*lane+:8])
+    );
+  end
 
-  logic [$clog2(Size)-1:0] unused_position;
-  burst_counter #(.Size(Size)) u_depth_valid (
-    .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
-  );
-  row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
-    .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
-    .out_start, .out_frame_start, .out_data(depth_reordered)
-  );
-  assign out_data = depth_reordered;
+  if (Lanes == 1) begin : g_one_lane
+    logic depth_valid;
+    logic [$clog2(Size)-1:0] unused_position;
+    burst_counter #(.Size(Size)) u_depth_valid (
+      .clk, .rst, .en, .start(depth_start[0]), .position(unused_position), .active(depth_valid)
+    );
+    row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
+      .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start[0]), .in_data(depth),
+      .out_start, .out_frame_start, .out_data
+    );
+  end else begin : g_lanes
+    corner_turn #(.Width(DataWidth), .Size(Size), .Lanes(Lanes)) u_row_out (
+      .clk, .rst, .en, .in_start(depth_start), .in_frame_start(depth_frame_start[0]), .in_data(depth),
+      .out_start, .out_frame_start, .out_data
+    );
+    logic unused_frame_starts;
+    assign unused_frame_starts = ^depth_frame_start;
+  end
 
+  logic [ClippedWidth-1:0] clipped;
+  always_comb begin
+    clipped = ClippedWidth'(clipped_forward) + ClippedWidth'(clipped_down) + ClippedWidth'(clipped_up);
+    for (int lane = 0; lane < Lanes; lane++) clipped = clipped + ClippedWidth'(clipped_inverse[8*lane+:8]);
+  end
   always_ff @(posedge clk) begin
-    saturations <= clipped_forward + 8'(clipped_down) + 8'(clipped_up) + clipped_inverse;
+    saturations <= clipped;
     if (rst) saturations <= '0;
   end
 
 endmodule
+
+`default_nettype wire

@@ -3,50 +3,61 @@
 //
 // Written by `make registers` from registers/tactile_depth.rdl: change it there.
 
+`default_nettype none
+
 package register_map_pkg;
 
   // Byte offsets.
-  localparam int AddressWidth = 8;
-  localparam int IdOffset = 32'h00;
-  localparam int GridOffset = 32'h04;
-  localparam int FormatOffset = 32'h08;
-  localparam int ControlOffset = 32'h0c;
-  localparam int StatusOffset = 32'h10;
-  localparam int ThresholdOffset = 32'h14;
-  localparam int TimeoutOffset = 32'h18;
-  localparam int FramesInOffset = 32'h1c;
-  localparam int FramesOutOffset = 32'h20;
-  localparam int FramesDroppedOffset = 32'h24;
-  localparam int SaturationsOffset = 32'h28;
-  localparam int FirstDepthLatencyOffset = 32'h2c;
-  localparam int TableSelectOffset = 32'h30;
-  localparam int TableIndexOffset = 32'h34;
-  localparam int TableHighOffset = 32'h38;
-  localparam int TableLowOffset = 32'h3c;
-  localparam int TableCommitOffset = 32'h40;
-  localparam int TableSizeOffset = 32'h44;
-  localparam int DarkLevelOffset = 32'h48;
-  localparam int CaptureOffset = 32'h4c;
-  localparam int DarkPixelsOffset = 32'h50;
-  localparam int DepthDroppedOffset = 32'h54;
-  localparam int RecordsLostOffset = 32'h58;
-  localparam int OffThresholdOffset = 32'h5c;
-  localparam int MinimumAreaOffset = 32'h60;
-  localparam int DebounceOffset = 32'h64;
-  localparam int RecordEventOffset = 32'h68;
-  localparam int RecordFrameOffset = 32'h6c;
-  localparam int RecordTimeOffset = 32'h70;
-  localparam int RecordAreaOffset = 32'h74;
-  localparam int RecordPeakOffset = 32'h78;
-  localparam int RecordPeakPlaceOffset = 32'h7c;
-  localparam int RecordLeastOffset = 32'h80;
-  localparam int RecordGreatestOffset = 32'h84;
-  localparam int RecordSumColumnsOffset = 32'h88;
-  localparam int RecordSumRowsOffset = 32'h8c;
-  localparam int RecordVolumeLowOffset = 32'h90;
-  localparam int RecordVolumeHighOffset = 32'h94;
-  localparam int RecordCentroidOffset = 32'h98;
-  localparam int FloorCaptureOffset = 32'h9c;
+  localparam int AddressWidth = 10;
+  localparam int IdOffset = 32'h000;
+  localparam int GridOffset = 32'h004;
+  localparam int FormatOffset = 32'h008;
+  localparam int ControlOffset = 32'h00c;
+  localparam int StatusOffset = 32'h010;
+  localparam int ThresholdOffset = 32'h014;
+  localparam int TimeoutOffset = 32'h018;
+  localparam int FramesInOffset = 32'h01c;
+  localparam int FramesOutOffset = 32'h020;
+  localparam int FramesDroppedOffset = 32'h024;
+  localparam int SaturationsOffset = 32'h028;
+  localparam int FirstDepthLatencyOffset = 32'h02c;
+  localparam int TableSelectOffset = 32'h030;
+  localparam int TableIndexOffset = 32'h034;
+  localparam int TableHighOffset = 32'h038;
+  localparam int TableLowOffset = 32'h03c;
+  localparam int TableCommitOffset = 32'h040;
+  localparam int TableSizeOffset = 32'h044;
+  localparam int DarkLevelOffset = 32'h048;
+  localparam int CaptureOffset = 32'h04c;
+  localparam int DarkPixelsOffset = 32'h050;
+  localparam int DepthDroppedOffset = 32'h054;
+  localparam int RecordsLostOffset = 32'h058;
+  localparam int OffThresholdOffset = 32'h05c;
+  localparam int MinimumAreaOffset = 32'h060;
+  localparam int DebounceOffset = 32'h064;
+  localparam int RecordEventOffset = 32'h068;
+  localparam int RecordFrameOffset = 32'h06c;
+  localparam int RecordTimeOffset = 32'h070;
+  localparam int RecordAreaOffset = 32'h074;
+  localparam int RecordPeakOffset = 32'h078;
+  localparam int RecordPeakPlaceOffset = 32'h07c;
+  localparam int RecordLeastOffset = 32'h080;
+  localparam int RecordGreatestOffset = 32'h084;
+  localparam int RecordSumColumnsOffset = 32'h088;
+  localparam int RecordSumRowsOffset = 32'h08c;
+  localparam int RecordVolumeLowOffset = 32'h090;
+  localparam int RecordVolumeHighOffset = 32'h094;
+  localparam int RecordCentroidOffset = 32'h098;
+  localparam int FloorCaptureOffset = 32'h09c;
+  localparam int InterruptStatusOffset = 32'h0a0;
+  localparam int InterruptMaskOffset = 32'h0a4;
+  localparam int DeviceOffset = 32'h0c0;
+  localparam int DepthUnitOffset = 32'h0c4;
+  localparam int SlopeUnitOffset = 32'h0c8;
+  localparam int PitchOffset = 32'h0cc;
+
+  // Words of a record of contact.
+  localparam int RecordWords = 13;
 
   // Values after reset that are not zero.
   localparam int IdReset = 32'h54444550;
@@ -89,6 +100,20 @@ package register_map_pkg;
   localparam int FloorCaptureLog2FramesLsb = 0;
   localparam int FloorCaptureStartBit = 8;
   localparam int FloorCaptureBusyBit = 9;
+  localparam int InterruptStatusRecordBit = 0;
+  localparam int InterruptStatusFrameDroppedBit = 1;
+  localparam int InterruptMaskRecordBit = 0;
+  localparam int InterruptMaskFrameDroppedBit = 1;
+  localparam int DeviceSolverBit = 0;
+  localparam int DeviceBoundaryBit = 1;
+  localparam int DeviceGradientModelBit = 2;
+  localparam int DeviceFlatFieldBit = 3;
+  localparam int DeviceZeroOffsetBit = 4;
+  localparam int DeviceLanesLsb = 8;
+  localparam int DepthUnitMantissaLsb = 0;
+  localparam int DepthUnitExponentLsb = 24;
+  localparam int SlopeUnitMantissaLsb = 0;
+  localparam int SlopeUnitExponentLsb = 24;
 
   // Values of a field.
   localparam int TableSelectSelectCount = 4;
@@ -96,5 +121,66 @@ package register_map_pkg;
   localparam int TableSelectCoefficients = 1;
   localparam int TableSelectReference = 2;
   localparam int TableSelectFloor = 3;
+  localparam int DeviceSpectral = 0;
+  localparam int DeviceTridiagonal = 1;
+  localparam int DeviceDirichlet = 0;
+  localparam int DeviceNeumann = 1;
+  localparam int DeviceLut = 0;
+  localparam int DeviceQuadratic = 1;
+
+  // Registers that software alone writes, by number, in words of 32 bits, the lowest first.
+  localparam int Settings = 12;
+  localparam int ControlSetting = 0;
+  localparam int ThresholdSetting = 1;
+  localparam int TimeoutSetting = 2;
+  localparam int TableSelectSetting = 3;
+  localparam int DarkLevelSetting = 4;
+  localparam int CaptureSetting = 5;
+  localparam int OffThresholdSetting = 6;
+  localparam int MinimumAreaSetting = 7;
+  localparam int DebounceSetting = 8;
+  localparam int FloorCaptureSetting = 9;
+  localparam int InterruptMaskSetting = 10;
+  localparam int PitchSetting = 11;
+  localparam logic [32*Settings-1:0] SettingOffsets = {
+    PitchOffset, InterruptMaskOffset, FloorCaptureOffset, DebounceOffset, MinimumAreaOffset, OffThresholdOffset,
+    CaptureOffset, DarkLevelOffset, TableSelectOffset, TimeoutOffset, ThresholdOffset, ControlOffset
+  };
+  localparam logic [32*Settings-1:0] SettingMasks = {
+    32'hffffffff, 32'h00000003, 32'h0000000f, 32'h000000ff, 32'hffffffff, 32'hffffffff, 32'h0000000f, 32'h000000ff,
+    32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
+  };
+  localparam logic [32*Settings-1:0] SettingResets = {
+    32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001, 32'h7fffffff, 32'h00000000, 32'h00000000,
+    32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
+  };
+
+  // Offsets that can be read, and those that can be written.
+  function automatic logic is_register(input logic [31:0] offset);
+    case (offset)
+      IdOffset, GridOffset, FormatOffset, ControlOffset, StatusOffset, ThresholdOffset,
+      TimeoutOffset, FramesInOffset, FramesOutOffset, FramesDroppedOffset, SaturationsOffset,
+      FirstDepthLatencyOffset, TableSelectOffset, TableIndexOffset, TableHighOffset,
+      TableLowOffset, TableCommitOffset, TableSizeOffset, DarkLevelOffset, CaptureOffset,
+      DarkPixelsOffset, DepthDroppedOffset, RecordsLostOffset, OffThresholdOffset,
+      MinimumAreaOffset, DebounceOffset, RecordEventOffset, RecordFrameOffset, RecordTimeOffset,
+      RecordAreaOffset, RecordPeakOffset, RecordPeakPlaceOffset, RecordLeastOffset,
+      RecordGreatestOffset, RecordSumColumnsOffset, RecordSumRowsOffset, RecordVolumeLowOffset,
+      RecordVolumeHighOffset, RecordCentroidOffset, FloorCaptureOffset, InterruptStatusOffset,
+      InterruptMaskOffset, DeviceOffset, DepthUnitOffset, SlopeUnitOffset, PitchOffset: is_register = 1'b1;
+      default: is_register = 1'b0;
+    endcase
+  endfunction
+  function automatic logic is_writable(input logic [31:0] offset);
+    case (offset)
+      ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableSelectOffset,
+      TableIndexOffset, TableHighOffset, TableLowOffset, TableCommitOffset, DarkLevelOffset,
+      CaptureOffset, OffThresholdOffset, MinimumAreaOffset, DebounceOffset, FloorCaptureOffset,
+      InterruptStatusOffset, InterruptMaskOffset, PitchOffset: is_writable = 1'b1;
+      default: is_writable = 1'b0;
+    endcase
+  endfunction
 
 endpackage
+
+`default_nettype wire

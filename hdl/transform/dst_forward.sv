@@ -11,7 +11,10 @@
 //
 // Bit-accurate model: models/tactile_depth/transform/dst_forward.py.
 
+`default_nettype none
+
 module dst_forward #(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Size       = 128,
   parameter int InWidth    = 24,
   parameter int InputDrop  = -3,   // fraction bits from the input to the arithmetic; negative: added
@@ -21,16 +24,16 @@ module dst_forward #(
   parameter int OutWidth   = 24,
   parameter int Alternate  = 1    // 0: without the sign (-1)^n, which makes it a DCT-II
 ) (
-  input  logic                       clk,
-  input  logic                       rst,
-  input  logic                       en,
-  input  logic                       in_start,
-  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [InWidth-1:0]  in_data,
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_start,
+  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [InWidth-1:0]  in_data,
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,
-  output logic [7:0]                 saturations  // values clipped in a cycle, a little ago
+  output logic [7:0]                 saturations  // values clipped, all stages together, each some cycles ago
 );
 
   // Samples of odd index are the second half of the burst.
@@ -70,7 +73,7 @@ module dst_forward #(
   logic fft_start, fft_frame_start;
   logic signed [Width-1:0] fft_re, fft_im;
   logic [6:0] clipped_fft;
-  sdf_fft #(.Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(0)) u_fft (
+  sdf_fft #(.TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(0)) u_fft (
     .clk, .rst, .en,
     .in_start(start_q[2]), .in_frame_start(frame_start_q[2]), .in_re(x_q), .in_im(Width'(0)),
     .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(fft_re), .out_im(fft_im),
@@ -81,7 +84,7 @@ module dst_forward #(
   logic [1:0] clipped_phase;
   twiddle_multiply #(
     .InWidth(Width), .OutWidth(OutWidth), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + OutputDrop),
-    .Size(Size), .Block(Size), .RealOnly(1), .File("phase_forward.hex")
+    .Size(Size), .Block(Size), .RealOnly(1), .File({TableFolder, "phase_forward.hex"})
   ) u_phase (
     .clk, .rst, .en,
     .in_start(fft_start), .in_frame_start(fft_frame_start), .in_re(fft_re), .in_im(fft_im),
@@ -95,3 +98,5 @@ module dst_forward #(
   end
 
 endmodule
+
+`default_nettype wire

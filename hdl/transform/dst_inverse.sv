@@ -10,7 +10,10 @@
 //
 // Bit-accurate model: models/tactile_depth/transform/dst_inverse.py.
 
+`default_nettype none
+
 module dst_inverse #(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Size       = 128,
   parameter int InWidth    = 24,
   parameter int InputDrop  = -3,   // fraction bits from the input to the arithmetic; negative: added
@@ -20,16 +23,16 @@ module dst_inverse #(
   parameter int OutWidth   = 24,
   parameter int Alternate  = 1    // 0: without the sign (-1)^n, which makes it a DCT-II
 ) (
-  input  logic                       clk,
-  input  logic                       rst,
-  input  logic                       en,
-  input  logic                       in_start,
-  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [InWidth-1:0]  in_data,
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_start,
+  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [InWidth-1:0]  in_data,
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,
-  output logic [7:0]                 saturations  // values clipped in a cycle, a little ago
+  output logic [7:0]                 saturations  // values clipped, all stages together, each some cycles ago
 );
 
   logic pair_start, pair_frame_start;
@@ -44,7 +47,7 @@ module dst_inverse #(
   logic [1:0] clipped_phase;
   twiddle_multiply #(
     .InWidth(InWidth), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + InputDrop),
-    .Size(Size), .Block(Size), .File("phase_inverse.hex")
+    .Size(Size), .Block(Size), .File({TableFolder, "phase_inverse.hex"})
   ) u_phase (
     .clk, .rst, .en,
     .in_start(pair_start), .in_frame_start(pair_frame_start), .in_re(mirrored), .in_im(mode),
@@ -55,7 +58,7 @@ module dst_inverse #(
   logic fft_start, fft_frame_start;
   logic signed [Width-1:0] x, unused_im;
   logic [6:0] clipped_fft;
-  sdf_fft #(.Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(1)) u_fft (
+  sdf_fft #(.TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(1)) u_fft (
     .clk, .rst, .en,
     .in_start(turned_start), .in_frame_start(turned_frame_start), .in_re(turned_re), .in_im(turned_im),
     .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(x), .out_im(unused_im),
@@ -98,3 +101,5 @@ module dst_inverse #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -9,16 +9,18 @@
 // inverted. Half a burst is waited for; a memory of one burst serves, since a place is read before the next burst comes
 // to it. Bit-accurate model: models/tactile_depth/transform/mode_pairs.py.
 
+`default_nettype none
+
 module mode_pairs #(
   parameter int Width = 27,
   parameter int Size  = 128
 ) (
-  input  logic                    clk,
-  input  logic                    rst,
-  input  logic                    en,
-  input  logic                    in_start,
-  input  logic                    in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [Width-1:0] in_mode,
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     en,
+  input  wire                     in_start,
+  input  wire                     in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_mode,
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_mode,
@@ -42,7 +44,7 @@ module mode_pairs #(
     assign mirrored_position[b] = read_position[b] ^ (|read_position[PositionWidth-1:b+1]);
   end
 
-  // Writes and reads both follow their counters by a clock: no word is read while it is written.
+  // Writes and reads both follow their counters by a cycle: no word is read while it is written.
   logic signed [Width-1:0] mode_q;
   logic write_active_q, read_active_q, read_start_q, read_frame_start;
   logic [PositionWidth-1:0] write_position_q, mirrored_position_q;
@@ -93,8 +95,11 @@ module mode_pairs #(
   end
   assign out_mirrored = out_start ? '0 : mirrored;
 
-`ifndef SYNTHESIS
-  initial if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
+    Size_must_be_a_power_of_two_at_least_4 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

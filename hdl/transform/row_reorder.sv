@@ -7,17 +7,19 @@
 // Latency: 2 cycles from the last word of a row to its first word out. Two rows of memory, written and read in turn.
 // Bit-accurate model: models/tactile_depth/transform/row_reorder.py.
 
+`default_nettype none
+
 module row_reorder #(
   parameter int Width   = 24,
   parameter int Size    = 128,
   parameter int ToBurst = 1
 ) (
-  input  logic             clk,
-  input  logic             rst,
-  input  logic             en,
-  input  logic             in_valid,
-  input  logic             in_frame_start,   // the first word of a frame
-  input  logic [Width-1:0] in_data,
+  input  wire              clk,
+  input  wire              rst,
+  input  wire              en,
+  input  wire              in_valid,
+  input  wire              in_frame_start,   // the first word of a frame
+  input  wire  [Width-1:0] in_data,
   output logic             out_start,
   output logic             out_frame_start,  // the first burst of a frame
   output logic [Width-1:0] out_data
@@ -84,8 +86,11 @@ module row_reorder #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
+    Size_must_be_a_power_of_two_at_least_4 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

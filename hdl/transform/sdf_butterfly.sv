@@ -2,11 +2,13 @@
 // sdf_butterfly: one radix-2 stage of a single-path delay feedback FFT.
 //
 //   words a, b of a block of 2 Delay, Delay apart:   a + b, then a - b        Halve: halved
-//   RotateBlock > 0: the last quarter of each block of that size is turned by -j (Inverse: +j) first
+//   RotateBlock > 0: the last quarter of each block of that size is first multiplied by -j (Inverse: +j)
 //
 // Stream in: bursts of Size complex words. Stream out: the same, sums of a block before its differences.
 // Latency: Delay + 2 cycles. The delay line moves with en alone, so a burst leaves without one behind it.
 // Bit-accurate model: models/tactile_depth/transform/sdf_butterfly.py.
+
+`default_nettype none
 
 module sdf_butterfly #(
   parameter int Width       = 27,
@@ -16,13 +18,13 @@ module sdf_butterfly #(
   parameter int Inverse     = 0,
   parameter int Halve       = 0
 ) (
-  input  logic                    clk,
-  input  logic                    rst,
-  input  logic                    en,
-  input  logic                    in_start,
-  input  logic                    in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [Width-1:0] in_re,
-  input  logic signed [Width-1:0] in_im,
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     en,
+  input  wire                     in_start,
+  input  wire                     in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_re,
+  input  wire  signed [Width-1:0] in_im,
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
@@ -42,17 +44,17 @@ module sdf_butterfly #(
   logic second;  // b is present, a leaves the delay line
   assign second = active & position[DelayBit];
 
-  // b, or its complement where the turn makes it negative: that lacks 1.
+  // b, or its complement where the rotation makes it negative: that lacks 1.
   logic [Width-1:0] b_re, b_im;
   logic minus_re, minus_im;
   if (RotateBlock > 0) begin : g_rotate
     localparam int QuarterBit = $clog2(RotateBlock) - 2;
-    logic turn;
-    assign turn = &position[QuarterBit+:2];
-    assign minus_re = turn & (Inverse != 0);
-    assign minus_im = turn & (Inverse == 0);
-    assign b_re = $unsigned(turn ? in_im : in_re) ^ {Width{minus_re}};
-    assign b_im = $unsigned(turn ? in_re : in_im) ^ {Width{minus_im}};
+    logic rotate;
+    assign rotate = &position[QuarterBit+:2];
+    assign minus_re = rotate & (Inverse != 0);
+    assign minus_im = rotate & (Inverse == 0);
+    assign b_re = $unsigned(rotate ? in_im : in_re) ^ {Width{minus_re}};
+    assign b_im = $unsigned(rotate ? in_re : in_im) ^ {Width{minus_im}};
   end else begin : g_straight
     assign minus_re = 1'b0;
     assign minus_im = 1'b0;
@@ -60,7 +62,7 @@ module sdf_butterfly #(
     assign b_im = in_im;
   end
 
-  // Sum and difference are exact in the line; they are rounded on their way out, one a clock.
+  // Sum and difference are exact in the line; they are rounded on their way out, one a cycle.
   logic signed [Width:0] a_re, a_im, sum_re, sum_im, difference_re, difference_im;
   logic [3:0] unused_carry;
   assign {sum_re, unused_carry[0]} = {a_re, 1'b1} + {b_re[Width-1], b_re, minus_re};
@@ -121,14 +123,18 @@ module sdf_butterfly #(
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 
-`ifndef SYNTHESIS
-  initial begin
-    if (Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two");
-    if (Delay < 1 || 2 * Delay > Size || Delay != (1 << $clog2(Delay)))
-      $fatal(1, "%m: Delay must be a power of two, 1 to Size / 2");
-    if (RotateBlock != 0 && (RotateBlock < 4 || RotateBlock > Size || RotateBlock != (1 << $clog2(RotateBlock))))
-      $fatal(1, "%m: RotateBlock must be 0 or a power of two, 4 to Size");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size != (1 << $clog2(Size))) begin : g_refused_0
+    Size_must_be_a_power_of_two u_refused ();
   end
-`endif
+  if (Delay < 1 || 2 * Delay > Size || Delay != (1 << $clog2(Delay))) begin : g_refused_1
+    Delay_must_be_a_power_of_two_1_to_Size_2 u_refused ();
+  end
+  if (RotateBlock != 0 && (RotateBlock < 4 || RotateBlock > Size || RotateBlock != (1 << $clog2(RotateBlock))))
+  begin : g_refused_2
+    RotateBlock_must_be_0_or_a_power_of_two_4_to_Size u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -12,6 +12,8 @@
 // wholly before the first word is written over it, so the order inside a column is free.
 // Bit-accurate model: models/tactile_depth/transform/transpose.py.
 
+`default_nettype none
+
 module transpose #(
   parameter int Width      = 24,
   parameter int Size       = 128,
@@ -19,12 +21,12 @@ module transpose #(
   parameter int MakhoulOut = 1,
   parameter int Style      = 1   // of the memory, hdl/common/ram.sv
 ) (
-  input  logic             clk,
-  input  logic             rst,
-  input  logic             en,
-  input  logic             in_start,
-  input  logic             in_frame_start,   // with in_start: the first burst of a frame
-  input  logic [Width-1:0] in_data,
+  input  wire              clk,
+  input  wire              rst,
+  input  wire              en,
+  input  wire              in_start,
+  input  wire              in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  [Width-1:0] in_data,
   output logic             out_start,
   output logic             out_frame_start,
   output logic [Width-1:0] out_data
@@ -88,8 +90,11 @@ module transpose #(
     end
   end
 
-`ifndef SYNTHESIS
-  initial if (Size < 4 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 4");
-`endif
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
+    Size_must_be_a_power_of_two_at_least_4 u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// twiddle_multiply: turn the words of a stream by complex factors from a ROM.
+// twiddle_multiply: multiplies the words of a stream by complex factors from a ROM.
 //
 //   out = sat( round( in w / 2^Drop ) ),  w = word (position mod Block) of the ROM
 //
 // Stream in: bursts of Size complex words. Stream out: the same. Latency: 7 cycles.
 // A factor of 1 is 2^(CoeffWidth-1) - 1, so with Drop = CoeffWidth - 1 the gain is 1 - 2^(1 - CoeffWidth).
 // Bit-accurate model: models/tactile_depth/transform/twiddle_multiply.py, which also says what the ROMs hold.
+
+`default_nettype none
 
 module twiddle_multiply #(
   parameter int InWidth    = 27,
@@ -17,13 +19,13 @@ module twiddle_multiply #(
   parameter int RealOnly   = 0,                       // out_im is 0
   parameter     File       = "twiddle_forward_0.hex"  // Block words {-Im, Im, Re} of the factor
 ) (
-  input  logic                       clk,
-  input  logic                       rst,
-  input  logic                       en,
-  input  logic                       in_start,
-  input  logic                       in_frame_start,   // with in_start: the first burst of a frame
-  input  logic signed [InWidth-1:0]  in_re,
-  input  logic signed [InWidth-1:0]  in_im,
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_start,
+  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
+  input  wire  signed [InWidth-1:0]  in_re,
+  input  wire  signed [InWidth-1:0]  in_im,
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_re,
@@ -116,12 +118,14 @@ module twiddle_multiply #(
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 
-`ifndef SYNTHESIS
-  initial begin
-    if (Size < 2 || Size != (1 << $clog2(Size))) $fatal(1, "%m: Size must be a power of two, at least 2");
-    if (Block < 2 || Block > Size || Block != (1 << $clog2(Block)))
-      $fatal(1, "%m: Block must be a power of two, 2 to Size");
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused_0
+    Size_must_be_a_power_of_two_at_least_2 u_refused ();
   end
-`endif
+  if (Block < 2 || Block > Size || Block != (1 << $clog2(Block))) begin : g_refused_1
+    Block_must_be_a_power_of_two_2_to_Size u_refused ();
+  end
 
 endmodule
+
+`default_nettype wire

@@ -36,6 +36,8 @@ ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 
 COLUMNS = {"spectral": (16, 512), "tridiagonal": (16, 1024)}
 ROWS = (8, 1024)
+MOST_LANES = 32
+COLUMNS_PER_LANE = 8  # a lane takes the row below this many clocks after it began: the loop of the recursion
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
 GRADIENT_MODELS = ("lut", "quadratic")
@@ -46,6 +48,11 @@ GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 REFERENCE_NODES = 16
 SMALLEST_BLOCK = 2
 GAIN_WIDTH, GAIN_FRACTION = 24, 27  # unsigned gain word: a reference of 8 grey levels gives full scale
+
+
+def most_lanes(columns: int) -> int:
+    """Return the largest number of lanes of the tridiagonal solver."""
+    return min(columns // COLUMNS_PER_LANE, MOST_LANES)
 
 
 @dataclass(frozen=True)
@@ -108,6 +115,8 @@ class Configuration:
         `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
     auto_zero : bool
         The depth that is read without contact is subtracted.
+    lanes : int
+        Depth values per clock, a power of two. Only the tridiagonal solver has more than one.
     """
 
     columns: int = 128
@@ -122,6 +131,7 @@ class Configuration:
     flat_field: bool = False
     gradient_model: str = "lut"
     auto_zero: bool = False
+    lanes: int = 1
 
     def __post_init__(self) -> None:
         def within(name: str, value: int, accepted: tuple[int, int]) -> None:
@@ -151,6 +161,7 @@ class Configuration:
                 "set both the same, or solver=tridiagonal"
             )
         within("rows", self.rows, ROWS)
+        self._check_lanes()
         within("data_width", self.data_width, DATA_WIDTHS)
         within("coefficient_width", self.coefficient_width, COEFFICIENT_WIDTHS)
         if self.depth_range_px is None:
@@ -186,6 +197,21 @@ class Configuration:
                     f"depth within the range of {self.depth_range_px:g} pixels can ask for {bound:.4g}: a fault in the "
                     "derivation of formats, please report it"
                 )
+
+    def _check_lanes(self) -> None:
+        most = most_lanes(self.columns)
+        if self.solver != "tridiagonal" and self.lanes != 1:
+            raise InputError(
+                f"lanes={self.lanes} with solver={self.solver}: it puts out one depth value per clock: set lanes=1, or "
+                "solver=tridiagonal"
+            )
+        if not 1 <= self.lanes <= most:
+            raise InputError(f"lanes={self.lanes} with columns={self.columns}: accepted are 1 to {most}")
+        if self.lanes & (self.lanes - 1):
+            lower = 1 << (self.lanes.bit_length() - 1)
+            raise InputError(f"lanes={self.lanes} is not a power of two: try lanes={lower} or lanes={2 * lower}")
+        if self.auto_zero and self.lanes > 1:
+            raise InputError(f"lanes={self.lanes} with auto_zero, which takes one depth value per clock: set lanes=1")
 
     # Widths.
 
@@ -226,8 +252,9 @@ class Configuration:
 
     @property
     def store_style(self) -> int:
-        """Style of the memory of a frame store, BLOCK or ULTRA."""
-        return ULTRA if self.rows * self.columns * self.data_width >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
+        """Style of the memory of a frame store, or of each lane's bank of it, BLOCK or ULTRA."""
+        rows = -(-self.rows // self.lanes)
+        return ULTRA if rows * self.columns * self.data_width >= 2 * ULTRA_WORDS * ULTRA_WIDTH else BLOCK
 
     @property
     def words_per_row(self) -> int:

@@ -7,7 +7,8 @@ which are registers. A test elaborates the RTL and compares the counts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tactile_depth.configuration import Configuration
@@ -16,7 +17,14 @@ from tactile_depth.tactile_depth import top_parameters
 from tactile_depth.transform.sdf_fft import stages
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
+CORES = (  # that have multipliers or memories, in the order of the data
+    *("flat_field", "gradient_lookup", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
+    *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
+    *("auto_zero", "floor_capture"),
+)
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/delay_line.sv
+PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through gain_map
+DEPTH_MARKS = 3  # the position: it travels with a depth
 
 # A DSP48E2 multiplies 27 by 18 bits, signed. The low parts of a wider operand are unsigned and hold one bit less.
 PORTS = (27, 18)
@@ -24,10 +32,11 @@ PORTS = (27, 18)
 
 @dataclass(frozen=True)
 class Multiplier:
-    """A signed product of `a` by `b` bits."""
+    """A signed product of `a` by `b` bits, in a core of hdl/."""
 
     a: int
     b: int
+    core: str = ""
 
     @property
     def tiles(self) -> int:
@@ -42,11 +51,12 @@ class Multiplier:
 
 @dataclass(frozen=True)
 class Memory:
-    """A memory of `words` words of `width` bits."""
+    """A memory of `words` words of `width` bits, in a core of hdl/."""
 
     kind: str
     width: int
     words: int
+    core: str = ""
 
     @property
     def bits(self) -> int:
@@ -82,6 +92,15 @@ class Cost:
     def bits_of(self, kind: str) -> int:
         return sum(memory.bits for memory in self.memories if memory.kind == kind)
 
+    def by_core(self) -> dict[str, tuple[int, int]]:
+        """Return multipliers of 27 x 18 bits and memory bits of each core, in the order of the data."""
+        tiles, bits = Counter[str](), Counter[str]()
+        for multiplier in self.multipliers:
+            tiles[multiplier.core] += multiplier.tiles
+        for memory in self.memories:
+            bits[memory.core] += memory.bits
+        return {core: (tiles[core], bits[core]) for core in CORES if core in tiles or core in bits}
+
 
 def cost(config: Configuration) -> Cost:
     """Count the multipliers and memories in the RTL of a configuration."""
@@ -96,31 +115,30 @@ def _pipeline(p: dict[str, int]) -> Parts:
     """Count the parts of hdl/tactile_depth.sv."""
     size, slope, data = p["Size"], p["GradientWidth"], p["DataWidth"]
     divergence = slope + 2
-    multipliers, tables = _colours(p)
-    memories = [
-        *tables,
-        Memory("row buffers", slope, size),  # divergence: the row above
-        Memory("row buffers", divergence, 2 * size),  # row_reorder, in and out
-        Memory("row buffers", data, 2 * size),
+    rows = [
+        Memory("row buffers", slope, size, "divergence"),  # the row above
+        Memory("row buffers", divergence, 2 * size, "row_reorder"),  # in and out
+        Memory("row buffers", data, 2 * size, "row_reorder"),
     ]
     solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
-    return _joined((multipliers, memories), solver, _floor(p))
+    return _joined(_colours(p), ([], rows), solver, _floor(p))
 
 
 def _colours(p: dict[str, int]) -> Parts:
     """Count the parts from pixels to slopes: flat_field.sv, and gradient_lookup.sv or quadratic_gradient.sv."""
     multipliers, memories = [], []
     if p["FlatField"]:
-        gain, log2 = p["GainWidth"], p["BlockLog2"]
+        gain, log2, core = p["GainWidth"], p["BlockLog2"], "flat_field"
         # A node times its row weight, and a colour times its gain. Both are unsigned, so each needs one more bit.
-        multipliers += [Multiplier(gain + 1, log2 + 3), Multiplier(gain + 1, 9)] * 3
-        memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Size"] >> log2))] * 6
+        multipliers += [Multiplier(gain + 1, log2 + 3, core), Multiplier(gain + 1, 9, core)] * 3
+        memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Size"] >> log2), core)] * 6
+        memories += [Memory("delay lines", 3 * 8 + PIXEL_MARKS, GAIN_MAP, core)]
     if p["Quadratic"]:
-        multipliers += [Multiplier(p["ColourWidth"], p["ColourCoeffWidth"])] * 6
-        memories += [Memory("tables", p["PolynomialWidth"], 2 * p["PolynomialWords"])]  # for reads by the bus
-        memories += [Memory("tables", p["PolynomialWidth"], 2 * p["PolynomialWords"] // 6)] * 6
+        core, width, words = "quadratic_gradient", p["PolynomialWidth"], p["PolynomialWords"]
+        multipliers += [Multiplier(p["ColourWidth"], p["ColourCoeffWidth"], core)] * 6
+        memories += [Memory("tables", width, words // 6, core)] * 12
     else:
-        memories += [Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"])] * 2
+        memories += [Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2
     return multipliers, memories
 
 
@@ -130,17 +148,22 @@ def _floor(p: dict[str, int]) -> Parts:
         return [], []
     log2, data = p["BlockLog2"], p["DataWidth"]
     nodes = (p["Rows"] >> log2) * (p["Size"] >> log2)
-    memories = [Memory("tables", data, nodes)] * 2 + [Memory("tables", data + 2 * log2 + p["FloorLog2"], nodes)]
-    return [Multiplier(data + 1, log2 + 3)], [*memories, Memory("delay lines", data, GAIN_MAP)]
+    memories = [
+        *[Memory("tables", data, nodes, "auto_zero")] * 2,
+        Memory("delay lines", data + DEPTH_MARKS, GAIN_MAP, "auto_zero"),
+        Memory("tables", data + 2 * log2 + p["FloorLog2"], nodes, "floor_capture"),
+    ]
+    return [Multiplier(data + 1, log2 + 3, "auto_zero")], memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:
     size, data, width, coefficient = p["Size"], p["DataWidth"], p["Width"], p["CoeffWidth"]
     return _joined(
         _forward(p),
-        ([], [Memory("frame stores", data, size * size)] * 2),
+        ([], [Memory("frame stores", data, size * size, "transpose")] * 2),
         _forward(p),
-        (
+        _in(
+            "spectral_divide",
             [Multiplier(width, coefficient)],
             [Memory("tables", p["DivideShiftWidth"] + coefficient, size * (size + 1) // 2)],
         ),
@@ -165,9 +188,10 @@ def _tridiagonal(p: dict[str, int]) -> Parts:
     mean = [Multiplier(width, row_number), Multiplier(width, coefficient)] if p["Neumann"] else []
     return _joined(
         _forward(p),
-        one_way,
-        (mean, [Memory("frame stores", data * packed, rows * -(-size // packed))]),
-        one_way,
+        _in("forward_elimination", *one_way),
+        _in("forward_elimination", mean, []),
+        ([], [Memory("frame stores", data * packed, rows * -(-size // packed), "frame_stack")]),
+        _in("back_substitution", *one_way),
         _inverse(p, width),
     )
 
@@ -175,7 +199,8 @@ def _tridiagonal(p: dict[str, int]) -> Parts:
 def _forward(p: dict[str, int]) -> Parts:
     """Count the parts of hdl/transform/dst_forward.sv, which forms only the real part of the product with the phase."""
     phase = [Multiplier(p["Width"], p["CoeffWidth"])] * 2
-    return _joined(_fft(p, inverse=False), (phase, [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]))
+    phases = [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]
+    return _in("dst_forward", *_joined(_fft(p, inverse=False), (phase, phases)))
 
 
 def _inverse(p: dict[str, int], in_width: int) -> Parts:
@@ -186,7 +211,8 @@ def _inverse(p: dict[str, int], in_width: int) -> Parts:
         Memory("row buffers", in_width, size),
         Memory("tables", 3 * p["CoeffWidth"], size),
     ]
-    return _joined(([Multiplier(in_width, p["CoeffWidth"])] * 4, memories), _fft(p, inverse=True))
+    phase = [Multiplier(in_width, p["CoeffWidth"])] * 4
+    return _in("dst_inverse", *_joined((phase, memories), _fft(p, inverse=True)))
 
 
 def _fft(p: dict[str, int], inverse: bool) -> Parts:
@@ -199,6 +225,11 @@ def _fft(p: dict[str, int], inverse: bool) -> Parts:
             multipliers += [Multiplier(p["Width"], p["CoeffWidth"])] * 4
             memories.append(Memory("tables", 3 * p["CoeffWidth"], stage.block))
     return multipliers, memories
+
+
+def _in(core: str, multipliers: list[Multiplier], memories: list[Memory]) -> Parts:
+    """Return parts of a core."""
+    return [replace(one, core=core) for one in multipliers], [replace(one, core=core) for one in memories]
 
 
 def _joined(*parts: Parts) -> Parts:

@@ -1,17 +1,110 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes files so that a folder holds all of them or, after a failure, its earlier files."""
+"""Writes files so that a folder holds all of them or, after a failure or a signal, its earlier files."""
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from tactile_depth.errors import InputError
+
+# Failures of the machine; all others are due to the path.
+OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM)
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+SHORT_WRITE = " requested and "  # of numpy, whose error has no number: "4096 requested and 512 written"
+
+
+def make(folder: Path, files: Iterable[str] = ()) -> list[Path]:
+    """Make a folder and check that `files` can be written there.
+
+    Returns
+    -------
+    folders that were missing, innermost first
+
+    Raises
+    ------
+    InputError
+        It is no folder, it cannot be written, or one of `files` is a folder.
+    OSError
+        The machine failed, with a full disk for example.
+    """
+    try:
+        if folder.is_symlink() and not folder.exists():
+            raise InputError(f"folder={folder} is a link to {os.readlink(folder)}, which does not exist: give a folder")
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"folder={folder} is a file: give a folder")
+        missing = [path for path in (folder, *folder.parents) if not path.exists()]
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in files:
+            if (folder / name).is_dir():
+                raise InputError(
+                    f"folder={folder} cannot be written ({name} in it is a folder): remove it or give another"
+                )
+        with tempfile.TemporaryFile(dir=folder):
+            return missing
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:
+        if isinstance(error, OSError) and error.errno in OF_THE_MACHINE:
+            raise
+        reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
+        raise InputError(f"folder={folder} cannot be written ({reason}): give a folder that can") from error
+
+
+@contextmanager
+def workspace(folder: Path, files: Iterable[str] = ()) -> Iterator[Path]:
+    """Make a folder and yield an empty one inside it, which is removed at the end, however that comes about.
+
+    Folders that were missing are removed too when they stay empty.
+
+    Raises
+    ------
+    InputError, OSError
+        As `make` does.
+    """
+    missing = make(folder, files)
+    work = None
+    try:
+        work = Path(tempfile.mkdtemp(prefix=".work-", dir=folder)).resolve()
+        yield work
+    finally:
+        if work is not None:
+            shutil.rmtree(work, ignore_errors=True)
+        for path in missing:
+            with contextlib.suppress(OSError):
+                path.rmdir()
+
+
+def replace(work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = ()) -> None:
+    """Move files from `work`, which lies inside `folder`, to `folder`, and remove `obsolete` ones there.
+
+    When a move fails, or a signal comes, the files that were there before come back.
+
+    Raises
+    ------
+    OSError
+    """
+    fresh = list(names)
+    earlier = Path(tempfile.mkdtemp(prefix="earlier-", dir=work))
+    moves = [(folder / name, earlier / name) for name in {*fresh, *obsolete} if os.path.lexists(folder / name)]
+    moves += [(work / name, folder / name) for name in fresh]
+    done: list[tuple[Path, Path]] = []
+    try:
+        for move in moves:
+            done.append(move)
+            os.replace(*move)
+    except BaseException:
+        for source, target in reversed(done):
+            if not os.path.lexists(source):
+                os.rename(target, source)
+        raise
 
 
 @contextmanager
@@ -20,37 +113,37 @@ def new_files(folder: Path, index: str, key: str = "tables") -> Iterator[Path]:
 
     Parameters
     ----------
-    index : str
-        Name of a JSON file that lists, under `key`, the files of an earlier run. Files that are not written again are
-        removed, so that a folder never mixes two runs.
-    key : str
-        Key of the list in the JSON file.
+    index, key : str
+        As of `listed`. Files of an earlier run that are not written again are removed, so that a folder never mixes
+        two runs.
 
     Raises
     ------
-    InputError
-        The folder cannot be written.
+    InputError, OSError
+        As `make` does.
     """
-    unfinished = None
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        unfinished = Path(tempfile.mkdtemp(prefix=".unfinished-", dir=folder))
-        yield unfinished
-        written = {path.name for path in unfinished.iterdir()}
-        for name in _earlier(folder / index, key) - written:
-            (folder / name).unlink(missing_ok=True)
-        for name in sorted(written):
-            os.replace(unfinished / name, folder / name)
-    except OSError as error:
-        raise InputError(f"{folder} cannot be written ({error.strerror}): give a folder that can") from error
-    finally:
-        if unfinished is not None:
-            shutil.rmtree(unfinished, ignore_errors=True)
+    with workspace(folder, (index,)) as work:
+        yield work
+        written = {path.name for path in work.iterdir()}
+        replace(work, sorted(written), folder, listed(folder / index, key) - written)
 
 
-def _earlier(index: Path, key: str) -> set[str]:
+def listed(index: Path, key: str) -> set[str]:
+    """Return the names of files beside a JSON file that it lists under a key; none if it is missing or damaged."""
     try:
         names = json.loads(index.read_text())[key]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, LookupError, TypeError):
+        return set()
+    if not isinstance(names, list):
         return set()
     return {name for name in names if isinstance(name, str) and name == Path(name).name}
+
+
+def cause(error: OSError) -> str:
+    """Return what failed: the file and the reason, and for a full disk what helps."""
+    reason, file = error.strerror or str(error) or type(error).__name__, error.filename
+    if SHORT_WRITE in reason:
+        reason, file = "a file could not be written to its end", None
+    elif error.errno not in FULL:
+        return ": ".join(str(part) for part in (file, reason) if part)
+    return ": ".join(str(part) for part in (file, reason, "free disk space, or give a folder on another disk") if part)

@@ -199,7 +199,7 @@ def fit_presses(
     sensor = replace(
         sensor,
         model=evaluation.better_model,
-        camera=Camera(rows, columns, exposure_us=exposure_us),
+        camera=Camera(rows, columns, presses.pixel_format, exposure_us=exposure_us),
         height_errors={model: evaluation.height_error(model) for model in models},
         lighting=lighting(presses.background),
     )

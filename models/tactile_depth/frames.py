@@ -7,17 +7,18 @@ import math
 import re
 import struct
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 from PIL import Image
 
+from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
+from tactile_depth.grid_sampler import grid_sampler
 from tactile_depth.npy import is_file, read_header
-from tactile_depth.resampling import resampling
 from tactile_depth.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor
 
@@ -27,6 +28,7 @@ PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
 EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
 REST_SCENE = "flat"  # the scene without contact
+SCENE_PICTURE = (480, 640)  # rows and columns of a scene in front of a camera
 PICTURES = "a picture (PNG or JPEG), a folder of pictures, a .npy of uint8 (frames, rows, cols, 3)"
 ACCEPTED = f"a scene ({', '.join(SCENES)}), {PICTURES}"
 
@@ -50,6 +52,10 @@ class Frames:
         Size of the pictures before resampling; None for a scene, which is drawn on the grid.
     no_contact : uint8 array (rows, columns, 3), or None
         Full picture that `reference` was made from.
+    camera : CameraConfiguration, or None
+        The camera that the pictures were converted for; None: they are averaged as they are.
+    words : uint32 array (frames, picture rows, picture columns), or None
+        What that camera sends (`pixel_format`).
     """
 
     pixels: np.ndarray
@@ -59,6 +65,8 @@ class Frames:
     reference: np.ndarray | None = None
     picture_size: tuple[int, int] | None = None
     no_contact: np.ndarray | None = None
+    camera: CameraConfiguration | None = None
+    words: np.ndarray | None = None
 
 
 def read_picture(path: Path) -> np.ndarray:
@@ -120,7 +128,12 @@ def _check_camera(name: str, height: int, width: int) -> None:
 
 
 def load_frames(
-    source: str, size: tuple[int, int], reference: str | None = None, seed: int = 1, press: Press = AS_EVER
+    source: str,
+    size: tuple[int, int],
+    reference: str | None = None,
+    seed: int = 1,
+    press: Press = AS_EVER,
+    camera: CameraChoice | None = None,
 ) -> Frames:
     """Load the frames that `FRAMES` and `REFERENCE` of make name.
 
@@ -135,17 +148,21 @@ def load_frames(
         Seed of a scene's noise.
     press : Press
         Depth, position and noise of a scene.
+    camera : CameraChoice, optional
+        Pictures are converted to what this camera sends, and then taken as its hardware takes them. A scene is drawn as
+        a picture of `SCENE_PICTURE`.
 
     Raises
     ------
     InputError
     """
     if source in SCENES:
-        return _scene(source, size, reference, seed, press)
+        return _scene(source, size, reference, seed, press, camera)
     if press != AS_EVER:
         raise InputError(f"press, position and noise with {source}: they go with scenes: omit them")
     labels, images = read_pictures(source, accepted=ACCEPTED)
-    return _to_grid(source, labels, images, size, reference)
+    no_contact = None if reference is None else read_picture(Path(reference))
+    return _to_grid(source, labels, images, size, reference or "", no_contact, camera)
 
 
 def read_pictures(
@@ -196,25 +213,22 @@ def camera_scale(sensor: Sensor, config: Configuration) -> float:
     if sensor.camera is None:
         return scene_pixel_pitch_mm(min(config.rows, config.columns)) / SYNTHETIC_PIXEL_PITCH_MM
     camera = (sensor.camera.rows, sensor.camera.columns)
-    _check_grid(sensor.name, camera, (config.rows, config.columns))
-    return resampling(camera, (config.rows, config.columns)).scale
+    return grid_sampler(sensor.name, camera, (config.rows, config.columns)).scale
 
 
-def _check_grid(name: str, camera: tuple[int, int], size: tuple[int, int]) -> None:
-    if camera[0] < size[0] or camera[1] < size[1]:
-        raise InputError(
-            f"{name}: frames of {camera[0]} x {camera[1]} are smaller than the grid of {size[0]} x {size[1]}: give "
-            "larger frames or a smaller grid"
-        )
-
-
-def _scene(name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press) -> Frames:
+def _scene(
+    name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press, camera: CameraChoice | None
+) -> Frames:
     if reference not in (None, REST_SCENE):
         raise InputError(f"reference={reference} with the scene {name}: accepted is reference={REST_SCENE}, or none")
-    scene = render(name, *size, seed, press)
-    rest = render(REST_SCENE, *size, seed, Press(noise=0)).frames[0] if reference else None
-    scale = scene_pixel_pitch_mm(min(size)) / SYNTHETIC_PIXEL_PITCH_MM
-    return Frames(scene.frames, scale, name, scene.labels, rest)
+    drawn = size if camera is None else SCENE_PICTURE
+    scene = render(name, *drawn, seed, press)
+    rest = render(REST_SCENE, *drawn, seed, Press(noise=0)).frames[0] if reference else None
+    scale = scene_pixel_pitch_mm(min(drawn)) / SYNTHETIC_PIXEL_PITCH_MM
+    if camera is None:
+        return Frames(scene.frames, scale, name, scene.labels, rest)
+    frames = _to_grid(name, scene.labels, scene.frames, size, REST_SCENE, rest, camera)
+    return replace(frames, pixel_scale=frames.pixel_scale * scale, picture_size=None, no_contact=None)
 
 
 def _to_grid(
@@ -222,31 +236,36 @@ def _to_grid(
     labels: tuple[str, ...],
     images: Iterable[np.ndarray],
     size: tuple[int, int],
-    reference: str | None,
+    reference: str,
+    no_contact: np.ndarray | None,
+    choice: CameraChoice | None,
 ) -> Frames:
-    no_contact = None if reference is None else read_picture(Path(reference))
     pixels = np.empty((len(labels), *size, 3), np.uint8)
-    plan, camera = None, (0, 0)
+    words: np.ndarray | None = None
+    sampler, picture = None, (0, 0)
     for index, (label, image) in enumerate(zip(labels, images, strict=True)):
         height, width = image.shape[:2]
-        if plan is None:
-            camera = (height, width)
-            _check_grid(name, camera, size)
-            if no_contact is not None and no_contact.shape[:2] != camera:
+        if sampler is None:
+            picture = (height, width)
+            if no_contact is not None and no_contact.shape[:2] != picture:
                 raise InputError(
                     f"{reference}: {no_contact.shape[0]} x {no_contact.shape[1]}, but the frames are "
                     f"{height} x {width}: give the no-contact frame of the same camera"
                 )
-            plan = resampling(camera, size)
-        if (height, width) != camera:
+            sampler = grid_sampler(name, picture, size, choice)
+            if sampler.camera is not None:
+                words = np.empty((len(labels), *picture), np.uint32)
+        if (height, width) != picture:
             raise InputError(
-                f"{name}: {label} is {height} x {width}, {labels[0]} is {camera[0]} x {camera[1]}: "
+                f"{name}: {label} is {height} x {width}, {labels[0]} is {picture[0]} x {picture[1]}: "
                 "all frames must be of one size"
             )
-        pixels[index] = np.rint(plan.average(image))
-    assert plan is not None
-    on_grid = None if no_contact is None else np.rint(plan.average(no_contact)).astype(np.uint8)
-    return Frames(pixels, plan.scale, name, labels, on_grid, camera, no_contact)
+        pixels[index] = sampler.frame(image)
+        if words is not None:
+            words[index] = sampler.words(image)
+    assert sampler is not None
+    on_grid = None if no_contact is None else sampler.frame(no_contact)
+    return Frames(pixels, sampler.scale, name, labels, on_grid, picture, no_contact, sampler.camera, words)
 
 
 def _read_array(path: Path) -> np.ndarray:

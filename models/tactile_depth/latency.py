@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.transform.sdf_fft import twiddle_stages
 
@@ -14,6 +15,7 @@ TWIDDLE_MULTIPLY = 7
 SIGN = 2  # sign and rounding
 SPECTRAL_DIVIDE = 6
 ROW_REORDER = 2  # from the last word of a row
+CORNER_TURN = 3  # from the last word of a row
 TRANSPOSE = 2  # from the first word of the last row
 DIVERGENCE = 2
 GRADIENT_LOOKUP = 4
@@ -27,6 +29,13 @@ THOMAS_TABLE = 5
 FORWARD_ELIMINATION = 9
 FRAME_STACK = 3  # from the first word of the last row
 BACK_SUBSTITUTION = 8
+ROW_SUMS = 3
+BLOCK_TOTALS = 3
+ROUND_DIVIDE = 10
+AREA_AVERAGE = ROW_SUMS + BLOCK_TOTALS + ROUND_DIVIDE
+CHANNEL_GAIN = 3
+CAMERA_WINDOW = 1
+CONTACT = 1  # from the depth value that raises contact
 
 
 def sdf_fft_latency(size: int) -> int:
@@ -59,17 +68,37 @@ def spectral_solver_latency(size: int) -> int:
     return first_transform + columns + rows
 
 
-def tridiagonal_solver_latency(size: int) -> int:
+def tridiagonal_solver_latency(size: int, lanes: int = 1) -> int:
     """Return the cycles from the last divergence word of a frame to its first depth, for any gaps; rows of `size`."""
     down = ROW_REORDER + dst_forward_latency(size) + FORWARD_ELIMINATION
-    up = FRAME_STACK + BACK_SUBSTITUTION + dst_inverse_latency(size) + size - 1 + ROW_REORDER
-    return down + up
+    up = FRAME_STACK + BACK_SUBSTITUTION + dst_inverse_latency(size) + size - 1
+    return down + up + (ROW_REORDER if lanes == 1 else CORNER_TURN)
+
+
+def pixel_format_latency(camera: CameraConfiguration) -> int:
+    """Return the latency of pixel_format; YUYV: of the second pixel of a pair, one more than of its first."""
+    return 4 if camera.pixel_format == "yuyv" else 1
+
+
+def camera_front_end_latency(camera: CameraConfiguration) -> int:
+    """Return the cycles from the camera's `last_word` to the last pixel of the grid, for any gaps."""
+    x, _, width, _ = camera.crop
+    first_of_pair = camera.pixel_format == "yuyv" and (x + width) % 2 == 1
+    cores = CAMERA_WINDOW + pixel_format_latency(camera) - first_of_pair + CHANNEL_GAIN + AREA_AVERAGE
+    return AXIS_SKID + cores + AXIS_SKID
+
+
+def last_word_to_first_depth(camera: CameraConfiguration, config: Configuration) -> int:
+    """Return the cycles from the camera's `last_word` to the first depth, for any gaps and blanking."""
+    return camera_front_end_latency(camera) + last_pixel_to_first_depth(config)
 
 
 def frame_latency(config: Configuration) -> int:
     """Return the cycles from the last pixel of a frame out of the guard to its first depth out of the solver."""
-    tridiagonal = config.solver == "tridiagonal"
-    solver = (tridiagonal_solver_latency if tridiagonal else spectral_solver_latency)(config.columns)
+    if config.solver == "tridiagonal":
+        solver = tridiagonal_solver_latency(config.columns, config.lanes)
+    else:
+        solver = spectral_solver_latency(config.columns)
     colour = FLAT_FIELD if config.flat_field else 0
     slope = QUADRATIC_GRADIENT if config.gradient_model == "quadratic" else GRADIENT_LOOKUP
     return colour + slope + DIVERGENCE + solver
@@ -79,6 +108,16 @@ def last_pixel_to_first_depth(config: Configuration) -> int:
     """Return the cycles of the pipeline from the last pixel of a frame to its first depth, for any gaps."""
     zero = AUTO_ZERO if config.auto_zero else 0
     return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero + AXIS_SKID
+
+
+def last_pixel_to_last_depth(config: Configuration) -> int:
+    """Return the cycles of the pipeline from the last pixel of a frame to its last depth, for any gaps."""
+    return last_pixel_to_first_depth(config) + beats(config) - 1
+
+
+def beats(config: Configuration) -> int:
+    """Return the clocks in which a frame of depth leaves."""
+    return config.rows * config.columns // config.lanes
 
 
 def first_depth_latency(config: Configuration) -> int:

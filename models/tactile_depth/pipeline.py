@@ -261,7 +261,7 @@ class Pipeline:
         with new_files(folder, PARAMETERS) as unfinished:
             write_roms(unfinished, self.sensor, self.config, self._floor, self._gains)
             description = {
-                "parameters": top_parameters(self.config),
+                "parameters": top_parameters(self.config, self.pixel_pitch_mm),
                 "registers": {"THRESHOLD": self._threshold},
                 "grid": list(self.grid),
                 "depth_lsb_mm": self.depth_lsb_mm,

@@ -13,11 +13,12 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from tactile_depth.calibration.flat_field import captured_gains, deviations, flat_codes, require_light
+from tactile_depth.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.circles import find_circle, require_circle_finder
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import read_picture
-from tactile_depth.resampling import Resampling, resampling
+from tactile_depth.grid_sampler import GridSampler, grid_sampler
 
 LARGEST_GRID, SMALLEST_GRID = 128, 16
 LARGEST_NUMBER = 1e6  # millimetres or pixels
@@ -211,6 +212,8 @@ class GridPresses:
         One line for each press, column or line that was left out.
     agreement : float64 array (n, 3)
         Detected minus given circles in camera pixels: x, y, radius.
+    pixel_format : str
+        Pixel format of the camera that the pictures were converted for.
     """
 
     name: str
@@ -221,6 +224,7 @@ class GridPresses:
     scale: float
     notes: tuple[str, ...]
     agreement: np.ndarray
+    pixel_format: str = "rgb888"
 
     @property
     def size(self) -> int:
@@ -296,7 +300,11 @@ def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
 
 
 def to_grid(
-    pictures: PressPictures, pitch_mm: float, find_circles: bool = False, compare_circles: bool = False
+    pictures: PressPictures,
+    pitch_mm: float,
+    find_circles: bool = False,
+    compare_circles: bool = False,
+    choice: CameraChoice | None = None,
 ) -> GridPresses:
     """Resample presses to the largest square grid within their pictures; `notes` names the presses left out and why.
 
@@ -308,6 +316,8 @@ def to_grid(
         Detect circles in the pictures even if circles are given, and use the detected circles.
     compare_circles : bool
         Detect circles, use the given circles, and return the differences.
+    choice : CameraChoice, optional
+        Pictures are converted to what this camera sends, and then taken as its hardware takes them.
 
     Raises
     ------
@@ -316,14 +326,15 @@ def to_grid(
     """
     background = pictures.background
     camera = background.shape[:2]
-    size = min(LARGEST_GRID, 1 << (min(camera).bit_length() - 1))
+    least = 1 if choice is None else FORMATS[choice.pixel_format].least_ratio
+    size = min(LARGEST_GRID, 1 << ((min(camera) // least).bit_length() - 1))
     if size < SMALLEST_GRID:
         raise InputError(f"background: {camera[0]} x {camera[1]} pixels: accepted are {SMALLEST_GRID} x or more")
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
     config = Configuration(columns=size)
-    plan = resampling((camera[0], camera[1]), (size, size))
-    rest = _on_grid(background, plan)
+    sampler = grid_sampler("background", (camera[0], camera[1]), (size, size), choice)
+    rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)
     require_light(gains, config, "background")
     notes, agreement = list(pictures.notes), []
@@ -338,34 +349,35 @@ def to_grid(
                 largest = min(LARGEST_CIRCLE * ball, min(camera) / 2)
                 seen = Circle(*circle) if (circle := find_circle(image, background, largest)) else None
             given = None if press.circle is None else Circle(*press.circle)
-            at = _grid_press(press.name, seen if find_circles else given or seen, ball, plan, size)
+            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, size)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
             continue
         if given and seen:
             agreement.append(np.subtract(seen, given))
         geometry.append(at)
-        frames.append(_on_grid(image, plan))
+        frames.append(sampler.frame(image))
     stack = np.array(frames, np.uint8).reshape(-1, size, size, 3)
     codes, colours = flat_codes(stack, gains, config), deviations(stack, gains, config)
     views = tuple(View(*parts) for parts in zip(geometry, stack, codes, colours, strict=True))
     differences = np.array(agreement).reshape(-1, 3)
-    return GridPresses(pictures.name, views, background, rest, pitch_mm, plan.scale, tuple(notes), differences)
+    presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
+    return presses if choice is None else replace(presses, pixel_format=choice.pixel_format)
 
 
-def _grid_press(name: str, circle: Circle | None, ball: float, plan: Resampling, size: int) -> GridPress:
+def _grid_press(name: str, circle: Circle | None, ball: float, sampler: GridSampler, size: int) -> GridPress:
     """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
     if circle is None:
         raise InputError(f"{name}: no circle to be seen")
     if circle.radius >= LARGEST_CONTACT * ball:
         raise InputError(f"{name}: a contact of {circle.radius:.1f} pixels does not lie on a ball of {ball:.1f}")
-    top, left = plan.origin
+    top, left = sampler.origin
     press = GridPress(
         name,
-        (circle.x - left + 0.5) / plan.scale - 0.5,
-        (circle.y - top + 0.5) / plan.scale - 0.5,
-        circle.radius / plan.scale,
-        ball / plan.scale,
+        (circle.x - left + 0.5) / sampler.scale - 0.5,
+        (circle.y - top + 0.5) / sampler.scale - 0.5,
+        circle.radius / sampler.scale,
+        ball / sampler.scale,
     )
     if not (press.distance(size) < FITTED_SHARE).any():
         raise InputError(f"{name}: the press is outside the picture's middle square")
@@ -380,10 +392,6 @@ def _press_image(press: BallPress, background: np.ndarray) -> np.ndarray:
             f"{background.shape[0]} x {background.shape[1]}"
         )
     return image
-
-
-def _on_grid(image: np.ndarray, plan: Resampling) -> np.ndarray:
-    return np.clip(np.rint(plan.average(image)), 0, 255).astype(np.uint8)
 
 
 def _named(press: BallPress, number: int) -> BallPress:

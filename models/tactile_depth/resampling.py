@@ -52,21 +52,35 @@ class Resampling:
         return averages
 
 
+def ratio(camera: tuple[int, int], grid: tuple[int, int]) -> tuple[int, int]:
+    """Return numerator and denominator of the camera pixels per grid pixel, for the largest crop of its aspect."""
+    (height, width), (rows, cols) = camera, grid
+    return (height, rows) if height * cols <= width * rows else (width, cols)
+
+
+def crop_origin(camera: tuple[int, int], grid: tuple[int, int]) -> tuple[int, int]:
+    """Return the first camera row and column of the centred crop."""
+    numerator, denominator = ratio(camera, grid)
+    top, left = (
+        (length * denominator - count * numerator) // (2 * denominator)
+        for length, count in zip(camera, grid, strict=True)
+    )
+    return top, left
+
+
 def resampling(camera: tuple[int, int], grid: tuple[int, int]) -> Resampling:
     """Return the resampling of camera frames (rows, cols) to a grid (rows, cols) that is not larger.
 
     The crop starts on a pixel boundary, so that a frame as wide as the grid is not blurred.
     """
     (height, width), (rows, cols) = camera, grid
-    numerator, denominator = (height, rows) if height * cols <= width * rows else (width, cols)
+    numerator, denominator = ratio(camera, grid)
+    top, left = crop_origin(camera, grid)
 
-    def weights(count: int, length: int) -> tuple[np.ndarray, int]:
-        origin = (length * denominator - count * numerator) // (2 * denominator)
+    def weights(count: int, length: int, origin: int) -> np.ndarray:
         start = origin * denominator + np.arange(count)[:, None] * numerator
         pixel = np.arange(length) * denominator
         overlap = np.minimum(start + numerator, pixel + denominator) - np.maximum(start, pixel)
-        return np.maximum(overlap, 0).astype(np.float64), origin
+        return np.maximum(overlap, 0).astype(np.float64)
 
-    row_weights, top = weights(rows, height)
-    column_weights, left = weights(cols, width)
-    return Resampling(row_weights, column_weights, (top, left), numerator, denominator)
+    return Resampling(weights(rows, height, top), weights(cols, width, left), (top, left), numerator, denominator)

@@ -8,7 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from tactile_depth.contact.contact_events import FRACTION, TOUCHING, Record
+from tactile_depth.contact.centroid import FRACTION
+from tactile_depth.contact.contact_debounce import TOUCHING
+from tactile_depth.contact.contact_events import Record
 from tactile_depth.sensor import HeightError
 
 
@@ -43,7 +45,7 @@ class Contact:
     @property
     def peak_px(self) -> tuple[int, int]:
         """Row and column of the peak on the grid."""
-        return self.record.peak_place
+        return self.record.peak_position
 
     @property
     def area_mm2(self) -> float:

@@ -89,15 +89,9 @@ def write_floor(folder: Path, floor: np.ndarray, width: int) -> None:
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
-    """Write words (2, 3, 6) as quadratic_gradient.sv reads them.
-
-    There is one file for each polynomial, and one file of all polynomials. Each word occurs once for each bank.
-    """
-    flat = [word for word in pack((words.reshape(-1),), width) for _ in range(2)]
-    size = 2 * words.shape[-1]
-    for polynomial in range(len(flat) // size):
-        write_words(folder / f"quadratic_{polynomial}.hex", flat[polynomial * size :][:size], width)
-    write_words(folder / "quadratic.hex", flat, width)
+    """Write words (2, 3, 6) as the tables of quadratic_gradient.sv read them: one file for each polynomial."""
+    for polynomial, terms in enumerate(words.reshape(-1, words.shape[-1])):
+        write_words(folder / f"quadratic_{polynomial}.hex", pack((terms,), width), width)
 
 
 def write_thomas(folder: Path, config: Configuration) -> None:

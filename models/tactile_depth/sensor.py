@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactile_depth.camera_configuration import FORMATS
 from tactile_depth.configuration import GRADIENT_MODELS, Configuration
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
@@ -25,7 +26,7 @@ FOLDER = Path(__file__).resolve().parent / "calibrations"
 BUILT_IN = ("synthetic", "gelsight-mini")
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 2
-PIXEL_FORMATS = ("rgb888",)
+PIXEL_FORMATS = tuple(FORMATS)
 BITS_PER_CHANNEL = (1, 6)
 COEFFICIENTS = (2, 3, 6)  # slope, colour, term
 SYNTHETIC_PIXEL_PITCH_MM = scene_pixel_pitch_mm(128)  # for a synthetic camera of 128 columns
@@ -153,7 +154,21 @@ class Sensor:
         zoom = 1.0 if frames.picture_size is None else self.zoom(frames.picture_size, frames.name)
         if frames.no_contact is not None:
             self.check_lighting(frames.no_contact)
-        return self.scaled(frames.pixel_scale / zoom, frames.reference)
+        placed = self
+        if frames.camera is not None:
+            columns, rows = frames.camera.centre_shift
+            pitch_mm = self.pixel_pitch_mm / zoom
+            placed = self.centred_at(columns * pitch_mm, rows * pitch_mm)
+        return placed.scaled(frames.pixel_scale / zoom, frames.reference)
+
+    def centred_at(self, x_mm: float, y_mm: float) -> Sensor:
+        """Return the sensor for the part of its pictures around a position, in mm from the middle of a picture."""
+        if self.coefficients is None or not (x_mm or y_mm):
+            return self
+        one, x, y, xx, xy, yy = np.moveaxis(self.coefficients, -1, 0)
+        one = one + x * x_mm + y * y_mm + xx * x_mm**2 + xy * x_mm * y_mm + yy * y_mm**2
+        x, y = x + 2 * xx * x_mm + xy * y_mm, y + 2 * yy * y_mm + xy * x_mm
+        return replace(self, coefficients=np.stack((one, x, y, xx, xy, yy), axis=-1))
 
     def zoom(self, picture_size: tuple[int, int], name: str = "picture") -> float:
         """Return pixels of a picture (rows, columns) per pixel of the calibrated camera; 1 for the synthetic sensor.

@@ -33,6 +33,7 @@ from tactile_depth.gradient.quadratic_gradient import (
 )
 from tactile_depth.latency import frame_latency
 from tactile_depth.poisson import spectral_solver, tridiagonal_solver
+from tactile_depth.registers.device_description import description_parameters
 from tactile_depth.rom_files import write_floor, write_gains, write_gradient, write_quadratic, write_solver
 from tactile_depth.sensor import COEFFICIENTS, Sensor
 
@@ -147,8 +148,8 @@ def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) 
     return spectral_solver.spectral_solver(f, config, monitor)
 
 
-def top_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/tactile_depth.sv."""
+def top_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
+    """Return the parameters of hdl/tactile_depth.sv; the device tells its host the pitch of the grid, 0: unknown."""
     tridiagonal = config.solver == "tridiagonal"
     solver = tridiagonal_solver if tridiagonal else spectral_solver
     parameters = solver.solver_parameters(config)
@@ -156,6 +157,7 @@ def top_parameters(config: Configuration) -> dict[str, int]:
     return {
         **parameters,
         "Rows": config.rows,
+        "Lanes": config.lanes,
         "Tridiagonal": int(tridiagonal),
         "BitsPerChannel": config.bits_per_channel,
         "GradientWidth": config.gradient.width,
@@ -163,6 +165,7 @@ def top_parameters(config: Configuration) -> dict[str, int]:
         "FrameLatency": frame_latency(config),
         **_colour_parameters(config),
         **_floor_parameters(config),
+        **description_parameters(config, pixel_pitch_mm),
     }
 
 

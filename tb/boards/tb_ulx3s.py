@@ -32,6 +32,8 @@ from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.scenes import render
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth
+from tb.pixels import unpack
+from tb.selection import Level, case
 from tb.stream import CLOCK_NS, configuration, parameters
 
 THRESHOLDS = ("THRESHOLD", "OFF_THRESHOLD")
@@ -83,7 +85,7 @@ class Board:
 
     async def note_starts(self) -> None:
         """The pipeline's clock for each frame's first pixel, which stands in the record."""
-        depth = self.dut.u_depth
+        depth = self.dut.u_depth.u_pipeline
         while True:
             await RisingEdge(depth.s_axis_tvalid)  # tuser may be high from power-up on
             await ReadOnly()
@@ -92,7 +94,7 @@ class Board:
             while not depth.s_axis_tready.value:
                 await RisingEdge(self.dut.clk_25mhz)
                 await ReadOnly()
-            self.starts.append(int(depth.now.value))
+            self.starts.append(int(depth.u_video.now.value))
 
     async def send(self, data: Any) -> None:
         """Bytes onto the line, back to back; None is a break."""
@@ -127,9 +129,7 @@ class Board:
         good = [frame for frame in guarded.frames if not frame.bad]
         if not good:
             return []
-        words = np.array([frame.pixels for frame in good])
-        pixels = np.stack([words >> low & 255 for low in (16, 0, 8)], -1).astype(np.uint8)
-        pixels = pixels.reshape(-1, self.rows, self.columns, 3)
+        pixels = unpack([frame.pixels for frame in good]).reshape(-1, self.rows, self.columns, 3)
         depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
         times = iter(self.starts)
         time_of = {index: next(times) for index, word in enumerate(taken.pixels) if word.user}
@@ -165,7 +165,7 @@ class Board:
         return len(found)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@case(Level.FIRST, milliseconds=1)
 async def wakes(dut: Any) -> None:
     """From any power-up: locked, dark otherwise, and silent."""
     board = Board(dut)
@@ -176,7 +176,7 @@ async def wakes(dut: Any) -> None:
     assert not board.replies
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@case(Level.FIRST, milliseconds=20)
 async def frames(dut: Any) -> None:
     """Contact and none in turn, a record each, the light on and off."""
     board = Board(dut)
@@ -187,7 +187,7 @@ async def frames(dut: Any) -> None:
     assert [light for _, light in board.records()] == [True, False, True]
 
 
-@cocotb.test(timeout_time=40, timeout_unit="ms")
+@case(Level.LONG, milliseconds=40)
 async def broken_transfers(dut: Any) -> None:
     """After each kind of broken transfer the next frame is right."""
     board = Board(dut)
@@ -213,7 +213,7 @@ async def broken_transfers(dut: Any) -> None:
     assert await board.check() >= len(broken)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@case(milliseconds=20)
 async def registers(dut: Any) -> None:
     """A threshold written over the line holds from the next frame on; a write of another length is none."""
     board = Board(dut)
@@ -235,7 +235,7 @@ async def registers(dut: Any) -> None:
     assert [light for _, light in board.records()] == [True, True, False, False, False]
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@case(milliseconds=20)
 async def button(dut: Any) -> None:
     """Pressed inside a frame; the next one is the first again, with the threshold of before the writes."""
     board = Board(dut)

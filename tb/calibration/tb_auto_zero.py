@@ -15,10 +15,9 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.latency import AUTO_ZERO
 from tb.depth_frames import DepthDriver, depth_words, random_depths
 from tb.gains import Gains, Grid
-from tb.stream import Bench, places, sample
+from tb.stream import Bench, depth_position, places, sample
 
 WORDS = 2048  # that a test sends, at least
-MARKS = ("user", "last", "frame_end")
 
 
 def first_floor(config: Configuration) -> Any:
@@ -97,16 +96,16 @@ class Zero:
             leaves = self.inside.pop()
             assert bool(dut.out_valid.value) == (leaves is not None), f"out_valid is {dut.out_valid.value}"
             if leaves is not None:
-                marks = tuple(bool(getattr(dut, f"out_{mark}").value) for mark in MARKS)
-                got = dut.out_data.value.to_signed()
-                assert marks == self.sent[leaves][:3], f"word {leaves}: marks {marks}"
+                position, got = int(dut.out_position.value), dut.out_data.value.to_signed()
+                assert position == depth_position(*self.sent[leaves][:3]), f"word {leaves}: position {position:03b}"
                 assert got == self.expected[leaves][0], f"word {leaves}: {got}, not {self.expected[leaves][0]}"
             comes = None
             if dut.in_valid.value:
                 comes, self.taken = self.taken, self.taken + 1
-                word = tuple(bool(getattr(dut, f"in_{mark}").value) for mark in MARKS)
-                assert (*word, dut.in_data.value.to_signed()) == self.sent[comes], "the driver sent something else"
-                self.begun = not word[2]
+                *marks, data = self.sent[comes]
+                pins = int(dut.in_position.value), dut.in_data.value.to_signed()
+                assert pins == (depth_position(*marks), data), "the driver sent something else"
+                self.begun = not marks[2]
             self.inside.appendleft(comes)
             self.clipped = self.inside[-1] is not None and self.expected[self.inside[-1]][1]
 
@@ -120,22 +119,17 @@ class Zero:
         return np.clip(interpolated_floor(floor, self.config) + target, low, high)
 
     async def send(self, frames: int = 1, depths: np.ndarray | None = None, count: int | None = None) -> None:
-        """Frames back to back, or the first words of one; each has the floor that table_bank names as it begins, which
-        may be with the clock behind its first word."""
+        """Frames back to back, or the first words of one; each has the floor that table_bank names as it begins."""
         for _ in range(frames):
-            late = self.chance.random() < 0.5
-            floor: Any = None if late else self.floors.begin_frame()[..., 0].copy()
+            floor = self.floors.begin_frame()[..., 0].copy()
             frame = self.depths(floor) if depths is None else depths
             words = depth_words(frame)[:count]
             self.sent += words
-            await self.driver.words(words[:1])
-            if late:
-                floor = self.floors.begin_frame()[..., 0].copy()
             self.used.append(floor.tobytes())
             zeroed = auto_zero(frame, floor, self.config, self.monitor).reshape(-1)
             clipped = (frame - interpolated_floor(floor, self.config)).reshape(-1) != zeroed
             self.expected += zip(zeroed.tolist(), clipped.tolist(), strict=True)
-            await self.driver.words(words[1:])
+            await self.driver.words(words)
 
     async def reset(self, en: Any) -> None:
         resetting = cocotb.start_soon(self.bench.reset(en))

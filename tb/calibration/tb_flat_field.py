@@ -12,11 +12,12 @@ from tactile_depth.calibration.flat_field import dark_pixels, deviations, flat_c
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import FLAT_FIELD
 from tb.gains import Gains, Grid, random_gains, reads_as_a_pause_ends
+from tb.pixels import pack
 from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, sample, send_apart
 
 PIXELS = 2048  # that a test sends, at least
-PIXEL = ["pixel", "place"]
-COLOURS = ["red", "green", "blue", "place"]
+PIXEL = ["pixel", "position"]
+COLOURS = ["red", "green", "blue", "position"]
 
 
 def picture(rows: int, columns: int, chance: random.Random, level: int) -> Any:
@@ -50,7 +51,7 @@ class Field:
         self.gains = Gains(dut, self.config)
         self.driver = StreamDriver(dut, "in", "valid", PIXEL)
         self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
-        unsigned = ["place"] if self.quadratic else COLOURS
+        unsigned = ["position"] if self.quadratic else COLOURS
         self.sink = StreamMonitor(dut, "out", "valid", COLOURS, unsigned=unsigned)
         self.monitor = Monitor()
         self.sent: list[Any] = []
@@ -77,8 +78,7 @@ class Field:
         for _ in range(frames):
             given = chance.choice((0, 1, 16, 100, 255)) if level is None else level
             frame = picture(self.config.rows, self.config.columns, chance, given) if pixels is None else pixels
-            red, green, blue = frame.astype(np.int64).reshape(-1, 3).T
-            words = list(zip((red << 16 | blue << 8 | green).tolist(), self.places, strict=True))
+            words = list(zip(pack(frame).ravel().tolist(), self.places, strict=True))
             while chance.random() < self.gap:
                 await self.bench.clocks(1)
             gains = self.gains.begin_frame().copy()

@@ -11,7 +11,7 @@ from tactile_depth.calibration.flat_field import interpolated_gains
 from tactile_depth.configuration import Configuration
 from tactile_depth.latency import GAIN_MAP
 from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
-from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, raster, sample, send_apart
+from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, places, sample, send_apart
 
 PLACES = 2048  # that a test sends, at least
 
@@ -37,14 +37,15 @@ class Map:
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut)
-        self.places = raster(self.config.rows, self.config.columns)
+        size = self.config.rows * self.config.columns
+        self.places = [(word,) for word in places(size, *parameters(dut, "DataWidth")).tolist()]
         self.frames = max(2, PLACES // len(self.places))
         self.large = len(self.places) > PLACES  # then a few frames must do
         self.bench = Bench(dut, pause)
         self.gains = Nodes(dut, self.config)
-        self.driver = StreamDriver(dut, "in", "valid", ["place"])
-        self.source = StreamMonitor(dut, "in", "valid", ["place"], unsigned=["place"])
-        self.sink = StreamMonitor(dut, "out", "valid", ["gains", "place"], unsigned=["gains", "place"])
+        self.driver = StreamDriver(dut, "in", "valid", ["data"])
+        self.source = StreamMonitor(dut, "in", "valid", ["data"])
+        self.sink = StreamMonitor(dut, "out", "valid", ["gains", "data"], unsigned=["gains"])
         self.expected: list[Any] = []
 
     async def start(self, written: bool = True) -> None:
@@ -57,12 +58,16 @@ class Map:
             while self.bench.random.random() < self.gap:
                 await self.bench.clocks(1)
             self.expected.append(interpolated_gains(self.gains.begin_frame(), self.config))
-            await send_apart(self.bench, self.driver, [(self.places[0],)], 0.0)
-            await send_apart(self.bench, self.driver, [(place,) for place in self.places[1:]], self.gap)
+            await self.words(self.places[:1])
+            await self.words(self.places[1:], self.gap)
+
+    async def words(self, places: Any, gap: float = 0.0) -> None:
+        """Data of a frame, or of a part of it."""
+        await send_apart(self.bench, self.driver, places, gap, len(self.places) if places[0] == self.places[0] else 0)
 
     async def check(self) -> None:
         await self.bench.clocks(GAIN_MAP + 2)
-        sent = [(place,) for _ in self.expected for place in self.places]
+        sent = [place for _ in self.expected for place in self.places]
         assert self.source.words == sent, "the driver sent something else"
         words = np.concatenate([gains.reshape(-1, self.gains.channels) for gains in self.expected]).tolist()
         want = [
@@ -125,9 +130,9 @@ async def named_inside_a_frame(dut: Any, pause: float) -> None:
     for count in range(3, len(device.places), len(device.places) if device.large else stride):
         await device.gains.write(device.gains.random(device.bench.random))
         device.expected.append(interpolated_gains(device.gains.begin_frame(), device.config))
-        await send_apart(device.bench, device.driver, [(place,) for place in device.places[:count]], 0.0)
+        await device.words(device.places[:count])
         device.gains.change()
-        await send_apart(device.bench, device.driver, [(place,) for place in device.places[count:]], 0.0)
+        await device.words(device.places[count:])
         await device.send()
     await device.check()
 
@@ -155,7 +160,7 @@ async def resets(dut: Any) -> None:
     counts = (1, 2, 3, 4, 6, columns, 2 * columns + 3, 5 * columns // 2)
     for count in counts[-1:] if device.large else counts:
         await device.gains.write(device.gains.random(device.bench.random))
-        await send_apart(device.bench, device.driver, [(place,) for place in device.places[:count]], 0.0)
+        await device.words(device.places[:count])
         if count % 2:
             device.gains.change()
         await device.bench.reset()

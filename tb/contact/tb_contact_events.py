@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """contact_events against its model in every clock, and every field of a record against numpy on the map."""
 
-import os
-import random
 from fractions import Fraction
 from typing import Any
 
 import cocotb
 import numpy as np
-from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.contact.contact_events import CLOCKS_TO_TOUCHING, WORDS, ContactEvents, Packets, Settings, latency
-from tb.axis import PROFILES, profile
-from tb.stream import CLOCK_NS, REGRESS, parameters
+from tactile_depth.contact.contact_events import CYCLES_TO_TOUCHING, WORDS, ContactEvents, Settings, latency
+from tactile_depth.contact.record_packets import RecordPackets
+from tb.axis import profile
+from tb.contact.depth_bench import DepthBench
+from tb.stream import REGRESS
 
-FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 400, 0.1: 100}  # by the share of gaps
-WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
+FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 300, 0.1: 100}  # by the share of gaps
 
 
 def numpy_fields(depth: np.ndarray, threshold: int, first_row_last: Any) -> Any:
@@ -41,13 +39,13 @@ def seen_fields(words: Any) -> list[Any]:
     halves = np.array(words, np.uint32)
     signed = halves.view(np.int32)
 
-    def place(index: int) -> Any:
+    def position(index: int) -> Any:
         return [int(halves[index]) >> 16, int(halves[index]) & 0xFFFF]
 
     volume = int(signed[11]) << 32 | int(halves[10])
     area = int(halves[3])
     sums = [int(halves[8]), int(halves[9]), volume]
-    return [area, int(signed[4]), *place(5), *place(6), *place(7), *sums, *place(12), int(area > 0)]
+    return [area, int(signed[4]), *position(5), *position(6), *position(7), *sums, *position(12), int(area > 0)]
 
 
 class Events:
@@ -67,24 +65,16 @@ class Events:
         return 0b011 if self.touching else 0b100
 
 
-class Bench:
+class Bench(DepthBench):
     """Drives one clock at a time; every output must be what the model makes of the clocks before."""
 
     def __init__(self, dut: Any, accepts: str = "none", gap: float = 0.0) -> None:
-        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
-        self.dut, self.gap = dut, gap
-        self.random = random.Random(cocotb.RANDOM_SEED)
-        self.width, self.rows, self.columns, self.bottom_first = parameters(
-            dut, "Width", "Rows", "Columns", "BottomFirst"
-        )
-        self.pixels = self.rows * self.columns
-        self.low, self.high = -(1 << self.width - 1), (1 << self.width - 1) - 1
-        self.latency = latency(self.rows, self.columns)
+        super().__init__(dut, gap)
+        self.latency = latency(self.rows, self.columns, self.lanes)
         self.accepts = profile(accepts)
         self.model = ContactEvents(self.rows, self.columns, bool(self.bottom_first))
-        self.packets = Packets()
-        self.driven: dict[Any, Any] = {}  # what stands on the pins
-        self.now, self.lost = 0, 0
+        self.packets = RecordPackets()
+        self.lost = 0
         self.moved = False  # the record, since it was read
         # words of each record as it was new, of each packet
         self.records: list[Any] = []
@@ -99,12 +89,8 @@ class Bench:
         self.open: list[Any] = []
 
     async def start(self) -> None:
-        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        self.dut.in_valid.value, self.dut.m_event_tready.value, self.dut.rst.value = 0, 0, 1
-        await RisingEdge(self.dut.clk)
-        await RisingEdge(self.dut.clk)
-        self.dut.rst.value = 0
-
+        self.drive(m_event_tready=0)
+        await super().start()
         cocotb.start_soon(self.watch())
 
     async def watch(self) -> None:
@@ -114,39 +100,28 @@ class Bench:
 
     async def reset(self) -> None:
         self.dut.rst.value = 1
-        await self.edge(False)
+        await self.edge(False, [0] * self.lanes, (0, 0, 0))
         self.dut.rst.value = 0
         self.model.reset()
         self.packets.reset()
         self.forget()
 
-    def drive(self, **pins: Any) -> None:
-        for name, value in pins.items():
-            if self.driven.get(name) != value:  # a write costs more than a clock
-                getattr(self.dut, name).value = self.driven[name] = value
-
     async def edge(
-        self,
-        valid: Any,
-        data: Any = 0,
-        user: Any = False,
-        last: Any = False,
-        frame_end: Any = False,
-        settings: Any = None,
-        time: Any = None,
+        self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
     ) -> None:
         """One clock. Settings and time that are not given do not count in it."""
         ready = next(self.accepts)
-        self.drive(in_valid=int(valid), in_data=data, in_user=int(user), in_last=int(last))
-        self.drive(in_frame_end=int(frame_end), m_event_tready=int(ready))
+        self.drive_depth(valid, depths, position)
+        self.drive(m_event_tready=int(ready))
         if settings is not None:
             self.drive(**settings._asdict(), in_time=time)
         await RisingEdge(self.dut.clk)
         self.check(ready)
         if valid:
-            record = self.model.beat(data, user, last, frame_end, settings, time)
+            for depth in self.in_turn(depths, position):
+                record = self.model.beat(*depth, settings, time)
             if record is not None:
-                self.touching_due[self.now + CLOCKS_TO_TOUCHING] = self.model.touching
+                self.touching_due[self.now + CYCLES_TO_TOUCHING] = self.model.touching
                 self.record_due[self.now + self.latency] = record.words
         if settings is not None:
             chance = self.random
@@ -178,86 +153,24 @@ class Bench:
             if ready:
                 self.open.append(sending[0])
         lost = self.packets.clock(self.record_due.get(now + 1), ready)
-        assert bool(dut.event_lost.value) == lost, "event_lost"
+        assert bool(dut.record_lost.value) == lost, "record_lost"
         self.lost += lost
         if not sending or len(sending) == WORDS:
             self.sent += [tuple(self.open)] * bool(self.open)
             self.open = []
 
-    async def idle(self, clocks: int = 1) -> None:
-        for _ in range(clocks):
-            coin = self.random.getrandbits
-            await self.edge(False, coin(self.width) + self.low, coin(1), coin(1), coin(1))
-
-    async def frame(self, depth: np.ndarray, settings: Any, time: float = 0, words: Any = None) -> None:
-        """Send a map, row 0 at the top, or its first words."""
-        stream = depth[::-1] if self.bottom_first else depth
-        for index, data in enumerate(stream.ravel().tolist()[:words]):
-            while self.gap and self.random.random() < self.gap:
-                await self.idle()
-            user, last = index == 0, index % self.columns == self.columns - 1
-            end = index == self.pixels - 1
-            await self.edge(True, data, user, last, end, *((settings, time) if user else ()))
-
     async def settle(self) -> None:
         """Until the last record has left or waits behind a sink that does not take it."""
         await self.idle(self.latency + 2)
 
-    def full(self, value: Any) -> Any:
-        return np.full((self.rows, self.columns), value, np.int64)
-
-    def lone(self, value: Any, *places: Any) -> Any:
-        """A map of the lowest code, but for a few places."""
-        depth = self.full(self.low)
-        for row, column in places:
-            depth[row, column] = value
-        return depth
-
-
-def random_map(bench: Any, rng: Any) -> Any:
-    """A frame of one of the kinds that matter."""
-    shape, low, high = (bench.rows, bench.columns), bench.low, bench.high
-    match rng.integers(10):
-        case 0:  # anything
-            return rng.integers(low, high, shape, endpoint=True)
-        case 1:  # few values: ties
-            return rng.integers(-2, 3, shape)
-        case 2:  # all equal
-            return np.full(shape, rng.choice([low, -1, 0, 1, high, rng.integers(low, high)]))
-        case 3:  # ends of the range
-            return rng.choice([low, high], shape)
-        case 4:  # negative throughout
-            return rng.integers(low, 0, shape)
-        case 5:  # lone peaks, equal ones too
-            depth = np.full(shape, rng.choice([low, 0, -5]))
-            for _ in range(rng.integers(1, 4)):
-                depth[tuple(rng.integers(shape))] = rng.choice([high, 1, 2])
-            return depth
-        case 6:  # the edge
-            depth = np.zeros(shape, np.int64)
-            depth[:: bench.rows - 1] = rng.integers(-1, 4, bench.columns)
-            depth[:, :: bench.columns - 1] += rng.integers(-1, 4, (bench.rows, 1))
-            return depth
-    y, x = np.indices(shape)  # caps, over the edge too, on a noisy floor
-    depth = rng.normal(0, 1, shape)
-    for _ in range(rng.integers(1, 4)):
-        centre = rng.uniform(-1, 1 + np.array(shape))
-        radius, height = rng.uniform(1, max(shape) / 2), 2.0 ** rng.uniform(2, bench.width - 1)
-        cap = 1 - ((y - centre[0]) ** 2 + (x - centre[1]) ** 2) / radius**2
-        depth = np.maximum(depth, np.where(cap > 0, np.floor(height * cap), depth))
-    return np.clip(np.rint(depth), low, high).astype(np.int64)
-
 
 def random_settings(bench: Any, rng: Any, depth: np.ndarray) -> Any:
     """Thresholds near the map's own values, areas near what is above."""
-    values = [*rng.choice(depth.ravel(), 3), 0, depth.max(), depth.min(), depth.max() - 1]
-    on, off = np.clip(rng.choice(values, 2) - rng.integers(0, 2, 2), WORD_LOW, WORD_HIGH)
-    if rng.random() < 0.05:
-        on, off = rng.choice([WORD_LOW, WORD_HIGH, bench.low, bench.high], 2)
+    on, off = bench.random_thresholds(rng, depth)
     area = int(np.count_nonzero(depth > rng.choice([on, off])))
     minimum = rng.choice([0, 1, area, max(area - 1, 0), area + 1, bench.pixels, bench.pixels + 1, 2**32 - 1],
                          p=[0.02, 0.1, 0.28, 0.2, 0.3, 0.04, 0.04, 0.02])  # fmt: skip
-    return Settings(int(on), int(off), int(minimum), int(rng.choice([0, 1, 2, 3], p=[0.2, 0.3, 0.3, 0.2])))
+    return Settings(on, off, int(minimum), int(rng.choice([0, 1, 2, 3], p=[0.2, 0.3, 0.3, 0.2])))
 
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
@@ -269,7 +182,7 @@ async def random_frames(dut: Any, gap: float) -> None:
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     events, want = Events(), []
     for number in range(FRAMES[gap]):
-        depth = random_map(bench, rng)
+        depth = bench.random_map(rng)
         settings, time = random_settings(bench, rng, depth), int(rng.integers(1 << 32))
         threshold = settings.off_threshold if events.touching else settings.on_threshold
         fields = numpy_fields(depth, threshold, bench.bottom_first)
@@ -287,28 +200,6 @@ async def random_frames(dut: Any, gap: float) -> None:
     changes = np.count_nonzero(np.diff(touching))
     assert changes > len(want) // 20, f"{changes} changes in {len(want)} frames: a poor test"
     assert sum(not fields[0] for _, fields in want) > len(want) // 50, "hardly a frame with nothing above: a poor test"
-
-
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def ties_and_edges(dut: Any) -> None:
-    """The first of equal peaks in stream order; a lone one in each corner; all and nothing above."""
-    bench = Bench(dut)
-    await bench.start()
-    bottom, right = bench.rows - 1, bench.columns - 1
-    corners = [(0, 0), (0, right), (bottom, 0), (bottom, right)]
-    settings = Settings(0, 0, 1, 1)
-    maps = [bench.lone(bench.high, place) for place in corners]
-    maps += [bench.lone(1, *corners), bench.lone(1, (1, 2), (1, 3), (2, 1)), bench.full(bench.high), bench.full(0)]
-    for depth in maps:
-        await bench.frame(depth, settings)
-    await bench.frame(bench.full(bench.low), Settings(WORD_LOW, WORD_LOW, 1, 1))
-    await bench.settle()
-    want = [numpy_fields(depth, 0, bench.bottom_first) for depth in maps]
-    want.append(numpy_fields(bench.full(bench.low), bench.low - 1, bench.bottom_first))
-    if bench.low == WORD_LOW:  # no threshold lies below the lowest code
-        want[-1] = numpy_fields(bench.full(bench.low), bench.low, bench.bottom_first)
-    assert [seen_fields(words) for words in bench.records] == want
-    assert bench.records[4][5] == (bottom << 16 if bench.bottom_first else 0), "not the first of the equals"
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
@@ -337,55 +228,25 @@ async def hysteresis(dut: Any) -> None:
     levels = [0, 15, 20, 21, 15, 11, 10, 15, 21, 21, 0, 15]
     for level in levels:
         await bench.frame(bench.lone(level, (1, 1), (2, 3)), settings)
-    for places in ([(1, 1), (2, 2)], [(1, 1)]):  # too small an area ends it
-        await bench.frame(bench.lone(30, *places), settings)
+    for positions in ([(1, 1), (2, 2)], [(1, 1)]):  # too small an area ends it
+        await bench.frame(bench.lone(30, *positions), settings)
     await bench.settle()
     status = [words[0] for words in bench.records]
     assert status == [0, 0, 0, 3, 1, 1, 4, 0, 3, 1, 4, 0, 3, 4]
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
-@cocotb.parametrize(debounce=[0, 1, 2, 5, 255 if REGRESS else 20])
-async def debounce(dut: Any, debounce: int) -> None:
-    """It takes so many frames in a row to begin and to end, and one less does not; a frame between starts anew."""
-    bench = Bench(dut)
-    await bench.start()
-    pressed, free = bench.full(1), bench.full(0)
-    settings, needed = Settings(0, 0, 1, debounce), max(debounce, 1)
-    turns = []
-    for one, other, state in ((pressed, free, False), (free, pressed, True)):
-        for depth in [one] * (needed - 1) + [other] * (needed > 1) + [one] * needed:
-            await bench.frame(depth, settings)
-        turns += [int(state)] * (needed - 1 + (needed > 1) + needed - 1) + [4 if state else 3]
-    await bench.settle()
-    assert [words[0] for words in bench.records] == turns
-
-
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def a_debounce_that_is_lowered(dut: Any) -> None:
-    """A lower debounce keeps the count: the next frame that differs changes the state."""
-    bench = Bench(dut)
-    await bench.start()
-    for frames in (9, 9, 9, 9, 2):
-        await bench.frame(bench.full(1), Settings(0, 0, 1, frames))
-    await bench.settle()
-    assert [words[0] for words in bench.records] == [0, 0, 0, 0, 3]
-
-
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def large_areas(dut: Any) -> None:
-    """A minimum beyond any frame is never reached, in any of its bits; 0 always is."""
+async def settings_in_every_bit(dut: Any) -> None:
+    """A minimum area in each of its bits, and each bit of the debounce, reach the decision of their own frame."""
     bench = Bench(dut)
     await bench.start()
     for bit in range(32):
-        if 1 << bit > bench.pixels:
-            await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, 1))
+        await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, 1 << bit % 8))
     await bench.frame(bench.full(1), Settings(0, 0, bench.pixels, 1))
-    await bench.frame(bench.full(0), Settings(0, 0, 1, 1))
-    await bench.frame(bench.full(0), Settings(0, 0, 0, 1))
+    for count in (8, 7):  # the count of frames so far is less than a debounce with one bit, and the next is not
+        for bit in range(count):
+            await bench.frame(bench.full(0), Settings(0, 0, 1, 1 << 7 - bit))
     await bench.settle()
-    status = [words[0] for words in bench.records]
-    assert status == [0] * (len(status) - 3) + [3, 4, 3]
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
@@ -406,41 +267,14 @@ async def interrupted_frames(dut: Any) -> None:
     bench = Bench(dut)
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for words in [*range(1, bench.pixels), *rng.integers(1, bench.pixels, 20)]:
-        await bench.frame(random_map(bench, rng), Settings(-3, 5, 1, 1), 7, words=int(words))
+    for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
+        await bench.frame(bench.random_map(rng), Settings(-3, 5, 1, 1), 7, words=int(words))
         if words % 3 == 0:
-            depth = random_map(bench, rng)
+            depth = bench.random_map(rng)
             await bench.frame(depth, Settings(0, 0, 1, 1), 8)
             await bench.settle()
             assert seen_fields(bench.records[-1]) == numpy_fields(depth, 0, bench.bottom_first)
             assert bench.records[-1][1:3] == (len(bench.records), 8)
-
-
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-@cocotb.parametrize(accepts=[*PROFILES, "rarely", "never"])
-async def packets(dut: Any, accepts: str) -> None:
-    """Whole packets of records, in order; a slow sink misses some, as many as are said to be lost."""
-    PROFILES["rarely"] = lambda rng: (rng.random() < 0.05 for _ in iter(int, 1))
-    PROFILES["never"] = lambda rng: iter(lambda: False, True)
-    bench = Bench(dut, accepts, gap=0.1)
-    await bench.start()
-    rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    for _ in range(60):
-        await bench.frame(random_map(bench, rng), Settings(0, -1, 3, 2))
-        if rng.random() < 0.2:
-            await bench.idle(int(rng.integers(3 * bench.pixels)))
-    await bench.settle()
-    bench.accepts = profile("none")
-    await bench.idle(3 * WORDS)
-    assert len(bench.records) == 60
-    assert len(bench.sent) == 60 - bench.lost
-    assert bench.sent == [bench.records[words[1] - 1] for words in bench.sent]
-    assert bench.sent[-1] == bench.records[-1], "the newest record was lost"
-    assert sorted(bench.sent, key=lambda words: words[1]) == bench.sent
-    if accepts == "never":
-        assert bench.lost == 58, "one is sent, one waits"
-    if accepts in ("none", "one_in_4"):
-        assert not bench.lost
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -473,10 +307,10 @@ async def resets(dut: Any) -> None:
     bench = Bench(dut, accepts="alternate")
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    total = bench.pixels + bench.latency + 2 * WORDS + 3
-    for clocks in sorted({*range(1, total, 3), *range(bench.pixels - 1, total)}):
-        await bench.frame(random_map(bench, rng), Settings(0, 0, 0, 1), 9, words=clocks)
-        await bench.idle(max(0, clocks - bench.pixels))
+    total = bench.beats + bench.latency + 2 * WORDS + 3
+    for clocks in sorted({*range(1, total, 3), *range(bench.beats - 1, total)}):
+        await bench.frame(bench.random_map(rng), Settings(0, 0, 0, 1), 9, words=clocks)
+        await bench.idle(max(0, clocks - bench.beats))
         await bench.reset()
         bench.records, bench.sent = [], []
         await bench.idle(int(rng.integers(0, bench.latency + 3)))

@@ -23,7 +23,8 @@ class Bench:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         self.dut, self.model = dut, ThresholdComparator()
         self.random = random.Random(cocotb.RANDOM_SEED)
-        (width,) = parameters(dut, "Width")
+        self.width, self.lanes = parameters(dut, "Width", "Lanes")
+        width = self.width
         self.lowest, self.highest = -(1 << width - 1), (1 << width - 1) - 1
         self.threshold, self.hold = self.highest, False
 
@@ -35,7 +36,11 @@ class Bench:
         await self.idle()
 
     async def edge(self, valid: Any, data: int = 0, user: Any = False) -> None:
-        self.dut.in_valid.value, self.dut.in_user.value, self.dut.in_data.value = int(valid), int(user), data
+        """One clock, with a depth in one of the lanes and depths that are no higher in the others."""
+        depths = [self.random.choice((data, self.lowest, max(data - 1, self.lowest))) for _ in range(self.lanes)]
+        depths[self.random.randrange(self.lanes)] = data
+        beat = sum((depth & (1 << self.width) - 1) << lane * self.width for lane, depth in enumerate(depths))
+        self.dut.in_valid.value, self.dut.in_frame_start.value, self.dut.in_data.value = int(valid), int(user), beat
         self.dut.threshold.value, self.dut.hold.value = self.threshold, int(self.hold)
         await RisingEdge(self.dut.clk)
 
@@ -43,6 +48,7 @@ class Bench:
         """A clock without a beat, whose data and user must not count."""
         await self.edge(False, self.highest, bool(self.random.getrandbits(1)))
         self.check()
+        self.model.idle(self.hold)
 
     def check(self) -> None:
         contact = bool(self.dut.contact.value)
@@ -97,7 +103,7 @@ async def clearing(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def hold(dut: Any) -> None:
-    """Held as long as the bit is set; cleared by the first beat after that."""
+    """Held as long as the bit is set; then it is what it would be without the bit."""
     bench = Bench(dut)
     await bench.start()
     bench.threshold, bench.hold = 10, True
@@ -105,10 +111,22 @@ async def hold(dut: Any) -> None:
     assert await bench.contact_after(0, 11)
     assert await bench.contact_after(0, 0, 0)
     bench.hold = False
+    await bench.idle()
+    await bench.idle()
+    assert not dut.contact.value, "it stayed after the bit was cleared between frames"
+
+    bench.hold = True
+    assert await bench.contact_after(0, 11)
+    bench.hold = False
     await bench.beat(0)
     await bench.idle()
-    assert dut.contact.value, "cleared inside a frame"
-    assert not await bench.contact_after(0, 0)
+    assert dut.contact.value, "cleared inside a frame that raised it"
+    bench.hold = True
+    assert await bench.contact_after(0, 0)
+    bench.hold = False
+    await bench.beat(0)
+    await bench.idle()
+    assert not dut.contact.value, "it stayed in a frame that did not raise it"
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")

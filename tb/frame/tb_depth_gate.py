@@ -11,17 +11,22 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.frame.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
-from tb.stream import CLOCK_NS, parameters
+from tb.stream import CLOCK_NS, depth_position, parameters
 
 ROWS, COLUMNS = 3, 5
-FIELDS = ("data", "user", "last", "frame_end")
+FIELDS = ("data", "position")
+
+
+def word_of(data: int, position: int) -> Word:
+    """Unpack a word from its pins."""
+    return Word(data, *(bool(position >> bit & 1) for bit in (2, 1, 0)))
 
 
 class Bench:
     """Drives one clock at a time.
 
     `frames` are the words of each frame that began, `waits` whether it came in with drop_frames at 0, `sent` the words
-    of each that left; `looked` are all words that were looked at.
+    of each that left; `tapped` are all words that were tapped.
     """
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
@@ -38,11 +43,11 @@ class Bench:
         self.frames: list[Any] = []
         self.waits: list[Any] = []
         self.dropped: list[Any] = []
-        self.looked: list[Any] = []
+        self.tapped: list[Any] = []
         # clocks
         self.left: list[Any] = []
         self.came: list[Any] = []
-        self.looks: list[Any] = []
+        self.taps: list[Any] = []
         self.stood, self.now = 0, 0
         self.monitor.forget()
 
@@ -68,8 +73,8 @@ class Bench:
         dut, ready, coin = self.dut, next(self.accepts), self.random.getrandbits
         dut.in_valid.value, dut.m_ready.value = int(word is not None), int(ready)
         dut.drop_frames.value = int(self.drop_frames)
-        for name, value in zip(FIELDS, word or (coin(self.width), coin(1), coin(1), coin(1)), strict=True):
-            getattr(dut, f"in_{name}").value = int(value)
+        data, *marks = word or (coin(self.width), coin(1), coin(1), coin(1))
+        dut.in_data.value, dut.in_position.value = int(data), depth_position(*marks)
         await RisingEdge(dut.clk)
         model = self.model
         assert bool(dut.en.value) == model.en, "en"
@@ -77,12 +82,12 @@ class Bench:
         assert bool(dut.m_valid.value) == bool(model.sending), "m_valid"
         if model.sending:
             assert self.pins("m") == model.sending[0], "a word offered"
-        look = model.look(ready)
-        assert bool(dut.look_valid.value) == (look is not None), "look_valid"
-        if look is not None:
-            assert self.pins("look") == look, "a word looked at"
-            self.looked.append(look)
-            self.looks.append(self.now)
+        tap = model.tap(ready)
+        assert bool(dut.tap_valid.value) == (tap is not None), "tap_valid"
+        if tap is not None:
+            assert self.pins("tap") == tap, "a word tapped"
+            self.tapped.append(tap)
+            self.taps.append(self.now)
         if model.sending and ready:
             self.left.append(self.now)
         moves = word is not None and model.en
@@ -96,8 +101,7 @@ class Bench:
         return moves
 
     def pins(self, name: str) -> Any:
-        data, *marks = (int(getattr(self.dut, f"{name}_{field}").value) for field in FIELDS)
-        return Word(data, *map(bool, marks))
+        return word_of(*(int(getattr(self.dut, f"{name}_{field}").value) for field in FIELDS))
 
     async def frame(self, rows: int = ROWS, columns: int = COLUMNS, words: Any = None, each: Any = None) -> None:
         """Send a frame, or its first words; `each`: called before every clock."""
@@ -124,8 +128,8 @@ class Bench:
 
     def check(self) -> Any:
         """Words of each frame that left: the first ones, all of them unless it was given up; every word was seen."""
-        assert self.looked == [word for frame in self.frames for word in frame]
-        words = [Word(data, *map(bool, marks)) for data, *marks in self.monitor.words]
+        assert self.tapped == [word for frame in self.frames for word in frame]
+        words = [word_of(*word) for word in self.monitor.words]
         sent = []
         for number, frame in enumerate(self.frames):
             count = 0
@@ -149,14 +153,14 @@ async def started(dut: Any, *arguments: Any) -> Any:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
 async def waiting(dut: Any, accepts: str, gap: float) -> None:
-    """Nothing is lost, and each word is looked at in the clock in which it leaves."""
+    """Nothing is lost, and each word is tapped in the clock in which it leaves."""
     bench = await started(dut, accepts)
     for _ in range(15):
         await bench.frame()
         await bench.idle(bench.random.randint(0, gap))
     await bench.drain()
     assert set(bench.check()) == {ROWS * COLUMNS}
-    assert bench.looks == bench.left
+    assert bench.taps == bench.left
     if accepts == "none":
         assert {left - came for came, left in zip(bench.came, bench.left, strict=True)} == {1}
 
@@ -164,7 +168,7 @@ async def waiting(dut: Any, accepts: str, gap: float) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
 async def dropping(dut: Any, accepts: str, gap: float) -> None:
-    """The pipeline never waits; each word is looked at a clock after it came, whatever the sink does."""
+    """The pipeline never waits; each word is tapped a clock after it came, whatever the sink does."""
     bench = await started(dut, accepts)
     bench.drop_frames = True
     await bench.idle()
@@ -175,9 +179,9 @@ async def dropping(dut: Any, accepts: str, gap: float) -> None:
     await bench.drain()
     sent = bench.check()
     assert bench.stood == stood, "the pipeline waited"
-    assert {look - came for came, look in zip(bench.came, bench.looks, strict=True)} == {1}
+    assert {tap - came for came, tap in zip(bench.came, bench.taps, strict=True)} == {1}
     if accepts == "none":
-        assert bench.left == bench.looks
+        assert bench.left == bench.taps
         assert not bench.dropped
     else:
         assert bench.dropped
@@ -191,7 +195,7 @@ async def dropping(dut: Any, accepts: str, gap: float) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
 async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
-    """When 0 turns to 1 with words in the gate, they are looked at first; when 1 turns to 0, none is twice."""
+    """When 0 turns to 1 with words in the gate, they are tapped first; when 1 turns to 0, none is twice."""
     bench, total = await started(dut), ROWS * COLUMNS
     for ready_after in range(8):
         await bench.reset()
@@ -255,11 +259,11 @@ async def resets(dut: Any, drop_frames: Any) -> None:
         bench.accepts = profile("none") if not drop_frames else profile("random")
         await bench.frame(words=words)
         bench.accepts = iter([False] * (1 << 20))
-        await bench.clock(bench.frames[-1][-1]._replace(user=False, frame_end=False) if words < 3 else None)
+        await bench.clock(bench.frames[-1][-1]._replace(frame_start=False, frame_end=False) if words < 3 else None)
         await bench.reset()
         bench.accepts = profile("none")
         await bench.idle(2)
-        assert not bench.looked
+        assert not bench.tapped
         assert not bench.left
         await bench.frame()
         await bench.drain()

@@ -15,7 +15,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.frame.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, video
-from tb.stream import CLOCK_NS, REGRESS, parameters
+from tb.stream import CLOCK_NS, REGRESS, parameters, raster
 
 TIMEOUT = 5
 RANDOM_FRAMES = 60
@@ -38,7 +38,7 @@ class Collector:
             await edge
             if dut.rst.value:
                 continue
-            faults = [name for name in FAULTS if getattr(dut, name).value]
+            faults = [name for bit, name in enumerate(FAULTS) if int(dut.faults.value) >> bit & 1]
             assert dut.en.value or not faults, f"{faults} while en is low: would count more than once"
             self.faults += faults
             if dut.en.value:
@@ -51,11 +51,9 @@ class Collector:
             assert not dut.out_frame_start.value
             return
         self.open.append(int(dut.out_data.value))
+        position = raster(self.rows, self.columns)[place]
+        assert int(dut.out_position.value) == position, f"out_position at pixel {place}"
         flags = {
-            "out_first_row": place < self.columns,
-            "out_first_column": place % self.columns == 0,
-            "out_last_row": place >= (self.rows - 1) * self.columns,
-            "out_last_column": place % self.columns == self.columns - 1,
             "out_frame_start": place == 0,
             "out_frame_end": place == self.rows * self.columns - 1,
         }

@@ -16,18 +16,19 @@ from tb.stream import (
     extremes,
     interrupt,
     parameters,
+    raster,
     send_apart,
     uniform,
 )
 
-FIELDS = ["gx", "gy", "first_row", "first_column", "last_row", "last_column"]
+FIELDS = ["gx", "gy", "position"]
 
 
 def pixels(gradient: Any) -> Any:
     """Gradients (frames, rows, columns, 2) as words of FIELDS."""
-    marks = np.zeros((*gradient.shape[:3], 4), np.int64)
-    marks[:, 0, :, 0] = marks[:, :, 0, 1] = marks[:, -1, :, 2] = marks[:, :, -1, 3] = 1
-    return np.concatenate((gradient, marks), axis=-1).reshape(-1, len(FIELDS)).tolist()
+    frames, rows, columns, _ = gradient.shape
+    positions = np.array(frames * raster(rows, columns)).reshape(frames, rows, columns, 1)
+    return np.concatenate((gradient, positions), axis=-1).reshape(-1, len(FIELDS)).tolist()
 
 
 async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = ()) -> None:

@@ -10,13 +10,15 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.gradient.gradient_lookup import Banks, gradient_codes, gradient_lookup
+from tactile_depth.common.banked_table import BankedTable
+from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.latency import GRADIENT_LOOKUP
 from tactile_depth.sensor import synthetic
+from tb.pixels import pack, unpack
 from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
 
-PIXEL = ["pixel", "place"]
-SLOPES = ["gx", "gy", "place"]
+PIXEL = ["pixel", "position"]
+SLOPES = ["gx", "gy", "position"]
 FIRST = 0b0011  # place of the first pixel: in the first row and the first column
 READ_CLOCKS = 2  # from table_read to its words
 
@@ -28,12 +30,6 @@ def every_colour(bits: int, random: Any) -> Any:
     low = np.array([random.getrandbits(8 - bits) for _ in range(3 * len(bins))]).reshape(-1, 3)
     colours = (top << (8 - bits) | low).astype(np.uint8)
     return np.concatenate((colours, colours[::-1]))
-
-
-def colours_of(pixels: int) -> Any:
-    """RGB of words R 23:16, B 15:8, G 7:0."""
-    words = np.array(pixels, np.int64)
-    return np.stack([words >> low & 255 for low in (16, 0, 8)], axis=-1).astype(np.uint8)
 
 
 class Lookup:
@@ -54,14 +50,14 @@ class Lookup:
         self.expected: list[Any] = []
         self.tables: set[Any] = set()
         dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
-        dut.in_place.value = 0
+        dut.in_position.value = 0
 
     async def start(self) -> None:
         """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
         both banks anew, and what they hold at power-up is tested on Icarus and by the top."""
         at_power_up = Lookup.banks is None
         if at_power_up:
-            Lookup.banks = Banks.of(self.power_up)
+            Lookup.banks = BankedTable.of(self.power_up)
         self.banks.wanted = self.banks.in_use = 0  # by the reset
         await self.bench.start()
         cocotb.start_soon(self.follow())
@@ -74,23 +70,28 @@ class Lookup:
 
     async def follow(self) -> None:
         dut, table = self.dut, self.banks.words[0]
+        named = 0  # bank of the frame that comes
+        changes = False  # the first pixel of a frame waits in front of the table
         while True:
             await RisingEdge(dut.clk)
             assert int(dut.table_in_use.value) == self.banks.in_use
-            if dut.table_read.value:  # in the clock of a change-over: of the bank that comes into use
-                self.to_read = self.banks.spare[int(dut.table_index.value)].tolist()
+            if changes and dut.en.value and not dut.rst.value:
+                self.banks.in_use, changes = named, False
+            if dut.table_read.value:  # in the clock of a change-over: of the bank that was left
+                self.to_read = self.banks.free[int(dut.table_index.value)].tolist()
             self.banks.wanted = int(dut.table_bank.value)
             if dut.table_write.value:
                 word = (dut.table_gx.value.to_signed(), dut.table_gy.value.to_signed())
                 self.banks.write(int(dut.table_index.value), word)
             if dut.rst.value:
-                table = self.banks.begin_frame()
+                table, changes = self.banks.begin_frame(), False
                 self.expected.clear()
             elif dut.en.value and dut.in_valid.value:
-                if int(dut.in_place.value) & FIRST == FIRST:
-                    table = self.banks.begin_frame()
-                    self.tables.add(self.banks.in_use)
-                pixel = colours_of(int(dut.in_pixel.value))
+                if int(dut.in_position.value) & FIRST == FIRST:
+                    named, changes = self.banks.wanted, True
+                    table = self.banks.words[named]
+                    self.tables.add(named)
+                pixel = unpack(int(dut.in_pixel.value))
                 self.expected.append(gradient_lookup(pixel, table, self.bits).copy())
 
     # Software.
@@ -132,8 +133,7 @@ class Lookup:
         random = self.bench.random
         marks = [FIRST | random.getrandbits(2) << 2]
         marks += [random.choice([m for m in range(16) if m & FIRST != FIRST]) for _ in colours[1:]]
-        red, green, blue = colours.astype(np.int64).T
-        return list(zip((red << 16 | blue << 8 | green).tolist(), marks, strict=True))
+        return list(zip(pack(colours).tolist(), marks, strict=True))
 
     async def frame(self) -> None:
         """Every colour; then compare."""

@@ -19,8 +19,8 @@ from tactile_depth.latency import QUADRATIC_GRADIENT
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
 
 COLOURS = ["red", "green", "blue"]
-DEVIATIONS = [*COLOURS, "place"]
-SLOPES = ["gx", "gy", "place"]
+DEVIATIONS = [*COLOURS, "position"]
+SLOPES = ["gx", "gy", "position"]
 WORDS = (2, 3, 6)  # axes, colours, terms
 COUNT = 36
 READ_CLOCKS = 3  # from table_read to its word
@@ -34,7 +34,7 @@ def place(row: Any, column: Any, rows: int, columns: int) -> Any:
 class Gradient:
     """The device, its reference, and what software does at the words."""
 
-    in_use = 0
+    in_use = [0] * len(COLOURS)  # bank of each colour: they change over in turn
     banks: Any = None  # what stands in them; no reset touches it, so the next test begins with it
 
     def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
@@ -49,20 +49,19 @@ class Gradient:
         # words and pixels (row, column, colours) taken; banks that frames used
         self.frames: list[Any] = []
         self.used: set[Any] = set()
-        self.wanted = 0
         dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
-        dut.in_place.value = 0
+        dut.in_position.value = 0
 
     async def start(self) -> None:
         """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
         both banks anew, and what they hold at power-up is tested on Icarus."""
         at_power_up = Gradient.banks is None
         if at_power_up:
-            lines = Path("quadratic.hex").read_text().split()
-            raw = np.array([int(line, 16) for line in lines]).reshape(COUNT, 2).T
-            Gradient.banks = raw - (raw >> (self.word_width - 1) << self.word_width)
+            lines = [line for p in range(COUNT // 6) for line in Path(f"quadratic_{p}.hex").read_text().split()]
+            raw = np.array([int(line, 16) for line in lines])
+            Gradient.banks = np.stack(2 * [raw - (raw >> (self.word_width - 1) << self.word_width)])
         await self.bench.start()
-        Gradient.in_use = 0  # by the reset
+        Gradient.in_use = [0] * len(COLOURS)  # by the reset
         cocotb.start_soon(self.follow())
         if at_power_up and cocotb.SIM_NAME.lower().startswith("verilator"):
             for words in self.banks[::-1].copy():
@@ -75,22 +74,29 @@ class Gradient:
 
     async def follow(self) -> None:
         dut = self.dut
+        named = 0  # bank of the frame that comes
+        begun: list[int] = []  # clocks with en since each first pixel was taken
         while True:
             await RisingEdge(dut.clk)
-            assert int(dut.table_in_use.value) == self.in_use
-            self.wanted = int(dut.table_bank.value)
+            assert int(dut.table_in_use.value) == self.in_use[-1]
+            wanted = int(dut.table_bank.value)
             if dut.table_write.value:
-                assert self.wanted == self.in_use, "written while a change-over is due"
-                self.banks[1 - self.in_use][int(dut.table_index.value)] = dut.table_word.value.to_signed()
+                assert [wanted] * len(COLOURS) == self.in_use, "written while a change-over is due"
+                self.banks[1 - wanted][int(dut.table_index.value)] = dut.table_word.value.to_signed()
             if dut.rst.value:
-                Gradient.in_use = self.wanted
+                named, begun, Gradient.in_use = wanted, [], [wanted] * len(COLOURS)
                 self.frames.clear()
-            elif dut.en.value and dut.in_valid.value:
-                marks = int(dut.in_place.value)
+            elif dut.en.value:
+                begun = [age + 1 for age in begun if age < len(COLOURS)]
+                for colour in (age - 1 for age in begun):
+                    self.in_use[colour] = named
+            if not dut.rst.value and dut.en.value and dut.in_valid.value:
+                marks = int(dut.in_position.value)
                 if marks & 3 == 3:
-                    Gradient.in_use = self.wanted
-                    self.used.add(self.in_use)
-                    self.frames.append((self.banks[self.in_use].copy(), []))
+                    named = wanted
+                    begun.append(0)
+                    self.used.add(named)
+                    self.frames.append((self.banks[named].copy(), []))
                     row = column = 0
                 elif marks & 2:
                     row, column = row + 1, 0
@@ -99,12 +105,15 @@ class Gradient:
                 colours = [getattr(dut, f"in_{colour}").value.to_signed() for colour in COLOURS]
                 self.frames[-1][1].append((row, column, colours))
             if dut.table_read.value:  # in the clock of a change-over: of the bank that is left
-                self.to_read = int(self.banks[1 - self.in_use][int(dut.table_index.value)])
+                index = int(dut.table_index.value)
+                self.to_read = int(self.banks[1 - self.in_use[index // 6 % len(COLOURS)]][index])
 
     # Software.
 
     async def write(self, index: Any, word: Any) -> None:
-        """One word of the bank not in use, in one clock, whether or not the pipeline moves."""
+        """Write one word of the bank not in use in one clock, once no change-over is due, `en` or not."""
+        while len({*self.in_use, int(self.dut.table_bank.value)}) > 1:
+            await RisingEdge(self.dut.clk)
         for pin, value in (("write", 1), ("index", index), ("word", word)):
             getattr(self.dut, f"table_{pin}").value = int(value)
         await RisingEdge(self.dut.clk)
@@ -129,7 +138,7 @@ class Gradient:
 
     async def commit(self) -> None:
         """Ask for the other bank; the frames that begin from now on use it."""
-        self.dut.table_bank.value = 1 - self.in_use
+        self.dut.table_bank.value = 1 - int(self.dut.table_bank.value)
         await RisingEdge(self.dut.clk)
 
     async def use(self, words: Any) -> None:
@@ -229,7 +238,7 @@ async def both_banks(dut: Any, gap: float, pause: float) -> None:
         await device.commit()
         await device.send(5, 8)
         await device.compare()
-        np.testing.assert_array_equal(device.banks[device.in_use], words)
+        np.testing.assert_array_equal(device.banks[device.in_use[-1]], words)
     assert device.used == {0, 1}
 
 
@@ -271,7 +280,7 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
                 await device.read(random.randrange(COUNT))
             await ClockCycles(dut.clk, random.randrange(1, 4))
             await device.commit()
-            while running and device.in_use != int(dut.table_bank.value):
+            while running and device.in_use[-1] != int(dut.table_bank.value):
                 if random.random() < 0.5:  # while the change-over is due, in the clock of it, after it
                     await device.read(random.randrange(COUNT))
                 else:

@@ -14,6 +14,7 @@ from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import BACK_SUBSTITUTION, FORWARD_ELIMINATION
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination
+from tb.lanes import LanesMonitor, check_lanes
 from tb.stream import MANY, check_bursts, configuration, corners, sample, uniform, with_and_without_en
 
 MODELS = {"forward_elimination": forward_elimination, "back_substitution": back_substitution}
@@ -37,6 +38,11 @@ async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> 
         words = np.full(shape, (1 << width - 1) - 1)
     else:
         words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+    if config.lanes > 1 and core == "back_substitution":
+        sink = LanesMonitor(dut, "out", config.columns, config.lanes)
+        stack = words.reshape(frames, config.rows, config.columns)
+        await check_lanes(dut, stack, model, BACK_SUBSTITUTION, lanes=config.lanes, sink=sink, **behaviour)
+        return
     behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.rows}
     await check_bursts(dut, words, model, LATENCIES[core], **behaviour)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_stack against its model: positions, latency, rows without a pause; gaps, pauses, reset."""
+"""frame_stack against its model: positions, latency, rows without a pause in each lane; gaps, pauses, reset."""
 
 from typing import Any
 
@@ -7,15 +7,18 @@ import cocotb
 
 from tactile_depth.latency import FRAME_STACK
 from tactile_depth.poisson.frame_stack import frame_stack
+from tb.lanes import LanesMonitor
 from tb.stream import check_frame_memory, parameters, places, sample
 
 FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
 async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
-    size, width, rows = parameters(dut, "Size", "Width", "Rows")
+    size, width, rows, lanes = parameters(dut, "Size", "Width", "Rows", "Lanes")
     words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a position stays
-    await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, **behaviour)
+    if lanes > 1:
+        behaviour["sink"] = LanesMonitor(dut, "out", size, lanes)
+    await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, lanes=lanes, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

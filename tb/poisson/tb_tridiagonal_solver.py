@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tridiagonal_solver against its model: codes, fixed latency, one frame every rows x columns clocks, saturations."""
+"""tridiagonal_solver against its model: codes, fixed latency of each row, throughput, saturations."""
 
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import tridiagonal_solver_latency
 from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
+from tb.lanes import BeatMonitor
 from tb.stream import (
     MANY,
     Bench,
@@ -31,10 +32,10 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
-    sink = StreamMonitor(dut, "out", "start", ["data"], length=config.columns)
+    sink = BeatMonitor(dut, "out", config.columns // config.lanes, config.lanes)
     await bench.start()
     words = f.reshape(-1, 1).tolist()
-    latency = tridiagonal_solver_latency(config.columns)
+    latency = tridiagonal_solver_latency(config.columns, config.lanes)
 
     async def send(count: int) -> None:
         await send_apart(bench, driver, words[:count], gap, pixels)
@@ -54,6 +55,8 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     check_frame_starts([sink], config.rows)
     last_pixels, first_depths = source.starts[pixels - 1 :: pixels], sink.starts[:: config.rows]
     assert {depth - pixel for depth, pixel in zip(first_depths, last_pixels, strict=True)} == {latency}
+    rows_apart = np.diff(np.array(sink.starts).reshape(-1, config.rows), axis=1)
+    assert np.all(rows_apart == config.columns // config.lanes), "a frame leaves with a pause between two rows"
     if not gap:
         assert set(np.diff(first_depths)) == {pixels}
     return monitor.saturations

@@ -11,4 +11,4 @@ from commands.common.repository import ROOT
 
 @pytest.mark.structures("divider", verilator=[(4,)], icarus=[(4,)], regress=[(33,)], regress_verilator=[(33,)])
 def test_rtl(run_tb: Callable[..., None], divider: Any) -> None:
-    run_tb("uart_receive", [], {"Divider": divider}, files=[ROOT / "boards" / "ulx3s" / "uart_receive.sv"])
+    run_tb("uart_receive", {"Divider": divider}, files=[ROOT / "boards" / "ulx3s" / "uart_receive.sv"])

@@ -14,8 +14,6 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.rom_files import write_floor
 from tb.stream import places
 
-SOURCES = ["auto_zero.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
-
 
 @pytest.mark.structures(
     "columns rows block_log2 width",
@@ -28,7 +26,6 @@ def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: i
     floor = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
     run_tb(
         "auto_zero",
-        SOURCES,
         {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width},
         roms=lambda folder: write_floor(folder, floor, width),
     )

@@ -18,8 +18,6 @@ from tactile_depth.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Co
 from tactile_depth.rom_files import write_gains
 from tb.gains import Grid
 
-SOURCES = ["flat_field.sv", "gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "delay_line.sv"]
-
 
 @pytest.mark.structures(
     "columns rows block_log2 quadratic",
@@ -32,7 +30,6 @@ def test_rtl(run_tb: Any, columns: int, rows: int, block_log2: int, quadratic: A
     config = Grid(rows, columns, block_log2, Format(GAIN_WIDTH, 0))
     run_tb(
         "flat_field",
-        SOURCES,
         flat_field_parameters(config, quadratic),  # type: ignore[arg-type]
         roms=lambda folder: write_gains(folder, unit_gains(config)),  # type: ignore[arg-type]
     )

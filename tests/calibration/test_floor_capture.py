@@ -11,8 +11,6 @@ from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
 from tactile_depth.configuration import Configuration
 from tb.stream import REGRESS
 
-SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
-
 
 @pytest.mark.structures(
     "columns rows block_log2 width largest",
@@ -28,7 +26,7 @@ SOURCES = ["floor_capture.sv", "ram.sv", "round_saturate.sv"]
 )
 def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, largest: int) -> None:
     parameters = {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "MaxLog2": largest}
-    run_tb("floor_capture", SOURCES, parameters)
+    run_tb("floor_capture", parameters)
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])

@@ -9,8 +9,6 @@ from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
 from tactile_depth.rom_files import write_gains
 from tb.gains import first_gains
 
-SOURCES = ["gain_map.sv", "ram.sv", "multiply.sv", "round_saturate.sv"]
-
 
 @pytest.mark.structures(
     "columns rows block_log2 channels width",
@@ -23,7 +21,6 @@ def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: i
     gains = first_gains(rows >> block_log2, columns >> block_log2, channels, width)
     run_tb(
         "gain_map",
-        SOURCES,
         {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Channels": channels, "Width": width},
         roms=lambda folder: write_gains(folder, gains, width),
     )

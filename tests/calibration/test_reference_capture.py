@@ -26,7 +26,6 @@ def test_rtl(run_tb: Any, columns: int, rows: int, largest: Any) -> None:
     choices: dict[str, Any] = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
     run_tb(
         "reference_capture",
-        ["reference_capture.sv"],
         reference_capture_parameters(Configuration(**choices)) | {"MaxLog2": largest},
         environment={"CONFIGURATION": json.dumps(choices)},
     )
@@ -44,9 +43,9 @@ def test_the_largest_sum_fits_its_word(columns: int, largest: int) -> None:
 def test_a_broken_frame_starts_afresh() -> None:
     config = Configuration(columns=16, rows=8, solver="tridiagonal")
     frames = [np.full((8, 16, 3), level, np.uint8) for level in (50, 60, 100, 102, 30)]
-    found = reference_capture(frames, [False, True, False, False, False], [1, 1, 1, 2, 2], 8, config)
-    assert found is not None
-    index, gains = found
+    captured = reference_capture(frames, [False, True, False, False, False], [1, 1, 1, 2, 2], 8, config)
+    assert captured is not None
+    index, gains = captured
     assert index == 3
     assert np.all(gains == round(2**27 / 101))
     assert reference_capture(frames[:3], [False, True, False], [1, 1, 1], 8, config) is None

@@ -123,7 +123,7 @@ def test_memory_model_is_the_macro_at_45_nm() -> None:
     assert memory_model.energy_pj(64, 45, 1.1) == pytest.approx(5.3)
     assert memory_model.energy_pj(32, 90, 2.2) == pytest.approx(0.5 * 5.3 * 2 * 4)
     assert memory_model.area_um2(1, 90) == pytest.approx(4 * 0.53)
-    assert (memory_model.access_ns(90), memory_model.setup_ns(90)) == (0.61, 0.1)
+    assert memory_model.times_ns(90) == (0.61, 0.1)
 
 
 @pytest.mark.parametrize(("solver", "logic", "bits", "milliwatts"), [
@@ -420,7 +420,7 @@ def test_missing_tool_is_one_line(tmp_path: Path, monkeypatch: Any) -> None:
 
 def test_exit_status() -> None:
     result = subprocess.run(
-        [sys.executable, "-m", "commands.hardware.asic", "LIB=none.lib", "NODE_NM=90"],
+        [sys.executable, "-m", "commands", "asic", "LIB=none.lib", "NODE_NM=90"],
         capture_output=True,
         text=True,
         check=False,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make baselines: every method that is installed is right, a wrong one is refused, bad input is told."""
+"""make baselines: every method that is installed is right, a wrong one is refused, bad input is named."""
 
 import json
 import time
@@ -19,7 +19,7 @@ from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 
 
 @pytest.mark.parametrize(
-    ("given", "says"),
+    ("word", "says"),
     [
         ("GRID=64", "unknown variable"),
         ("GRIDS=64,100", "powers of two from 16 to 512"),
@@ -29,9 +29,9 @@ from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
         ("CLOCK_MHZ=nan", "a number from"),
     ],
 )
-def test_bad_input(given: Any, says: str) -> None:
+def test_bad_input(word: Any, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        baselines.parse([given])
+        baselines.parse([word])
 
 
 def test_out_is_a_file(tmp_path: Path) -> None:
@@ -75,10 +75,13 @@ def test_a_slow_method_is_cut_short() -> None:
 
 
 def test_the_pipeline_beside_them() -> None:
-    for row in baselines.pipeline((64,), 100.0):
-        config = Configuration(columns=64, solver=row["solver"])
+    rows = baselines.pipeline((64,), 100.0)
+    assert [(row["solver"], row["lanes"]) for row in rows] == [("spectral", 1), ("tridiagonal", 1), ("tridiagonal", 8)]
+    for row in rows:
+        config = Configuration(columns=64, solver=row["solver"], lanes=row["lanes"])
         assert row["first_depth"] == last_pixel_to_first_depth(config)
-        assert row["last_depth"] == first_depth_latency(config)  # a frame takes as long to leave as to come
+        leaves = first_depth_latency(config) - row["first_depth"] + 1  # with one lane a frame takes as long as to come
+        assert row["last_depth"] == row["first_depth"] + leaves // row["lanes"] - 1
         assert row["last_depth_us"] == row["last_depth"] / 100
 
 

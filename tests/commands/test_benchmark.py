@@ -15,7 +15,7 @@ from tactile_depth.errors import InputError
 
 
 @pytest.mark.parametrize(
-    ("given", "says"),
+    ("word", "says"),
     [
         ("AFTER=HEAD", "unknown variable"),
         ("ROUNDS=3", "a whole number from 10"),
@@ -23,9 +23,9 @@ from tactile_depth.errors import InputError
         ("BEFORE=--all", "no commit of this clone"),
     ],
 )
-def test_bad_input(given: Any, says: str) -> None:
+def test_bad_input(word: Any, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        parse([given])
+        parse([word])
 
 
 def test_a_commit_is_named_by_its_hash() -> None:
@@ -36,7 +36,7 @@ def test_a_commit_is_named_by_its_hash() -> None:
 
 def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="is a file: give a folder"):
         benchmark.run(parse(["BEFORE=HEAD", f"OUT={tmp_path / 'file'}"]))
 
 

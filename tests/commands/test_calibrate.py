@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make calibrate: what it writes and prints, and what is said of bad variables. test_fitting.py tests the fit."""
+"""make calibrate: what it writes and prints, and errors for bad variables. test_fitting.py tests the fit."""
 
 import re
 import shutil
@@ -93,7 +93,7 @@ def test_what_is_left_out_is_printed(folder: Path, tmp_path: Path, capsys: pytes
 
 
 @pytest.mark.parametrize(
-    ("variables", "said"),
+    ("variables", "message"),
     [
         (["BITS=7"], "BITS=7: accepted is a whole number from 1 to 6"),
         (["BITS=x"], "BITS=x"),
@@ -107,8 +107,8 @@ def test_what_is_left_out_is_printed(folder: Path, tmp_path: Path, capsys: pytes
         (["OUT=x.txt"], "OUT=x.txt: give the name of an .npz file"),
     ],
 )
-def test_bad_variables_are_named(variables: Any, said: Any) -> None:
-    with pytest.raises(InputError, match=re.escape(said)):
+def test_bad_variables_are_named(variables: Any, message: Any) -> None:
+    with pytest.raises(InputError, match=re.escape(message)):
         parse(variables)
 
 
@@ -125,7 +125,7 @@ def test_a_result_that_cannot_be_written_is_named_before_the_fit(tmp_path: Path,
 
 
 def test_bad_input_ends_with_status_2_and_one_line(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "commands.run.calibrate", f"PRESSES={tmp_path}", f"OUT={tmp_path}/mine.npz"]
+    command = [sys.executable, "-m", "commands", "calibrate", f"PRESSES={tmp_path}", f"OUT={tmp_path}/mine.npz"]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 2
     assert re.fullmatch(r"make calibrate: .*: no presses\.csv in it: .*\n", result.stderr)

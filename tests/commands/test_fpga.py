@@ -120,7 +120,7 @@ def test_only_registers_without_reset_are_packed() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "TARGET= is unknown: accepted are ulx3s"),
+        ([], "TARGET= is unknown: accepted is ulx3s"),
         (["TARGET=ulx3s", "SEEDS=1,x"], "SEEDS=1,x: accepted are different whole numbers"),
         (["TARGET=ulx3s", "SEEDS=2,2"], "SEEDS=2,2"),
         (["TARGET=ulx3s", "GAPS=0.5"], "GAPS=0.5: unknown variable"),
@@ -138,10 +138,10 @@ def test_bad_input(arguments: Any, message: str, tmp_path: Path) -> None:
 
 
 def test_bad_input_is_one_line() -> None:
-    command = [sys.executable, "-m", "commands.hardware.fpga", "TARGET=ulx4m"]
+    command = [sys.executable, "-m", "commands", "fpga", "TARGET=ulx4m"]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 2
-    assert result.stderr == "make fpga: TARGET=ulx4m is unknown: accepted are ulx3s\n"
+    assert result.stderr == "make fpga: TARGET=ulx4m is unknown: accepted is ulx3s\n"
 
 
 @pytest.mark.parametrize(("error", "logs"), [(RuntimeError, 1), (InputError, 0), (KeyboardInterrupt, 0), (None, 0)])

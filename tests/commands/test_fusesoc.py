@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """tactile_depth.core lists hdl/ and nothing else; its generator writes what the top reads; its part is the script's."""
 
+import json
+import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +12,11 @@ from typing import Any
 
 import pytest
 import yaml
+from cocotb_tools.check_results import get_results
+from cocotb_tools.config import pygpi_entry_point
+from find_libpython import find_libpython
 
-from commands.common import repository
+from commands.common import repository, simulator
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import top_parameters
 
@@ -55,6 +61,79 @@ def test_the_generator_writes_parameters_and_tables(tmp_path: Path) -> None:
     files = {name for file in made["filesets"]["tables"]["files"] for name in file}
     assert files == {path.name for path in tmp_path.glob("*.hex")}
     assert "gradient.hex" in files
+
+
+def test_with_a_name_it_writes_a_module(tmp_path: Path) -> None:
+    assert generated(tmp_path, {"NAME": "finger", "SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}).returncode == 0
+    made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
+    assert "parameters" not in made
+    assert made["filesets"]["module"]["files"] == ["tactile_depth_finger.sv"]
+    places = {place["copyto"] for file in made["filesets"]["tables"]["files"] for place in file.values()}
+    assert "finger/gradient.hex" in places
+    assert 'TableFolder = "finger/"' in (tmp_path / "tactile_depth_finger.sv").read_text()
+
+
+def fusesoc(folder: Path, *arguments: str, **environment: str) -> None:
+    """Run FuseSoC in a folder, on a copy of examples/fusesoc beside this repository."""
+    binary = Path(sys.executable).parent / "fusesoc"
+    if not binary.exists():
+        pytest.skip("fusesoc is not installed: pip install -r requirements-hardware.txt")
+    for simulation in simulator.SIMULATORS:
+        simulator.check(simulation)
+    project = folder / "project"
+    shutil.copytree(repository.ROOT / "examples" / "fusesoc", project)
+    roots = ["--cores-root", str(project), "--cores-root", str(repository.ROOT)]
+    result = subprocess.run(
+        [str(binary), *roots, "run", *arguments],
+        cwd=folder,
+        env=os.environ | {"PATH": f"{binary.parent}:{os.environ['PATH']}"} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "unable to open" not in (result.stdout + result.stderr).lower()
+
+
+def cocotb_environment(*paths: Path, **variables: str) -> dict[str, str]:
+    """Return what cocotb 2.1 needs and FuseSoC does not set."""
+    path = os.pathsep.join(map(str, paths))
+    return {"GPI_USERS": f"{find_libpython()};{pygpi_entry_point()}", "PYTHONPATH": path, **variables}
+
+
+def passed(folder: Path) -> int:
+    """Return the number of cocotb tests that passed, and none failed."""
+    (results,) = folder.rglob("results.xml")
+    count, failed = get_results(results)
+    assert not failed, results.read_text()
+    return count
+
+
+def test_a_project_that_depends_on_this_one_is_linted(tmp_path: Path) -> None:
+    """-Wall is clean, because the project gets the waivers of this one."""
+    fusesoc(tmp_path, "--target", "lint", "fingertip")
+    (files,) = tmp_path.rglob("*.vc")
+    listed = files.read_text().split()
+    names = [Path(name).name for name in listed]
+    assert names.index("verilator.vlt") < names.index("default_parameters_pkg.sv")
+    assert "-Wall" in listed
+
+
+def test_a_project_that_depends_on_this_one_is_simulated(tmp_path: Path) -> None:
+    """Its own testbench finds the depth of the model, so the configuration and the tables are inside."""
+    environment = cocotb_environment(tmp_path / "project", repository.ROOT / "models", COCOTB_RANDOM_SEED="1")
+    fusesoc(tmp_path, "--target", "sim", "fingertip", **environment)
+    assert passed(tmp_path) == 1
+
+
+def test_the_target_sim_runs_the_testbench_of_the_whole(tmp_path: Path, core: Any) -> None:
+    assert core["targets"]["sim"]["flow_options"]["cocotb_module"] == repository.testbench("tactile_depth")
+    choices = json.dumps({"columns": 16, "rows": 8, "solver": "tridiagonal"})
+    environment = cocotb_environment(
+        repository.ROOT, repository.ROOT / "models", COCOTB_RANDOM_SEED="1", LEVEL="first", CONFIGURATION=choices
+    )
+    fusesoc(tmp_path, "--target", "sim", "tactile_depth", **environment)
+    assert passed(tmp_path) == 2
 
 
 def test_the_generator_refuses_what_it_does_not_know(tmp_path: Path) -> None:

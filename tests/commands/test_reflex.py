@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make reflex: the command comes from the pin, its delays are drawn as stated, wrong pins and bad input are told."""
+"""make reflex: the command comes from the pin, its delays are drawn as stated, wrong pins and bad input are named."""
 
 import json
 from dataclasses import replace
@@ -21,7 +21,7 @@ TRIALS = 20_000
 
 
 @pytest.mark.parametrize(
-    ("given", "says"),
+    ("word", "says"),
     [
         ("NN=3", "unknown variable"),
         ("N", "unknown variable"),
@@ -35,9 +35,9 @@ TRIALS = 20_000
         ("CLOCK_MHZ=1", "come faster: accepted is 6.554"),
     ],
 )
-def test_bad_input(given: Any, says: str) -> None:
+def test_bad_input(word: Any, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        reflex.parse([given])
+        reflex.parse([word])
 
 
 def test_an_unknown_simulator(tmp_path: Path) -> None:
@@ -73,8 +73,8 @@ def test_delays_are_distributed_as_stated() -> None:
     np.testing.assert_allclose(
         shares, np.full(reflex_model.DRIVER_BUFFERS, 1 / reflex_model.DRIVER_BUFFERS), atol=error, rtol=0
     )
-    found = reflex_model.times(setup(), draws, np.zeros(TRIALS, int), np.zeros(TRIALS), np.zeros(TRIALS))
-    servo = found.motion - found.command
+    result = reflex_model.times(setup(), draws, np.zeros(TRIALS, int), np.zeros(TRIALS), np.zeros(TRIALS))
+    servo = result.motion - result.command
     assert servo.mean() == pytest.approx(reflex_model.SERVO_MS, abs=error * reflex_model.SERVO_SPREAD_MS)
     assert servo.std() == pytest.approx(reflex_model.SERVO_SPREAD_MS, abs=error * reflex_model.SERVO_SPREAD_MS)
 
@@ -86,10 +86,10 @@ def test_a_trial_by_hand() -> None:
     assert one.depth(0.4, 2) == pytest.approx(20e-3 * (6.0 - 0.625))
     assert one.depth(0.4, -1) == 0
     assert one.depth(0.4, 1000) == reflex_model.STOP_MM
-    found = reflex_model.times(one, draws, np.array([2]), np.array([0.25]), np.array([0.5]))
-    assert found.command[0] == pytest.approx(6.0 + 0.9 * 2.5 + 3 + 2 * 2.5 + 0.25 + 0.5)
-    assert found.motion[0] == pytest.approx(found.command[0] + reflex_model.SERVO_MS + reflex_model.SERVO_SPREAD_MS)
-    assert sum(part[0] for part in found.parts.values()) == pytest.approx(found.motion[0])
+    result = reflex_model.times(one, draws, np.array([2]), np.array([0.25]), np.array([0.5]))
+    assert result.command[0] == pytest.approx(6.0 + 0.9 * 2.5 + 3 + 2 * 2.5 + 0.25 + 0.5)
+    assert result.motion[0] == pytest.approx(result.command[0] + reflex_model.SERVO_MS + reflex_model.SERVO_SPREAD_MS)
+    assert sum(part[0] for part in result.parts.values()) == pytest.approx(result.motion[0])
 
 
 def test_rank_sum() -> None:
@@ -130,13 +130,13 @@ def test_pins_that_are_wrong(monkeypatch: pytest.MonkeyPatch, events: Any, says:
 def test_pins_that_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reflex, "last_pixel_to_first_depth", lambda config: 30)
     events: Any = [("t", (1,)), ("t", (10,)), ("d", (40,)), ("b", (45,)), ("c", (46,))]
-    found, faults = reflex.decisions(
+    result, faults = reflex.decisions(
         bench.Played(np.zeros(0), events, {}),
         [reflex.Sent(0, 2, True)],
         Configuration(columns=16),
     )
     assert faults == []
-    assert found == [reflex.Decision(2, 45, 36, 30, 5, 1)]
+    assert result == [reflex.Decision(2, 45, 36, 30, 5, 1)]
 
 
 def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -46,13 +46,13 @@ def started(command: Any, folder: Path) -> Any:
 
 def members(session: Any) -> Any:
     """Command lines of the living processes of a session."""
-    found = {}
+    lines = {}
     for entry in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
             fields = (entry / "stat").read_text().rpartition(")")[2].split()
             if fields[0] != "Z" and int(fields[3]) == session:
-                found[int(entry.name)] = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
-    return found
+                lines[int(entry.name)] = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+    return lines
 
 
 def wait_for(condition: Any, what: Any) -> None:
@@ -77,9 +77,9 @@ def test_a_signal_ends_the_command(tmp_path: Path, number: Any) -> None:
     process = started([sys.executable, "-m", "commands", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], ROOT)
     wait_for_the_simulator(process)
     os.kill(process.pid, number)
-    _, said = process.communicate(timeout=WAIT_S)
+    _, errors = process.communicate(timeout=WAIT_S)
     assert process.returncode == 128 + number
-    assert said == f"make sim: {ENDS[number]}\n"
+    assert errors == f"make sim: {ENDS[number]}\n"
     assert members(process.pid) == {}
     assert list(tmp_path.iterdir()) == []
 
@@ -104,9 +104,9 @@ def test_a_signal_to_the_terminal_ends_make_and_its_command(tmp_path: Path, make
     process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
     wait_for_the_simulator(process)
     os.killpg(process.pid, number)
-    _, said = process.communicate(timeout=WAIT_S)
+    _, errors = process.communicate(timeout=WAIT_S)
     assert process.returncode != 0
-    assert [line for line in said.splitlines() if not line.startswith("make: ***")] == [f"make sim: {ENDS[number]}"]
+    assert [line for line in errors.splitlines() if not line.startswith("make: ***")] == [f"make sim: {ENDS[number]}"]
     wait_for(lambda: members(process.pid) == {}, "the end of every process")
     assert list(tmp_path.iterdir()) == [makefile]
 
@@ -115,9 +115,9 @@ def test_a_signal_to_make_alone_ends_its_command(tmp_path: Path, makefile: Any) 
     process = started(["make", "sim", *LONG, f"OUT={tmp_path / 'a' / 'out'}"], makefile)
     wait_for_the_simulator(process)
     os.kill(process.pid, signal.SIGTERM)
-    _, said = process.communicate(timeout=WAIT_S)
+    _, errors = process.communicate(timeout=WAIT_S)
     assert process.returncode != 0
-    assert "make sim: terminated by SIGTERM\n" in said
+    assert "make sim: terminated by SIGTERM\n" in errors
     wait_for(lambda: members(process.pid) == {}, "the end of every process")
     assert list(tmp_path.iterdir()) == [makefile]
 
@@ -128,9 +128,9 @@ def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path: Path) -> 
     while "numpy" not in (line := process.stderr.readline()):
         lines.append(line)
     os.kill(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=WAIT_S)
+    _, errors = process.communicate(timeout=WAIT_S)
     assert process.returncode == 130
-    assert [line for line in said.splitlines() if not line.startswith("import time:")] == ["make sim: interrupted"]
+    assert [line for line in errors.splitlines() if not line.startswith("import time:")] == ["make sim: interrupted"]
 
 
 def test_an_ignored_signal_stays_ignored() -> None:

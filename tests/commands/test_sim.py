@@ -62,8 +62,8 @@ def test_every_grid_on_every_simulator(tmp_path: Path, simulator: str, size: int
     ("rows", "columns", "chosen"), [(8, 16, "icarus"), pytest.param(240, 256, "verilator", marks=pytest.mark.regress)]
 )
 def test_rectangles(tmp_path: Path, rows: int, columns: int, boundary: str, chosen: Any) -> None:
-    given = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
-    report = run(tmp_path, *given, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
+    words = ["FRAMES=contacts", f"ROWS={rows}", f"COLS={columns}", f"SIM={chosen}"]
+    report = run(tmp_path, *words, f"BOUNDARY={boundary}", "SOLVER=tridiagonal")
     assert report["grid"] == [rows, columns]
     assert only(report["frame_interval_cycles"][1:]) == rows * columns
     assert np.load(tmp_path / "out" / "depth.npy").shape == (8, rows, columns)
@@ -208,9 +208,9 @@ def _press(tmp_path: Path, name: str = "ball") -> list[Any]:
     drawn.sensor.save(tmp_path / "sensor.npz")
     for file, image in (("press.png", drawn.image), ("background.png", drawn.reference)):
         io.imsave(tmp_path / file, image, check_contrast=False)
-    given: dict[str, Any] = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
+    words: dict[str, Any] = {"FRAMES": "press.png", "REFERENCE": "background.png", "CALIBRATION": "sensor.npz"}
     small = ["ROWS=24", "COLS=32", "SOLVER=tridiagonal", "BOUNDARY=neumann", "SIM=icarus"]
-    return [*small, *(f"{key}={tmp_path / file}" for key, file in given.items())]
+    return [*small, *(f"{key}={tmp_path / file}" for key, file in words.items())]
 
 
 def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> None:
@@ -224,23 +224,23 @@ def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> N
 
 
 def test_a_larger_picture_of_the_same_camera_has_the_same_depth(tmp_path: Path) -> None:
-    given = _press(tmp_path)
-    report = run(tmp_path, *given)
+    words = _press(tmp_path)
+    report = run(tmp_path, *words)
     codes = np.load(tmp_path / "out" / "depth.npy")
     for name in ("press.png", "background.png"):
         io.imsave(tmp_path / name, io.imread(tmp_path / name).repeat(2, 0).repeat(2, 1), check_contrast=False)
-    twice = run(tmp_path, *given)
+    twice = run(tmp_path, *words)
     np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), codes)
     assert twice["depth_lsb_mm"] == report["depth_lsb_mm"]
 
 
 def test_dark_pixels_are_reported_and_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    given = _press(tmp_path)
-    assert run(tmp_path, *given)["dark_pixels"] == [0]
+    words = _press(tmp_path)
+    assert run(tmp_path, *words)["dark_pixels"] == [0]
     background = io.imread(tmp_path / "background.png")
     background[:80, :80] = 0
     io.imsave(tmp_path / "background.png", background, check_contrast=False)
-    report = run(tmp_path, *given)
+    report = run(tmp_path, *words)
     assert 64 <= report["dark_pixels"][0] <= 81  # the gains of neighbouring blocks are interpolated
     assert any("pixels are dark in REFERENCE" in line for line in report["warnings"])
     assert "pixels are dark in REFERENCE" in capsys.readouterr().err
@@ -249,10 +249,10 @@ def test_dark_pixels_are_reported_and_warned_of(tmp_path: Path, capsys: pytest.C
 def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    given = _press(tmp_path)
-    assert run(tmp_path, *given)["slopes_outside_calibration"] == [0]
+    words = _press(tmp_path)
+    assert run(tmp_path, *words)["slopes_outside_calibration"] == [0]
     replace(sample("ball").sensor, fitted_slope={"quadratic": 0.4}).save(tmp_path / "sensor.npz")
-    report = run(tmp_path, *given)
+    report = run(tmp_path, *words)
     assert report["slopes_outside_calibration"][0] > 10
     assert any("steeper than any in the fit" in line for line in report["warnings"])
     assert "steeper than any in the fit" in capsys.readouterr().err
@@ -272,11 +272,11 @@ def test_flagged_pixels_are_painted() -> None:
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 def test_a_floor_is_subtracted(tmp_path: Path, solver: str) -> None:
     """The mean depth of two frames without contact, in the RTL and in double precision."""
-    rest = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
-    every = _npy(tmp_path / "every.npy", np.concatenate((rest, rest[:1, ::-1])))
+    no_contact = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
+    every = _npy(tmp_path / "every.npy", np.concatenate((no_contact, no_contact[:1, ::-1])))
     chosen = ["N=16", "BOUNDARY=neumann", f"SOLVER={solver}", f"FRAMES={every}", "SIM=icarus"]
     chosen.append("CALIBRATION=synthetic")
-    report = run(tmp_path, *chosen, f"FLOOR={_npy(tmp_path / 'rest.npy', rest)}")
+    report = run(tmp_path, *chosen, f"FLOOR={_npy(tmp_path / 'rest.npy', no_contact)}")
     assert report["auto_zero"]
     down = -1 if solver == "tridiagonal" else 1  # blocks are counted as depth leaves
     zeroed = np.load(tmp_path / "out" / "depth.npy")[:, ::down]
@@ -287,13 +287,13 @@ def test_a_floor_is_subtracted(tmp_path: Path, solver: str) -> None:
 
 
 def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path: Path) -> None:
-    given = _config(
+    words = _config(
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
     )
-    request = run_request.parse([given, "DATA_WIDTH=22", "SEED="])
+    request = run_request.parse([words, "DATA_WIDTH=22", "SEED="])
     assert (request.rows, request.columns, request.solver, request.data_width) == (24, 32, "tridiagonal", 22)
     assert request.press.at_mm == (1, 0)
-    square = run_request.parse([given, "N=64"])
+    square = run_request.parse([words, "N=64"])
     assert (square.rows, square.columns, square.data_width) == (64, 64, 20)
 
 
@@ -408,18 +408,18 @@ BAD_INPUT: dict[str, Any] = {
 def test_bad_input(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
 ) -> None:
-    given = BAD_INPUT[case](tmp_path).split()
+    words = BAD_INPUT[case](tmp_path).split()
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
-    arguments = [*([] if any(a.startswith("N=") for a in given) else ["N=16"]), *given, f"OUT={out}"]
+    arguments = [*([] if any(a.startswith("N=") for a in words) else ["N=16"]), *words, f"OUT={out}"]
     monkeypatch.setattr("sys.argv", ["sim", *arguments])
     with pytest.raises(SystemExit) as stop:
         sim.main()
     assert stop.value.code == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1, said
-    value = given[0].partition("=")[2]
-    assert os.path.basename(value) in said[0], "the line must name what was given"
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1, lines
+    value = words[0].partition("=")[2]
+    assert os.path.basename(value) in lines[0], "the line must name what was given"
     assert list(out.parent.rglob("*")) == [out], "something was left behind"
 
 

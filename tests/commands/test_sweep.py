@@ -104,18 +104,18 @@ def test_bench_at_the_default_and_at_twenty_bits(solver: str) -> None:
 def test_a_row_is_what_the_rtl_does(
     tmp_path: Path, solver: str, data_width: int, coefficient_width: int, boundary: str
 ) -> None:
-    given = [f"SOLVER={solver}", f"DATA_WIDTH={data_width}", f"COEFF_WIDTH={coefficient_width}", f"BOUNDARY={boundary}"]
-    assert sim.run(run_request.parse(["N=16", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *given])) == 0
-    seen = json.loads((tmp_path / "out" / "report.json").read_text())
+    words = [f"SOLVER={solver}", f"DATA_WIDTH={data_width}", f"COEFF_WIDTH={coefficient_width}", f"BOUNDARY={boundary}"]
+    assert sim.run(run_request.parse(["N=16", "FRAMES=bench", "SIM=icarus", f"OUT={tmp_path / 'out'}", *words])) == 0
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
     choices: dict[str, Any] = {"solver": solver, "data_width": data_width, "coefficient_width": coefficient_width}
     row = accuracy.measure({"columns": 16, "neumann": boundary == "neumann", **choices})
     for name in ("rms", "max"):
-        percent = seen[f"{name}_percent_of_peak"]
+        percent = report[f"{name}_percent_of_peak"]
         assert float(row[f"{name}_percent_mean"]) == pytest.approx(sum(percent) / len(percent), rel=1e-5)
         assert float(row[f"{name}_percent_worst"]) == pytest.approx(max(percent), rel=1e-5)
-    assert {int(row["first_depth_cycles"])} == set(seen["first_depth_latency_cycles"])
-    assert {int(row["last_pixel_to_first_depth_cycles"])} == set(seen["last_pixel_to_first_depth_cycles"])
-    assert int(row["saturations"]) == sum(seen["saturations"].values())
+    assert {int(row["first_depth_cycles"])} == set(report["first_depth_latency_cycles"])
+    assert {int(row["last_pixel_to_first_depth_cycles"])} == set(report["last_pixel_to_first_depth_cycles"])
+    assert int(row["saturations"]) == sum(report["saturations"].values())
 
 
 def test_a_configuration_that_cannot_be_built_is_a_row(tmp_path: Path) -> None:
@@ -145,10 +145,10 @@ def test_nothing_is_measured_twice(tmp_path: Path, monkeypatch: Any) -> None:
 def test_a_torn_last_line_is_mended(tmp_path: Path, torn: Any) -> None:
     rows = sweep.sweep(SMALL[:2], tmp_path)
     path = tmp_path / "sweep.csv"
-    whole = path.read_bytes()
-    path.write_bytes(whole + torn)
+    content = path.read_bytes()
+    path.write_bytes(content + torn)
     assert sweep.sweep(SMALL[:2], tmp_path) == rows
-    assert path.read_bytes() == whole
+    assert path.read_bytes() == content
 
 
 @pytest.mark.parametrize("length", [0, 10])
@@ -182,10 +182,10 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Any, moment: Any) -> None:
         assert running.poll() is None
         time.sleep(0.01)
     running.send_signal(getattr(signal, moment))
-    said = running.communicate()[1]
+    errors = running.communicate()[1]
     if moment == "SIGINT":
         assert running.returncode == 130
-        assert "every row measured is kept" in said
+        assert "every row measured is kept" in errors
     before = path.read_bytes()
     assert before.count(b"\n") < 1 + len(rows), "it was too quick to be interrupted"
     subprocess.run(command, cwd=repository.ROOT, env=environment, check=True, capture_output=True)
@@ -201,18 +201,23 @@ def dask_scheduler(tmp_path: Path) -> Iterator[Any]:
     away = tmp_path / "away"
     away.mkdir()
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    said: dict[str, Any] = {"cwd": away, "env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    options: dict[str, Any] = {
+        "cwd": away,
+        "env": environment,
+        "stdout": subprocess.DEVNULL,
+        "stderr": subprocess.DEVNULL,
+    }
     dask = [sys.executable, "-m", "dask"]
     where = ["--scheduler-file", "scheduler.json"]
     scheduler = [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", *where]
     worker = [*dask, "worker", "--nthreads", "1", "--no-dashboard", "--no-nanny", *where]
-    started = [subprocess.Popen(scheduler, **said)]
+    started = [subprocess.Popen(scheduler, **options)]
     try:
         deadline = time.monotonic() + 60
         while not (away / "scheduler.json").is_file():
             assert time.monotonic() < deadline
             time.sleep(0.1)
-        started.append(subprocess.Popen(worker, **said))
+        started.append(subprocess.Popen(worker, **options))
         yield json.loads((away / "scheduler.json").read_text())["address"].removeprefix("tcp://")
     finally:
         for process in reversed(started):
@@ -254,15 +259,15 @@ BAD_INPUT: dict[str, Any] = {
 def test_bad_input(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
 ) -> None:
-    given = BAD_INPUT[case](tmp_path)
+    words = BAD_INPUT[case](tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
-    arguments = [given] if given.startswith("OUT=") else [given, f"OUT={tmp_path / 'out'}"]
+    arguments = [words] if words.startswith("OUT=") else [words, f"OUT={tmp_path / 'out'}"]
     monkeypatch.setattr(sweep, "CONNECT_S", 1)
     monkeypatch.setattr("sys.argv", ["sweep", *arguments])
     with pytest.raises(SystemExit) as stop:
         sweep.main()
     assert stop.value.code == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1, said
-    assert given.partition("=")[2] in said[0] or given in said[0], "the line must name what was given"
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1, lines
+    assert words.partition("=")[2] in lines[0] or words in lines[0], "the line must name what was given"
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before

@@ -61,11 +61,11 @@ def test_the_search_finds_the_cheapest_of_all(
     search = Search(built, falling(bits), limits, tolerance)
     within = [at for at in all_points() if not limits.broken(cost_of(at))]
     enough = [at for at in within if search.measure(built(at)) <= tolerance]
-    found = search.cheapest(list(COLUMNS))
+    best = search.cheapest(list(COLUMNS))
     if enough:
-        assert search.rank(found) == min(map(search.rank, enough))  # type: ignore[arg-type]
+        assert search.rank(best) == min(map(search.rank, enough))  # type: ignore[arg-type]
     else:
-        assert found is None
+        assert best is None
         nearest = search.nearest(list(COLUMNS))
         if within:
             assert search.error(nearest) == min(search.measure(built(at)) for at in within)  # type: ignore[arg-type]
@@ -78,30 +78,30 @@ def test_frames_are_tuned_on_or_proven_on_never_both() -> None:
     frames = load_frames("bench", (16, 16))
     peaks = np.ones(15)
     peaks[3] = 0
-    tuning, proving, said = tune.split(frames, peaks, seed=1)
+    tuning, proving, how = tune.split(frames, peaks, seed=1)
     assert (len(tuning.pixels), len(proving.pixels)) == (9, 5)
     assert {*tuning.labels, *proving.labels} == {*frames.labels} - {frames.labels[3]}
     assert not {*tuning.labels} & {*proving.labels}
-    assert "9 frames" in said and "5 others" in said and "1 without contact" in said  # noqa: PT018
+    assert "9 frames" in how and "5 others" in how and "1 without contact" in how  # noqa: PT018
     assert tune.split(frames, peaks, seed=2)[1].labels != proving.labels
 
 
 def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise() -> None:
     frames = load_frames("ball", (32, 32))
-    tuning, proving, said = tune.split(frames, np.ones(1), seed=1)
+    tuning, proving, how = tune.split(frames, np.ones(1), seed=1)
     assert (len(tuning.pixels), len(proving.pixels)) == (4, 2)
     np.testing.assert_array_equal(tuning.pixels[0], frames.pixels[0])
     pixels = [*tuning.pixels, *proving.pixels]
     assert len({frame.tobytes() for frame in pixels}) == 6
-    assert "noise" in said
+    assert "noise" in how
 
 
-def run(tmp_path: Any, *given: Any) -> Any:
-    return tune.run(*tune.parse(["SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *given]))
+def run(tmp_path: Any, *words: Any) -> Any:
+    return tune.run(*tune.parse(["SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *words]))
 
 
 @pytest.mark.parametrize(
-    "given",
+    "words",
     [
         pytest.param([], marks=pytest.mark.regress),
         pytest.param(["BOUNDARY=neumann", "SOLVER=spectral", "TOLERANCE=0.02"], marks=pytest.mark.regress),
@@ -109,10 +109,10 @@ def run(tmp_path: Any, *given: Any) -> Any:
     ],
 )
 def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: Any
 ) -> None:
-    assert run(tmp_path, *given) == 0
-    said = capsys.readouterr().out
+    assert run(tmp_path, *words) == 0
+    output = capsys.readouterr().out
     out = tmp_path / "out"
     report = json.loads((out / "report.json").read_text())
     proof = json.loads((out / "proof" / "report.json").read_text())
@@ -122,7 +122,7 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     assert proof["frames"] == len(report["proven_on"])
     assert report["chosen"]["multipliers"] <= report["default"]["multipliers"]
     assert report["chosen"]["memory_bits"] < report["default"]["memory_bits"]
-    assert "make sim CONFIG=" in said
+    assert "make sim CONFIG=" in output
     chosen = run_request.parse(
         [f"CONFIG={out / 'config.json'}", "SIM=icarus", f"OUT={tmp_path / 'sim'}", "FRAMES=ball"]
     )
@@ -130,14 +130,14 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     again = json.loads((tmp_path / "sim" / "report.json").read_text())
     for name in ("grid", "solver", "boundary", "data_width", "coeff_width", "depth_range_mm"):
         assert again[name] == proof[name]
-    for option in given:
+    for option in words:
         key, _, value = option.partition("=")
         if key in ("SOLVER", "BOUNDARY"):
             assert again[key.lower()] == value
 
 
 @pytest.mark.parametrize(
-    ("given", "expected"),
+    ("words", "expected"),
     [
         (["TOLERANCE=1e-9"], "SOLVER=tridiagonal DATA_WIDTH=32 COEFF_WIDTH=24"),
         (["TOLERANCE=0.001", "MAX_DSP=24"], "the nearest is SOLVER=tridiagonal DATA_WIDTH=24 COEFF_WIDTH="),
@@ -147,15 +147,15 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
     ],
 )
 def test_no_configuration_meets_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], given: Any, expected: Any
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: Any, expected: Any
 ) -> None:
-    assert run(tmp_path, *given) == 1
+    assert run(tmp_path, *words) == 1
     assert expected in capsys.readouterr().out.splitlines()[-1]
     assert [*tmp_path.rglob("*.json")] == []
 
 
 @pytest.mark.parametrize(
-    "given",
+    "words",
     [
         *("TOLERANCE=0", "TOLERANCE=-1", "TOLERANCE=little", "MAX_DSP=0", "MAX_LATENCY_US=nan", "CLOCK_MHZ=0"),
         *("DATA_WIDTH=20", "WIDTH=20", "FRAMES=flat", "FRAMES=cube", "N=100", "N=2048", "SOLVER=multigrid"),
@@ -163,17 +163,17 @@ def test_no_configuration_meets_it(
     ],
 )
 def test_bad_input(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], given: Any
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: Any
 ) -> None:
     earlier = tmp_path / "out" / "config.json"
     earlier.parent.mkdir()
     earlier.write_text("{}")
-    monkeypatch.setattr("sys.argv", ["tune", "SIM=icarus", "N=16", f"OUT={earlier.parent}", given])
+    monkeypatch.setattr("sys.argv", ["tune", "SIM=icarus", "N=16", f"OUT={earlier.parent}", words])
     with pytest.raises(SystemExit) as stop:
         tune.main()
     assert stop.value.code == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1, said
-    assert given.partition("=")[2] in said[0]
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1, lines
+    assert words.partition("=")[2] in lines[0]
     assert earlier.read_text() == "{}"
     assert [*earlier.parent.iterdir()] == [earlier]

@@ -38,14 +38,22 @@ def test_a_command_without_variables_refuses_all() -> None:
         variables.given(["CORE=ram"], ())
 
 
+FULL = "free disk space, or give a folder on another disk"
+
+
 @pytest.mark.parametrize(
     ("error", "status", "line"),
     [
         (InputError("N=3: too small"), 2, "make sim: N=3: too small\n"),
         (variables.Mismatch("row 3 differs"), 1, "make sim: row 3 differs\n"),
         (RuntimeError("no simulator"), 3, "make sim: no simulator\n"),
-        (OSError(errno.ENOSPC, "No space left on device", "a.npy"), 3, "make sim: a.npy: No space left on device\n"),
-        (OSError("4096 requested and 0 written"), 3, "make sim: 4096 requested and 0 written\n"),
+        (
+            OSError(errno.ENOSPC, "No space left on device", "a.npy"),
+            3,
+            f"make sim: a.npy: No space left on device: {FULL}\n",
+        ),
+        (OSError("4096 requested and 0 written"), 3, f"make sim: a file could not be written to its end: {FULL}\n"),
+        (PermissionError(errno.EACCES, "Permission denied", "a.npy"), 3, "make sim: a.npy: Permission denied\n"),
         (MemoryError(), 3, "make sim: MemoryError\n"),
         (KeyboardInterrupt(), 130, "make sim: interrupted; nothing was written\n"),
     ],

@@ -5,4 +5,4 @@ from collections.abc import Callable
 
 
 def test_rtl(run_tb: Callable[..., None]) -> None:
-    run_tb("axis_skid", ["axis_skid.sv"], {"Width": 26})
+    run_tb("axis_skid", {"Width": 26})

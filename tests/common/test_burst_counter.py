@@ -13,7 +13,7 @@ from tactile_depth.common.burst_counter import burst_counter
 
 @pytest.mark.structures("size", verilator=[(16,)], icarus=[(8,)], regress=[(64,), (16,)])
 def test_rtl(run_tb: Callable[..., None], size: int) -> None:
-    run_tb("burst_counter", ["burst_counter.sv"], {"Size": size})
+    run_tb("burst_counter", {"Size": size})
 
 
 def test_bursts_apart_back_to_back_and_begun_again() -> None:

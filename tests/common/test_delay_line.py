@@ -18,7 +18,7 @@ from tactile_depth.common.delay_line import delay_line
     regress=[(70, 8), (12, 33), (70, 128), (54, 65)],
 )
 def test_rtl(run_tb: Callable[..., None], width: int, delay: Any) -> None:
-    run_tb("delay_line", ["delay_line.sv", "ram.sv"], {"Width": width, "Delay": delay})
+    run_tb("delay_line", {"Width": width, "Delay": delay})
 
 
 @given(st.lists(st.integers()), st.integers(1, 9))

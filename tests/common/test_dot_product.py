@@ -18,7 +18,7 @@ A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the
     "a_width b_width", verilator=[(27, 18)], icarus=[(15, 10)], regress=[(35, 24), (4, 3), (27, 18)]
 )
 def test_rtl(run_tb: Callable[..., None], a_width: int, b_width: int) -> None:
-    run_tb("dot_product", ["dot_product.sv", "multiply.sv"], {"AWidth": a_width, "BWidth": b_width})
+    run_tb("dot_product", {"AWidth": a_width, "BWidth": b_width})
 
 
 @given(A, B, A, B)

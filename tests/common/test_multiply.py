@@ -16,7 +16,7 @@ from tactile_depth.common.multiply import multiply
     "a_width b_width", verilator=[(27, 18)], icarus=[(35, 24)], regress=[(15, 10), (2, 3), (27, 18)]
 )
 def test_rtl(run_tb: Callable[..., None], a_width: int, b_width: int) -> None:
-    run_tb("multiply", ["multiply.sv"], {"AWidth": a_width, "BWidth": b_width})
+    run_tb("multiply", {"AWidth": a_width, "BWidth": b_width})
 
 
 @given(st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1))  # the widest that occur

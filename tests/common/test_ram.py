@@ -33,7 +33,7 @@ def test_rtl(run_tb: Callable[..., None], width: int, depth: Any, style: str, fi
     environment = {"FILE": file} if file else {}
     if file:
         parameters["File"] = as_sv_literal(file)
-    run_tb("ram", ["ram.sv"], parameters, roms=contents, environment=environment)
+    run_tb("ram", parameters, roms=contents, environment=environment)
 
 
 @given(st.lists(st.tuples(st.integers(0, 7), st.integers(0, 255)), max_size=40))

@@ -18,7 +18,6 @@ def test_rtl(run_tb: Callable[..., None], width: int, depth: Any) -> None:
     words = [chance.getrandbits(width) for _ in range(depth)]
     run_tb(
         "rom",
-        ["rom.sv"],
         {"Width": width, "Depth": depth},
         roms=lambda folder: write_words(folder / "rom.hex", words, width),
     )

@@ -34,7 +34,7 @@ from tactile_depth.common.round_saturate import Monitor, round_half_even, round_
 )
 def test_rtl(run_tb: Callable[..., None], in_width: int, drop: int, out_width: int) -> None:
     parameters = {"InWidth": in_width, "Drop": drop, "OutWidth": out_width}
-    run_tb("round_saturate", ["round_saturate.sv"], parameters)
+    run_tb("round_saturate", parameters)
 
 
 # In eighths, dropping three bits: ties on both sides of zero, beside a tie, carry out of the top, overflow.

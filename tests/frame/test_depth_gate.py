@@ -5,4 +5,4 @@ from collections.abc import Callable
 
 
 def test_rtl(run_tb: Callable[..., None]) -> None:
-    run_tb("depth_gate", ["axis_skid.sv", "depth_gate.sv"], {"Width": 12})
+    run_tb("depth_gate", {"Width": 12})

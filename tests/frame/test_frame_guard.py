@@ -21,7 +21,7 @@ ROWS, COLUMNS = 4, 8  # of the model's frames
     regress_verilator=[(4, 8)],
 )
 def test_rtl(run_tb: Callable[..., None], rows: int, columns: int) -> None:
-    run_tb("frame_guard", ["frame_guard.sv"], {"Rows": rows, "Columns": columns})
+    run_tb("frame_guard", {"Rows": rows, "Columns": columns})
 
 
 def frame(start: Any) -> Any:

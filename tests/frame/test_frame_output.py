@@ -9,4 +9,4 @@ import pytest
 @pytest.mark.parametrize(("width", "rows", "columns"), [(24, 4, 8), (12, 16, 2)])
 def test_rtl(run_tb: Callable[..., None], width: int, rows: int, columns: int) -> None:
     parameters = {"Width": width, "Rows": rows, "Columns": columns}
-    run_tb("frame_output", ["burst_counter.sv", "frame_output.sv"], parameters)
+    run_tb("frame_output", parameters)

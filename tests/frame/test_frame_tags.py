@@ -15,4 +15,4 @@ import pytest
     regress=[(33, 32, 16), (33, 50, 13), (4, 9, 6), (33, 37, 24)],
 )
 def test_rtl(run_tb: Callable[..., None], width: int, latency: Any, pixels: int) -> None:
-    run_tb("frame_tags", ["frame_tags.sv"], {"Width": width, "Latency": latency, "Pixels": pixels})
+    run_tb("frame_tags", {"Width": width, "Latency": latency, "Pixels": pixels})

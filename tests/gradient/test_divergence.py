@@ -10,8 +10,6 @@ from hypothesis import strategies as st
 
 from tactile_depth.gradient.divergence import divergence
 
-SOURCES = ["divergence.sv", "ram.sv"]
-
 
 @pytest.mark.structures(
     "columns width neumann",
@@ -20,7 +18,7 @@ SOURCES = ["divergence.sv", "ram.sv"]
     regress=[(128, 35, 0), (16, 21, 1), (4, 3, 1), (16, 21, 0)],
 )
 def test_rtl(run_tb: Callable[..., None], columns: int, width: int, neumann: bool) -> None:
-    run_tb("divergence", SOURCES, {"Columns": columns, "Width": width, "Neumann": neumann})
+    run_tb("divergence", {"Columns": columns, "Width": width, "Neumann": neumann})
 
 
 @settings(max_examples=30, deadline=None)

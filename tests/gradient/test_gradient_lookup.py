@@ -14,8 +14,6 @@ from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_look
 from tactile_depth.rom_files import write_gradient
 from tactile_depth.sensor import Sensor, synthetic
 
-SOURCES = ["gradient_lookup.sv", "ram.sv"]
-
 
 @pytest.mark.structures("bits data_width", verilator=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24), (2, 24)])
 def test_rtl(run_tb: Callable[..., None], bits: int, data_width: int) -> None:
@@ -24,7 +22,6 @@ def test_rtl(run_tb: Callable[..., None], bits: int, data_width: int) -> None:
     width = config.gradient.width
     run_tb(
         "gradient_lookup",
-        SOURCES,
         {"Width": width, "BitsPerChannel": bits},
         roms=lambda folder: write_gradient(folder / "gradient.hex", gradient_codes(synthetic(bits), config), width),
         environment={"CONFIGURATION": json.dumps(choices)},

@@ -10,22 +10,24 @@ import pytest
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
-from tests.poisson.test_thomas_table import THOMAS_SOURCES
 
-SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "back_substitution.sv"]
 NAMES = ("Width", "CoeffWidth", "Rows", "Size", "TableWords", "SettledWidth", "LastShiftWidth")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+LANES = {"columns": 32, "rows": 11, "solver": "tridiagonal", "lanes": 4}
 
 
 @pytest.mark.structures(
     "choices",
-    verilator=[(CHOICES,)],
+    verilator=[(CHOICES,), (LANES,)],
     icarus=[
         (CHOICES | {"neumann": True},),
+        (CHOICES | {"lanes": 2},),
     ],
     regress=[
         (CHOICES | {"data_width": 12, "coefficient_width": 10},),  # few bits are dropped: ties are common
         (CHOICES,),
+        (LANES,),
+        (LANES | {"rows": 8, "columns": 128, "lanes": 16, "neumann": True},),  # fewer rows than lanes
         (CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24},),
     ],
 )
@@ -34,8 +36,8 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     parameters = solver_parameters(config)
     run_tb(
         "back_substitution",
-        SOURCES,
-        {name: parameters[name] for name in NAMES} | {"InWidth": config.data_width, "Lift": parameters["StoreDrop"]},
+        {name: parameters[name] for name in NAMES}
+        | {"InWidth": config.data_width, "Lift": parameters["StoreDrop"], "Lanes": config.lanes},
         roms=lambda folder: write_thomas(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},
     )

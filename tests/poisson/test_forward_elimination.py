@@ -10,9 +10,7 @@ import pytest
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
-from tests.poisson.test_thomas_table import THOMAS_SOURCES
 
-SOURCES = [*THOMAS_SOURCES, "burst_counter.sv", "ram.sv", "multiply.sv", "round_saturate.sv", "forward_elimination.sv"]
 NAMES = ["Width", "CoeffWidth", "Rows", "Size", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
 NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
@@ -36,7 +34,6 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     parameters = solver_parameters(config)
     run_tb(
         "forward_elimination",
-        SOURCES,
         {name: parameters[name] for name in NAMES} | {"OutWidth": config.data_width},
         roms=lambda folder: write_thomas(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},

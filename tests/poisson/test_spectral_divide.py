@@ -17,8 +17,6 @@ from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals, s
 from tactile_depth.rom_files import write_solver
 from tactile_depth.transform.orders import bit_reversed
 
-SOURCES = ["burst_counter.sv", "rom.sv", "multiply.sv", "round_saturate.sv", "spectral_divide.sv"]
-
 
 @pytest.mark.structures(
     "choices",
@@ -38,7 +36,6 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     table = reciprocals(config)
     run_tb(
         "spectral_divide",
-        SOURCES,
         {
             "Size": config.columns,
             "Width": config.arithmetic_width,

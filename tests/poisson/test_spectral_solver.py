@@ -17,18 +17,6 @@ from tactile_depth.gradient.divergence import divergence
 from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
-from tests.transform.transforms import FFT_SOURCES
-
-SOLVER_SOURCES = [
-    *FFT_SOURCES,
-    "dst_forward.sv",
-    "dst_inverse.sv",
-    "mode_pairs.sv",
-    "row_reorder.sv",
-    "spectral_divide.sv",
-    "spectral_solver.sv",
-    "transpose.sv",
-]
 
 
 @pytest.mark.seeds
@@ -46,7 +34,6 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     run_tb(
         "spectral_solver",
-        SOLVER_SOURCES,
         solver_parameters(config),
         roms=lambda folder: write_solver(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},

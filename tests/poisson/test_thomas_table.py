@@ -15,7 +15,6 @@ from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
 from tactile_depth.transform.orders import eigenvalues
 
-THOMAS_SOURCES = ["rom.sv", "thomas_table.sv"]
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
@@ -31,7 +30,6 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     taken = ("CoeffWidth", "Rows", "Size", "SettledWidth", "LastShiftWidth")
     run_tb(
         "thomas_table",
-        THOMAS_SOURCES,
         {name: parameters[name] for name in taken} | {"Words": parameters["TableWords"]},
         roms=lambda folder: write_thomas(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},

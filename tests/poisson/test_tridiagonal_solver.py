@@ -16,13 +16,8 @@ from tactile_depth.poisson import spectral_solver
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters, tridiagonal_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
-from tests.poisson.test_spectral_solver import PEAKS, SOLVER_SOURCES
-from tests.poisson.test_thomas_table import THOMAS_SOURCES
+from tests.poisson.test_spectral_solver import PEAKS
 
-SOURCES = sorted(
-    {*SOLVER_SOURCES, *THOMAS_SOURCES, "tridiagonal_solver.sv", "frame_stack.sv"}
-    | {"forward_elimination.sv", "back_substitution.sv"}
-)
 CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/configuration.py
 
@@ -30,12 +25,15 @@ PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, mo
 @pytest.mark.seeds
 @pytest.mark.structures(
     "choices store",
-    verilator=[(CHOICES, {})],
-    icarus=[(CHOICES | {"rows": 21, "neumann": True}, {})],
+    verilator=[(CHOICES, {}), (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {})],
+    icarus=[(CHOICES | {"rows": 21, "neumann": True}, {}), (CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {})],
     regress=[
         (CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}),
         (CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
         (CHOICES | {"columns": 32, "rows": 11}, PACKED),
+        (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {}),
+        (CHOICES | {"columns": 64, "rows": 13, "lanes": 8}, PACKED),
+        (CHOICES | {"columns": 256, "rows": 40, "lanes": 32, "neumann": True}, {}),
         (CHOICES, {}),
     ],
 )
@@ -43,7 +41,6 @@ def test_rtl(run_tb: Callable[..., None], choices: Any, store: Any) -> None:
     config = Configuration(**choices)
     run_tb(
         "tridiagonal_solver",
-        SOURCES,
         solver_parameters(config) | store,
         roms=lambda folder: write_solver(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},

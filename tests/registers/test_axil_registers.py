@@ -7,43 +7,46 @@ from typing import Any
 import pytest
 
 from tactile_depth.configuration import Configuration
+from tactile_depth.tactile_depth import top_parameters
+from tb.registers.register_file import PARAMETERS
 
-SOURCES = ["register_map_pkg.sv", "axil_registers.sv"]
 
-
-def built(configuration: Configuration) -> dict[str, int]:
-    return {
-        "Rows": configuration.rows,
-        "Columns": configuration.columns,
-        "DataWidth": configuration.data_width,
-        "GradientWidth": configuration.gradient.width,
-        "GradientFraction": configuration.gradient.fraction,
-        "BitsPerChannel": configuration.bits_per_channel,
-    }
+def built(**choices: Any) -> dict[str, int]:
+    """Return the parameters of the registers of a configuration."""
+    top = top_parameters(Configuration(**choices), 0.0634)
+    return {name: value for name, value in top.items() if name in PARAMETERS} | {"Columns": top["Size"]}
 
 
 EXTREMES = {
+    "Tridiagonal": 1,
+    "Neumann": 1,
     "Rows": 65535,
     "Columns": 1,
     "DataWidth": 32,
     "GradientWidth": 32,
     "GradientFraction": 31,
     "BitsPerChannel": 1,
-    "CoefficientWords": 36,
-    "ReferenceWords": 5000,
-    "FloorWords": 1250,
+    "FlatField": 1,
+    "Quadratic": 0,
+    "AutoZero": 1,
+    "Lanes": 32,
+    "BlockLog2": 0,
+    "DepthMantissa": (1 << 24) - 1,
+    "DepthExponent": -128,
+    "SlopeMantissa": 1 << 23,
+    "SlopeExponent": 127,
+    "PitchNm": (1 << 31) - 1,
 }
-
-QUADRATIC = EXTREMES | {"BitsPerChannel": 0, "ReferenceWords": 0, "FloorWords": 300}
-BUILDS = {"128": built(Configuration(columns=128)), "extremes": EXTREMES, "without-gradient-table": QUADRATIC}
+QUADRATIC = built(columns=128, rows=96, solver="tridiagonal", flat_field=True, gradient_model="quadratic")
+BUILDS = {"128": built(columns=128), "extremes": EXTREMES, "quadratic": QUADRATIC}
 
 
 @pytest.mark.structures(
     "build",
     verilator=[("128",)],
-    icarus=[("without-gradient-table",)],
-    regress=[("128",), ("extremes",)],
-    regress_verilator=[("extremes",), ("without-gradient-table",)],
+    icarus=[("extremes",)],
+    regress=[("128",), ("quadratic",)],
+    regress_verilator=[("extremes",), ("quadratic",)],
 )
 def test_axil_registers(run_tb: Callable[..., None], build: Any) -> None:
-    run_tb("axil_registers", SOURCES, parameters=BUILDS[build])
+    run_tb("axil_registers", parameters=BUILDS[build])

@@ -10,10 +10,12 @@ import pytest
 
 from commands.common.repository import ROOT
 from commands.hardware import registers
+from tactile_depth.configuration import Configuration
 from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Live
 from tactile_depth.registers.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD_BITS
+from tactile_depth.tactile_depth import top_parameters
 
-BUILD = Build(16, 32, 24, 21, 20, 2)
+BUILD = Build(top_parameters(Configuration(columns=32, rows=16, solver="tridiagonal", bits_per_channel=2)))
 RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
 
 
@@ -48,7 +50,7 @@ def test_an_access_that_no_register_has_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_table_has_the_bit_of_its_number_in_the_commit_register() -> None:
-    """hdl/registers/axil_registers.sv takes the one for the other."""
+    """hdl/registers/table_access.sv takes the one for the other."""
     assert {field.name: field.low for field in REGISTERS["TABLE_COMMIT"].fields} == dict(TABLES)
     assert sorted(TABLES.values()) == list(range(len(TABLES)))
 
@@ -101,12 +103,12 @@ def test_the_python_layer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     model = AxilRegisters(BUILD, entry=lambda table, index: (0x1000 + index, 0x2000 + index))
 
     def read(addr: int, **_: Any) -> Any:
-        data, response = model.read(addr, Live(busy=True, in_use=model.bank, record=RECORD_WORDS))
+        data, response = model.read(addr, Live(busy=True, in_use=model.banks.bank, record=RECORD_WORDS))
         assert response == 0
         return data
 
     def write(addr: Any, data: Any, **_: Any) -> None:
-        assert model.write(addr, data, live=Live(in_use=model.bank)) == 0
+        assert model.write(addr, data, live=Live(in_use=model.banks.bank)) == 0
 
     device = RegModel(callbacks=NormalCallbackSet(read_callback=read, write_callback=write))
     assert (device.GRID.rows.read(), device.GRID.columns.read()) == (16, 32)

@@ -15,39 +15,27 @@ from tactile_depth.transform.dst_forward import dst_forward
 from tactile_depth.transform.orders import bit_reversed, makhoul
 from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
-from tests.transform.transforms import FFT_SOURCES, coefficient_noise, transform_parameters
-
-SOURCES = [*FFT_SOURCES, "dst_forward.sv"]
+from tests.transform.transforms import coefficient_noise, transform_parameters
 
 
 @pytest.mark.structures(
-    "size in_width input_drop width coeff output_drop out_width alternate",
-    verilator=[(32, 24, 1, 27, 18, 0, 27, 1)],
+    "parameters",
+    verilator=[(transform_parameters(32, 24, 1, 27, 18, 0, 27, 1),)],
     icarus=[
-        (16, 23, 0, 27, 18, 3, 24, 1),
-        (8, 12, -3, 15, 10, 3, 12, 1),
+        (transform_parameters(16, 23, 0, 27, 18, 3, 24, 1),),
+        (transform_parameters(8, 12, -3, 15, 10, 3, 12, 1),),
     ],
     regress=[
-        (16, 16, -4, 15, 10, 1, 12, 1),  # the input alone can clip
-        (16, 23, 0, 27, 18, 3, 24, 0),
-        (32, 6, -3, 9, 7, 3, 6, 1),  # four values can clip at once in sdf_fft
-        (64, 32, 1, 35, 24, 0, 35, 1),
-        (32, 24, 1, 27, 18, 0, 27, 1),
+        (transform_parameters(16, 16, -4, 15, 10, 1, 12, 1),),  # the input alone can clip
+        (transform_parameters(16, 23, 0, 27, 18, 3, 24, 0),),
+        (transform_parameters(32, 6, -3, 9, 7, 3, 6, 1),),  # four values can clip at once in sdf_fft
+        (transform_parameters(64, 32, 1, 35, 24, 0, 35, 1),),
+        (transform_parameters(32, 24, 1, 27, 18, 0, 27, 1),),
     ],
 )
-def test_rtl(
-    run_tb: Callable[..., None],
-    size: int,
-    in_width: int,
-    input_drop: int,
-    width: int,
-    coeff: int,
-    output_drop: int,
-    out_width: int,
-    alternate: bool,
-) -> None:
-    parameters = transform_parameters(size, in_width, input_drop, width, coeff, output_drop, out_width, alternate)
-    run_tb("dst_forward", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
+def test_rtl(run_tb: Callable[..., None], parameters: dict[str, int]) -> None:
+    size, coeff = parameters["Size"], parameters["CoeffWidth"]
+    run_tb("dst_forward", parameters, roms=lambda folder: write_transform(folder, size, coeff))
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:

@@ -16,39 +16,27 @@ from tactile_depth.transform.dst_inverse import dst_inverse
 from tactile_depth.transform.orders import bit_reversed, makhoul
 from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
-from tests.transform.transforms import FFT_SOURCES, coefficient_noise, transform_parameters
-
-SOURCES = [*FFT_SOURCES, "dst_inverse.sv", "mode_pairs.sv"]
+from tests.transform.transforms import coefficient_noise, transform_parameters
 
 
 @pytest.mark.structures(
-    "size in_width input_drop width coeff output_drop out_width alternate",
-    verilator=[(32, 24, -3, 27, 18, -1, 24, 1)],
+    "parameters",
+    verilator=[(transform_parameters(32, 24, -3, 27, 18, -1, 24, 1),)],
     icarus=[
-        (16, 27, 0, 27, 18, 1, 24, 1),
-        (8, 12, -3, 15, 10, -1, 12, 1),
+        (transform_parameters(16, 27, 0, 27, 18, 1, 24, 1),),
+        (transform_parameters(8, 12, -3, 15, 10, -1, 12, 1),),
     ],
     regress=[
-        (16, 15, 0, 15, 10, 2, 9, 1),  # the output alone can clip
-        (16, 27, 0, 27, 18, 1, 24, 0),
-        (32, 6, -5, 9, 7, -1, 6, 1),  # eight values can clip at once
-        (64, 35, 0, 35, 24, -1, 32, 1),
-        (32, 24, -3, 27, 18, -1, 24, 1),
+        (transform_parameters(16, 15, 0, 15, 10, 2, 9, 1),),  # the output alone can clip
+        (transform_parameters(16, 27, 0, 27, 18, 1, 24, 0),),
+        (transform_parameters(32, 6, -5, 9, 7, -1, 6, 1),),  # eight values can clip at once
+        (transform_parameters(64, 35, 0, 35, 24, -1, 32, 1),),
+        (transform_parameters(32, 24, -3, 27, 18, -1, 24, 1),),
     ],
 )
-def test_rtl(
-    run_tb: Callable[..., None],
-    size: int,
-    in_width: int,
-    input_drop: int,
-    width: int,
-    coeff: int,
-    output_drop: int,
-    out_width: int,
-    alternate: bool,
-) -> None:
-    parameters = transform_parameters(size, in_width, input_drop, width, coeff, output_drop, out_width, alternate)
-    run_tb("dst_inverse", SOURCES, parameters, roms=lambda folder: write_transform(folder, size, coeff))
+def test_rtl(run_tb: Callable[..., None], parameters: dict[str, int]) -> None:
+    size, coeff = parameters["Size"], parameters["CoeffWidth"]
+    run_tb("dst_inverse", parameters, roms=lambda folder: write_transform(folder, size, coeff))
 
 
 def inverse(modes: Any, coeff: int, width: int = 40) -> Any:

@@ -9,14 +9,12 @@ import pytest
 from tactile_depth.transform.mode_pairs import mode_pairs
 from tactile_depth.transform.orders import bit_reversed, mirror
 
-SOURCES = ["burst_counter.sv", "delay_line.sv", "mode_pairs.sv", "ram.sv"]
-
 
 @pytest.mark.structures(
     "size width", verilator=[(32, 24)], icarus=[(8, 27)], regress=[(16, 12), (64, 24), (8, 4), (32, 24)]
 )
 def test_rtl(run_tb: Callable[..., None], size: int, width: int) -> None:
-    run_tb("mode_pairs", SOURCES, {"Size": size, "Width": width})
+    run_tb("mode_pairs", {"Size": size, "Width": width})
 
 
 @pytest.mark.parametrize("size", [8, 16, 128, 512])

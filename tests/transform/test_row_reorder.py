@@ -8,8 +8,6 @@ import pytest
 
 from tactile_depth.transform.row_reorder import row_reorder
 
-SOURCES = ["burst_counter.sv", "ram.sv", "row_reorder.sv"]
-
 
 @pytest.mark.structures(
     "size width to_burst",
@@ -18,7 +16,7 @@ SOURCES = ["burst_counter.sv", "ram.sv", "row_reorder.sv"]
     regress=[(8, 12, 0), (64, 35, 1), (64, 35, 0), (16, 24, 1)],
 )
 def test_rtl(run_tb: Callable[..., None], size: int, width: int, to_burst: bool) -> None:
-    run_tb("row_reorder", SOURCES, {"Size": size, "Width": width, "ToBurst": to_burst})
+    run_tb("row_reorder", {"Size": size, "Width": width, "ToBurst": to_burst})
 
 
 def test_makhoul_order_is_even_samples_up_then_odd_ones_down() -> None:

@@ -13,8 +13,6 @@ from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.transform.sdf_butterfly import sdf_butterfly
 from tactile_depth.transform.sdf_fft import Stage
 
-SOURCES = ["burst_counter.sv", "delay_line.sv", "ram.sv", "round_saturate.sv", "sdf_butterfly.sv"]
-
 
 @pytest.mark.structures(
     "size delay rotate_block inverse halve width",
@@ -45,7 +43,7 @@ def test_rtl(
         "Halve": halve,
         "Width": width,
     }
-    run_tb("sdf_butterfly", SOURCES, parameters)
+    run_tb("sdf_butterfly", parameters)
 
 
 WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)

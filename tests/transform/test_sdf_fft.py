@@ -13,7 +13,7 @@ from tactile_depth.rom_files import write_transform
 from tactile_depth.transform.orders import bit_reversed
 from tactile_depth.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
-from tests.transform.transforms import FFT_SOURCES, coefficient_noise
+from tests.transform.transforms import coefficient_noise
 
 
 @pytest.mark.structures(
@@ -37,7 +37,6 @@ from tests.transform.transforms import FFT_SOURCES, coefficient_noise
 def test_rtl(run_tb: Callable[..., None], size: int, width: int, coeff: int, inverse: bool) -> None:
     run_tb(
         "sdf_fft",
-        FFT_SOURCES,
         {"Size": size, "Width": width, "CoeffWidth": coeff, "Inverse": inverse},
         roms=lambda folder: write_transform(folder, size, coeff),
     )

@@ -10,8 +10,6 @@ import pytest
 from tactile_depth.transform.orders import makhoul
 from tactile_depth.transform.transpose import transpose
 
-SOURCES = ["burst_counter.sv", "ram.sv", "transpose.sv"]
-
 
 @pytest.mark.structures(
     "size width makhoul_in makhoul_out",
@@ -29,7 +27,7 @@ SOURCES = ["burst_counter.sv", "ram.sv", "transpose.sv"]
 )
 def test_rtl(run_tb: Callable[..., None], size: int, width: int, makhoul_in: int, makhoul_out: int) -> None:
     parameters = {"Size": size, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
-    run_tb("transpose", SOURCES, parameters)
+    run_tb("transpose", parameters)
 
 
 @pytest.mark.parametrize("makhoul_out", [False, True])

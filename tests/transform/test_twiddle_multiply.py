@@ -20,7 +20,6 @@ from tactile_depth.transform.twiddle_multiply import (
     twiddle_multiply,
 )
 
-SOURCES = ["burst_counter.sv", "dot_product.sv", "multiply.sv", "rom.sv", "round_saturate.sv", "twiddle_multiply.sv"]
 MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
 
 
@@ -53,7 +52,6 @@ def test_rtl(
     kind, direction = factors.split("_")
     run_tb(
         "twiddle_multiply",
-        SOURCES,
         {
             "Size": size,
             "Block": block,

@@ -1,22 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources, parameters and error bounds that the tests of the FFT and of both sine transforms share."""
+"""Parameters and error bounds that the tests of the FFT and of both sine transforms share."""
 
 from typing import Any
 
 import numpy as np
-
-FFT_SOURCES = [
-    "burst_counter.sv",
-    "delay_line.sv",
-    "dot_product.sv",
-    "multiply.sv",
-    "ram.sv",
-    "rom.sv",
-    "round_saturate.sv",
-    "sdf_butterfly.sv",
-    "sdf_fft.sv",
-    "twiddle_multiply.sv",
-]
 
 # Parameters of dst_forward and dst_inverse, in the order of their structures.
 TRANSFORM_PARAMETERS = (
@@ -31,7 +18,7 @@ TRANSFORM_PARAMETERS = (
 )
 
 
-def transform_parameters(*values: Any) -> dict[Any, Any]:
+def transform_parameters(*values: int) -> dict[str, int]:
     """Return the parameters of a sine transform by name."""
     return dict(zip(TRANSFORM_PARAMETERS, values, strict=True))
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.calibration.flat_field import interpolate_nodes
+from tactile_depth.common.block_sum import block_sum
 from tactile_depth.common.round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.configuration import Configuration
 
@@ -53,14 +54,5 @@ def exact_zero(depth: np.ndarray, untouched: np.ndarray, config: Configuration) 
         Depth without contact, from which the floor is computed.
     """
     log2 = config.reference_block_log2
-    return depth - interpolate_nodes(block_sums(untouched, config).mean(axis=0)[..., None], config)[..., 0] / (
-        1 << 4 * log2 + 2
-    )
-
-
-def block_sums(depths: np.ndarray, config: Configuration) -> np.ndarray:
-    """Return the sum over each block: (..., rows, columns) to (frames, node rows, node columns)."""
-    block = 1 << config.reference_block_log2
-    rows, columns = config.reference_nodes
-    whole = depths.reshape(-1, *depths.shape[-2:])[:, : rows * block, : columns * block]
-    return whole.reshape(-1, rows, block, columns, block).sum(axis=(2, 4))
+    sums = block_sum(untouched.reshape(-1, *untouched.shape[-2:]), log2).mean(axis=0)
+    return depth - interpolate_nodes(sums[..., None], config)[..., 0] / (1 << 4 * log2 + 2)

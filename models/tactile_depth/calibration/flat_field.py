@@ -26,6 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactile_depth.common.block_sum import block_sum
 from tactile_depth.common.round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration
 from tactile_depth.errors import InputError
@@ -83,9 +84,7 @@ def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     count = len(frames)
     assert count.bit_count() == 1, "a power of two of frames"
     log2 = config.reference_block_log2
-    rows, columns = config.reference_nodes
-    whole = frames[:, : rows << log2, : columns << log2].astype(np.int64)
-    total = whole.reshape(count, rows, 1 << log2, columns, 1 << log2, 3).sum(axis=(0, 2, 4))
+    total = block_sum(frames.astype(np.int64), log2).sum(axis=0)
     dividend = np.int64(2 * count << (GAIN_FRACTION + 2 * log2))
     quotient = (dividend // np.maximum(total, 1) + 1) >> 1
     return np.minimum(quotient, (1 << GAIN_WIDTH) - 1)

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.calibration.auto_zero import auto_zero_parameters, block_sums
+from tactile_depth.calibration.auto_zero import auto_zero_parameters
+from tactile_depth.common.block_sum import CYCLES_TO_SUM, block_sum
 from tactile_depth.common.round_saturate import round_half_even
 from tactile_depth.configuration import Configuration
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; it equals that of reference_capture."""
-CLOCKS = 6
+CLOCKS = CYCLES_TO_SUM + 2
 """Cycles from the last word of the last row of blocks to `done`."""
 
 
@@ -35,4 +36,5 @@ def captured_floor(codes: np.ndarray, config: Configuration) -> np.ndarray:
     count = len(codes)
     assert count.bit_count() == 1, "a power of two of frames"
     log2 = count.bit_length() - 1
-    return round_half_even(block_sums(codes, config).sum(axis=0), 2 * config.reference_block_log2 + log2)
+    sums = block_sum(codes, config.reference_block_log2).sum(axis=0)
+    return round_half_even(sums, 2 * config.reference_block_log2 + log2)

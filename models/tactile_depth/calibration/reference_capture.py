@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tactile_depth.calibration.flat_field import captured_gains
+from tactile_depth.common import divide
 from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH, Configuration
 
 PIXEL_WIDTH = 8
@@ -37,7 +38,7 @@ def reference_capture_parameters(config: Configuration) -> dict[str, int]:
 def reference_capture_clocks(config: Configuration) -> int:
     """Return the cycles from the cycle that takes the last pixel of the last frame to `done`."""
     rows, columns = config.reference_nodes
-    a_gain = 1 + (GAIN_WIDTH + 1) + 1  # compare; one cycle for each bit of the quotient; round
+    a_gain = divide.cycles(GAIN_WIDTH + 1) + 1  # with one bit to round by; and a cycle to take it
     return rows * columns * (READ_CLOCKS + 3 * a_gain) + 2
 
 

@@ -1,26 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `tactile-depth`: its subcommands, its exit status, and one line for each error and warning.
 
-Exit status: 0 success, 2 input that cannot be used, 3 a failure on the way, 130 interrupted.
+Exit status: 0 success, 2 input that cannot be used, 3 a failure on the way, 128 + the number of a signal.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
+import signal
 import sys
+import threading
 import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from types import FrameType
 from typing import NoReturn
 
 from tactile_depth.cli import depth, live
 from tactile_depth.cli.failure import Failure
 from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.files import cause
 
 PROGRAM = "tactile-depth"
-BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 130
+BAD_INPUT, FAILED = 2, 3
+SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "terminated by SIGTERM", "SIGHUP": "terminated by SIGHUP"}
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
 
 # Errors of the package name arguments; a user of the command gave options.
@@ -28,11 +33,13 @@ OPTIONS = {
     r"\bcamera_size=\(rows, columns\)": "--camera-size <columns>x<rows>",
     r"\bcamera_size=\((\d+), (\d+)\)": r"--camera-size \2x\1",
     r"\bcamera_size\b": "--camera-size",
+    r"\bfolder=": "--out ",
     r"\bcolumns=(\d+)": r"--grid \1x..",
     r"\brows=(\d+)": r"--grid ..x\1",
     r"\bthreshold_mm=": "--threshold-mm ",
     r"\bgradient_model=": "--model ",
     r"\breference=": "--reference ",
+    r"\bname the calibration of the sensor that took it": "give the one of its sensor with --calibration",
 }
 
 
@@ -79,11 +86,30 @@ def _warnings_in_lines() -> Iterator[list[str]]:
         yield lines
 
 
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Turn SIGTERM and SIGHUP into a KeyboardInterrupt with the number of the signal, as SIGINT gives one."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may change what a signal does
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt(number)
+
+    numbers = [getattr(signal, name) for name in SIGNALS if name != "SIGINT" and hasattr(signal, name)]
+    before = {number: signal.signal(number, stop) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     try:
         parsed = _parser().parse_args(arguments)
-        with _warnings_in_lines() as lines:
+        with _interruptible(), _warnings_in_lines() as lines:
             parsed.run(parsed, lines)
     except InputError as error:
         print(f"{PROGRAM}: {named(str(error))}", file=sys.stderr)
@@ -91,9 +117,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Failure as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return FAILED
-    except KeyboardInterrupt:
-        print(f"{PROGRAM}: interrupted", file=sys.stderr)
-        return INTERRUPTED
+    except OSError as error:
+        print(f"{PROGRAM}: {cause(error)}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt as stop:
+        number = signal.Signals(stop.args[0] if stop.args else signal.SIGINT)
+        print(f"{PROGRAM}: {SIGNALS[number.name]}", file=sys.stderr)
+        return 128 + number
     except Exception:
         traceback.print_exc()
         print(f"{PROGRAM}: an error of this program, not of the input: please report the lines above", file=sys.stderr)

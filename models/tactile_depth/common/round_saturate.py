@@ -87,7 +87,7 @@ def round_saturate(
     function serves both the integer model of a core and its ideal linear map.
     """
     if x.dtype.kind == "f":
-        x = x / np.exp2(np.asarray(drop, float))
+        x = np.ldexp(x, -np.asarray(drop))  # exact; exp2 of some processors is not
         if monitor is not None:
             monitor.linear(node, x)
         return x

@@ -8,17 +8,20 @@ from dataclasses import dataclass
 
 @dataclass
 class ThresholdComparator:
-    """State of the `contact` output, beat by beat.
+    """State of the `contact` output, cycle by cycle.
 
     Attributes
     ----------
     contact : bool
-        Value of the output from the cycle after the last beat to the cycle after the next beat.
+        Value of the output in the cycle after the last one that was taken.
+    raised : bool
+        True if a depth code of the current frame was above the threshold.
     threshold : int or None
         Threshold of the current frame; None before the first frame.
     """
 
     contact: bool = False
+    raised: bool = False
     threshold: int | None = None
 
     def beat(self, data: int, user: bool, threshold: int, hold: bool) -> None:
@@ -40,11 +43,13 @@ class ThresholdComparator:
             self.threshold = threshold
         if self.threshold is None:
             raise ValueError("a depth code left before the first of any frame")
-        if data > self.threshold:
-            self.contact = True
-        elif user and not hold:
-            self.contact = False
+        self.raised = data > self.threshold or (self.raised and not user)
+        self.idle(hold)
+
+    def idle(self, hold: bool) -> None:
+        """Take a cycle in which no depth code leaves."""
+        self.contact = self.raised or (hold and self.contact)
 
     def reset(self) -> None:
         """Advance by one clock edge in reset, which clears `contact` and keeps the threshold, as the device does."""
-        self.contact = False
+        self.contact = self.raised = False

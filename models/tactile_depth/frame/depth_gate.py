@@ -14,8 +14,8 @@ class Word(NamedTuple):
     """A depth code with its marks: first of a frame, last of a row, last of a frame."""
 
     data: int
-    user: bool
-    last: bool
+    frame_start: bool
+    row_end: bool
     frame_end: bool
 
 
@@ -27,9 +27,9 @@ class DepthGate:
     ----------
     sending : deque of Word
         Words that the sink has not taken, oldest first; the first is offered.
-    looking : deque of (Word, bool)
+    tapping : deque of (Word, bool)
         Words that are not tapped yet; True for a word of a frame that does not wait for the sink.
-    looked : int
+    tapped : int
         Number of words in `sending`, from the oldest on, that have been tapped.
     dropping : bool
         Value of drop_frames for the current input frame.
@@ -40,8 +40,8 @@ class DepthGate:
     """
 
     sending: deque[Word] = field(default_factory=deque)
-    looking: deque[tuple[Word, bool]] = field(default_factory=deque)
-    looked: int = 0
+    tapping: deque[tuple[Word, bool]] = field(default_factory=deque)
+    tapped: int = 0
     dropping: bool = False
     given_up: bool = False
     starting: bool = True
@@ -52,34 +52,34 @@ class DepthGate:
 
     @property
     def en(self) -> bool:
-        return not self.starting and len(self.looking if self.dropping else self.sending) < CAPACITY
+        return not self.starting and len(self.tapping if self.dropping else self.sending) < CAPACITY
 
-    def look(self, ready: bool) -> Word | None:
+    def tap(self, ready: bool) -> Word | None:
         """Return the word that is tapped in this cycle, None without one."""
-        if not self.looking:
+        if not self.tapping:
             return None
-        word, dropping = self.looking[0]
-        leaves = ready and bool(self.sending) and not self.looked
+        word, dropping = self.tapping[0]
+        leaves = ready and bool(self.sending) and not self.tapped
         return word if self.dropping or dropping or leaves else None
 
     def dropped(self, word: Word | None) -> bool:
         """Return True if the frame is given up in this cycle, at this word."""
-        return word is not None and self.en and not self.room and (word.user or not self.given_up)
+        return word is not None and self.en and not self.room and (word.frame_start or not self.given_up)
 
     def clock(self, word: Word | None, ready: bool, drop_frames: bool) -> None:
         """Advance by one clock edge; `word` is on the input (None: no word), `ready` is set by the sink."""
-        moves, room, looked_at = word is not None and self.en, self.room, self.look(ready)
-        if looked_at is not None:
-            self.looking.popleft()
-            self.looked += any(looked_at is other for other in self.sending)
+        moves, room, tapped_now = word is not None and self.en, self.room, self.tap(ready)
+        if tapped_now is not None:
+            self.tapping.popleft()
+            self.tapped += any(tapped_now is other for other in self.sending)
         if ready and self.sending:
             self.sending.popleft()
-            self.looked -= 1
+            self.tapped -= 1
         if word is not None and moves:
-            self.given_up = not room or (self.given_up and not word.user)
+            self.given_up = not room or (self.given_up and not word.frame_start)
             if not self.given_up:
                 self.sending.append(word)
-            self.looking.append((word, self.dropping))
+            self.tapping.append((word, self.dropping))
         if word is None or (moves and word.frame_end):
             self.dropping = drop_frames
         self.starting = False
@@ -87,5 +87,5 @@ class DepthGate:
     def reset(self) -> None:
         """Advance by one clock edge in reset."""
         self.sending.clear()
-        self.looking.clear()
-        self.looked, self.dropping, self.starting = 0, False, True
+        self.tapping.clear()
+        self.tapped, self.dropping, self.starting = 0, False, True

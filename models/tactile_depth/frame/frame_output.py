@@ -25,7 +25,7 @@ class FrameOutput:
     Attributes
     ----------
     beats : list of tuple of int
-        Data, last (of a row), user (first of a frame).
+        Data, row_end, frame_start.
     clocks : list of int
         Enabled cycle of each beat, counted from 0.
     ends : list of int

@@ -25,6 +25,7 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
     return {
         **config.transform_parameters(),
         "Rows": config.rows,
+        "Lanes": config.lanes,
         "InWidth": config.divergence.width,
         "DataWidth": config.data_width,
         "Neumann": int(config.neumann),

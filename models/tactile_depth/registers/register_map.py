@@ -10,11 +10,14 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 
 FILE = Path(__file__).resolve().parent / "register_map.json"
 
 WORD_BITS = 32
+WORD = (1 << WORD_BITS) - 1
+"""Word of all ones."""
 ACCESSES = {
     "ro": "read-only",
     "rw": "read and written",
@@ -37,6 +40,8 @@ class Field:
         Value after reset; None if the parameters of the build or a live input determine it.
     signed : bool
         True for two's complement.
+    setting : bool
+        True if software alone writes the field, and it holds what was written.
     values : mapping
         Name to code, for a field that selects one of several values.
     """
@@ -47,6 +52,7 @@ class Field:
     access: str
     reset: int | None
     signed: bool
+    setting: bool
     values: Mapping[str, int]
     description: str
 
@@ -127,7 +133,7 @@ class Register:
         return word
 
 
-_READ = json.loads(FILE.read_text())
+_READ = json.loads(resources.files(__package__).joinpath(FILE.name).read_text())  # also from a .zip
 
 ADDRESS_WIDTH: int = _READ["address_width"]  # bits of a byte address
 MAP = tuple(

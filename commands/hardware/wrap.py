@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make wrap NAME=finger`: a module tactile_depth_finger with every parameter of a configuration inside.
+
+Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and the variables of `make sim` that choose
+a configuration. The module has the ports of tactile_depth. It and its table files go into the folder OUT. Modules for
+several configurations fit into one design, if each has its own folder of tables.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from pathlib import Path
+
+from commands.common import repository, run_request, variables, wrapper
+from commands.hardware import synth
+from tactile_depth import files
+from tactile_depth.errors import InputError
+from tactile_depth.tactile_depth import top_parameters, write_roms
+
+NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+def main() -> None:
+    with variables.reported("wrap"):
+        values = variables.given(sys.argv[1:], ("NAME", "OUT", "TABLES", *synth.CONFIGURING))
+        name = values.pop("NAME", "")
+        if not NAME.fullmatch(name):
+            raise InputError(f"NAME={name}: accepted are small letters, digits and _, beginning with a letter")
+        out = Path(values.pop("OUT", repository.ROOT / "build" / "wrap" / name))
+        tables = values.pop("TABLES", "./")
+        if not tables.endswith("/") or '"' in tables:
+            raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
+        config, calibration = synth.configured(run_request.parse([f"{key}={value}" for key, value in values.items()]))
+        with files.workspace(out) as work:
+            path = wrapper.write(work, name, top_parameters(config, calibration.pixel_pitch_mm), tables)
+            write_roms(work, calibration, config)
+            names = [file.name for file in work.iterdir()]
+            files.replace(work, names, out)
+        print(f"wrote {os.path.relpath(out / path.name)} and {len(names) - 1} table files beside it")

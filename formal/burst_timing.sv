@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// burst_timing: start and frame_start leave with the burst they came with, Latency enabled clocks later, and no others.
+
+module burst_timing #(
+  parameter int Size    = 8,
+  parameter int Latency = 23
+) (
+  input logic clk,
+  input logic rst,
+  input logic en,
+  input logic in_start,
+  input logic in_frame_start,
+  input logic out_start,
+  input logic out_frame_start
+);
+
+  logic started = 1'b0;
+  logic [Latency-1:0] start_q, frame_start_q;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (en) begin
+      start_q <= Latency'({start_q, in_start});
+      frame_start_q <= Latency'({frame_start_q, in_frame_start});
+    end
+    if (rst) begin
+      start_q <= '0;
+      frame_start_q <= '0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      start_when_due: assert (out_start == start_q[Latency-1]);
+      frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
+    end
+  end
+  if (Latency > Size) begin : g_next
+    always_comb begin
+      if (started) begin
+        next_burst_behind: cover (out_start && !out_frame_start && start_q[Size-1] && en);
+        next_frame: cover (out_frame_start && start_q[Size-1:0] == '0);
+      end
+    end
+  end
+
+endmodule

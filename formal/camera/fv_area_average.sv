@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_area_average: a word leaves 10 enabled clocks behind each block that is complete, and 16 behind each break; it has
+// the marks of its position, and a break ends a frame with the mark of a row's end the wrong way round.
+//
+// Whatever block_totals completes (`complete` is free): that it does so with a block's last pixel, and no break in the
+// same slot, is proven of row_sums and block_totals, and of camera_window.
+
+module fv_area_average #(
+  parameter int Rows    = 3,
+  parameter int Columns = 4
+) (
+  input logic       clk,
+  input logic       rst,
+  input logic       en,
+  input logic       in_valid,
+  input logic       in_row_start,
+  input logic       in_frame_start,
+  input logic       in_abort
+);
+
+  logic out_valid, out_last, out_user;
+  logic [23:0] out_pixel;
+  area_average #(.Rows(Rows), .Columns(Columns), .Numerator(1), .Denominator(1), .Bits(8), .Bayer(0)) dut (
+    .clk, .rst, .en, .in_valid, .in_samples('0), .in_colour('0), .in_row_start, .in_frame_start, .in_abort, .out_valid,
+    .out_pixel, .out_last, .out_user
+  );
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  localparam int Break = 16;
+  localparam int Mean = 10;
+  logic complete;
+  logic [Break-1:0] breaks;
+  logic [Mean-1:0] means;
+  logic [$clog2(Rows*Columns)-1:0] place;  // words of the frame that have left
+  logic held;
+  logic [2:0] marks_q;
+  assign complete = fv_area_average.dut.complete;
+  always_comb if (breaks[Break-Mean-1]) assume (!complete);
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= started & ~en & ~rst;
+    marks_q <= {out_valid, out_last, out_user};
+    if (en) begin
+      breaks <= {breaks[Break-2:0], in_abort};
+      means <= {means[Mean-2:0], complete};
+      if (breaks[Break-1]) place <= '0;
+      else if (means[Mean-1]) place <= 32'(place) == Rows * Columns - 1 ? '0 : place + 1'b1;
+    end
+    if (rst) begin
+      breaks <= '0;
+      means <= '0;
+      place <= '0;
+    end
+  end
+
+  logic row_ends;
+  assign row_ends = 32'(place) % Columns == Columns - 1;
+  always_comb begin
+    if (started) begin
+      in_time: assert (out_valid == (means[Mean-1] | breaks[Break-1]));
+      if (out_valid) begin
+        start: assert (out_user == (place == '0));
+        end_of_row: assert (out_last == (row_ends ^ breaks[Break-1]));
+        broken_at_once: cover (breaks[Break-1] && out_user);
+        broken_at_the_end: cover (breaks[Break-1] && !out_last && 32'(place) == Rows * Columns - 1);
+        whole: cover (means[Mean-1] && 32'(place) == Rows * Columns - 1);
+      end
+      if (held) holds: assert (marks_q == {out_valid, out_last, out_user});
+    end
+  end
+
+endmodule

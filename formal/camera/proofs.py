@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The proofs of the camera block."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from formal.entries import FULL_WIDTH, ROUNDING, Proof
+
+CAMERA_PROOFS: tuple[Proof, ...] = (
+    *(
+        Proof(
+            "block_weights",
+            "the weight of a pixel is its overlap with the block it is in or begins in; the block's last pixel",
+            "one counter; ratios of 1, of an integer, below and above 2",
+            {"Numerator": numerator, "Denominator": denominator},
+        )
+        for numerator, denominator in ((1, 1), (3, 1), (4, 3), (15, 4))
+    ),
+    Proof(
+        "round_divide",
+        "the nearest integer, ties to even, clipped to 0..255; latency 10",
+        "a stage for each bit of the quotient, the same at every width of the divisor",
+        {"TotalWidth": 12, "WeightWidth": 2, "Drop": 1},
+    ),
+    *(
+        Proof(
+            "row_sums",
+            "a word with the last pixel of each block, with the sums of the lanes over it; latency 3",
+            "sums are exact at any width",
+            {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer},
+            depth=30,
+        )
+        for numerator, denominator, bayer in ((1, 1, 0), (4, 3, 0), (2, 1, 1), (5, 2, 1))
+    ),
+    *(
+        Proof(
+            "block_totals",
+            "a word with each complete block, with its areas"
+            + (" and totals" if totals else "")
+            + "; latency 3; memory "
+            "as ram.sv asks",
+            "columns are only counted; totals are left to simulation where a block has several rows",
+            {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer, "Totals": totals},
+            depth=60,
+        )
+        for numerator, denominator, bayer, totals in ((1, 1, 0, 1), (3, 2, 0, 0), (5, 2, 1, 0))
+    ),
+    *(
+        Proof(
+            "area_average",
+            "a word 10 clocks behind each complete block and 16 behind each break, with the marks of its position",
+            "rows and columns are only counted; what is complete is proven of row_sums and block_totals",
+            {"Rows": rows, "Columns": columns},
+            depth=50,
+            free=("complete",),
+        )
+        for rows, columns in ((3, 4), (2, 5))
+    ),
+    *(
+        Proof(
+            "channel_gain",
+            "the sample less the black level times its gain, of the frame's own settings; latency 3",
+            f"products are exact at any width; {ROUNDING}",
+            {"Bayer": bayer},
+        )
+        for bayer in (0, 1)
+    ),
+    *(
+        Proof(
+            "pixel_format",
+            "samples of the window's pixels with their marks, in order; breaks behind them; latency 1",
+            FULL_WIDTH,
+            {"Format": form, "Bits": bits, **choice},
+        )
+        for form, bits, choice in (
+            (0, 8, {"Phase": 1}),
+            (0, 10, {"MsbAligned": 1}),
+            (0, 12, {"MsbAligned": 0}),
+            (1, 8, {}),
+            (2, 8, {"HighByteFirst": 0}),
+            (2, 8, {"HighByteFirst": 1}),
+        )
+    ),
+    Proof(
+        "pixel_format",
+        "YUYV: luma and chroma of the pixel's own pair, in order; latency 3 and 4, breaks 4",
+        f"coefficients of 0 and 1: products are exact; {ROUNDING}",
+        {"Format": 3, "Bits": 10},
+    ),
+    *(
+        Proof(
+            "camera_window",
+            "pixels of whole pictures with the marks of the window; faults before its last pixel flagged once, with a "
+            "break; an early start kept; latency 1",
+            "rows and columns are only counted and compared",
+            {"WordsPerPixel": words, "PixelPairs": pairs},
+            depth=40,
+        )
+        for words, pairs in ((1, 0), (1, 1))
+    ),
+)
+
+CAMERA_WITHOUT_CONTROL: Mapping[str, str] = {
+    "camera_front_end": "a chain of proven cores, each of which takes what the one before it sends",
+}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_contact_sums: area 2 clocks after the last depth of each frame, sums 3; the area counts the depths above the
+// threshold; limits and peak enclose an arbitrary depth above it, and are attained; the first of equal peaks.
+//
+// Whatever frames come, one may begin inside another; `touching` takes any value in any clock. Sums of rows, columns and
+// depths are left to simulation against the model.
+
+module fv_contact_sums
+  import stream_pkg::*;
+#(
+  parameter int Width       = 2,
+  parameter int Rows        = 2,
+  parameter int Columns     = 3,
+  parameter int BottomFirst = 0
+) (
+  input logic                    clk,
+  input logic                    rst,
+  input logic                    in_valid,
+  input logic                    restart,
+  input logic signed [Width-1:0] in_data,
+  input logic signed [Width:0]   on_level,
+  input logic signed [Width:0]   off_level,
+  input logic                    touching,
+  input logic [3:0]              chosen
+);
+
+  localparam int Pixels = Rows * Columns;
+  localparam int AreaWidth = $clog2(Pixels + 1);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic area_valid, sums_valid;
+  logic [AreaWidth-1:0] area;
+  depth_position_t in_position;
+  contact_sums_t sums;
+  contact_sums #(.Width(Width), .Rows(Rows), .Columns(Columns), .BottomFirst(BottomFirst)) dut (
+    .clk, .rst, .in_valid, .in_position, .in_data, .on_threshold(32'(on_level)), .off_threshold(32'(off_level)), .touching,
+    .area_valid, .area, .sums_valid, .sums
+  );
+
+  logic [3:0] next_place, place;
+  assign in_position.frame_start = restart | (next_place == '0);
+  assign place = in_position.frame_start ? '0 : next_place;
+  assign in_position.row_end = place % 4'(Columns) == 4'(Columns - 1);
+  assign in_position.frame_end = place == 4'(Pixels - 1);
+
+  // A depth one clock later, with the thresholds of its frame.
+  logic valid_q, first_q, above;
+  logic signed [Width-1:0] data_q;
+  logic signed [Width:0] on_q, off_q;
+  logic [3:0] place_q;
+  logic [15:0] row_q, column_q;
+  assign above = valid_q & ((Width + 1)'(data_q) > (touching ? off_q : on_q));
+  assign row_q = BottomFirst != 0 ? 16'(Rows - 1) - 16'(place_q / 4'(Columns)) : 16'(place_q / 4'(Columns));
+  assign column_q = 16'(place_q % 4'(Columns));
+
+  // What the frame should come to; an arbitrary depth, row and column of it.
+  logic [2:0] due;
+  logic [3:0] watched, watched_row, watched_column;
+  logic [AreaWidth-1:0] count, count_q;
+  logic held, held_q, in_row, in_row_q, in_column, in_column_q;
+  logic signed [Width-1:0] depth, depth_q;
+  logic signed [31:0] peak;
+  logic [3:0] peak_place;
+  assign peak = $signed(sums.peak);
+  assign peak_place = 4'((BottomFirst != 0 ? 16'(Rows - 1) - sums.peak_row : sums.peak_row) * 16'(Columns)
+      + sums.peak_column);
+  assign watched_row = BottomFirst != 0 ? 4'(Rows - 1) - watched / 4'(Columns) : watched / 4'(Columns);
+  assign watched_column = watched % 4'(Columns);
+
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (!started) watched <= chosen;
+    if (in_valid) begin
+      next_place <= in_position.frame_end ? '0 : place + 4'd1;
+      if (in_position.frame_start) {on_q, off_q} <= {on_level, off_level};
+    end
+    valid_q <= in_valid & ~rst;
+    first_q <= in_position.frame_start;
+    data_q <= in_data;
+    place_q <= place;
+    due <= {due[1:0], in_valid & in_position.frame_end};
+    if (valid_q) begin
+      count <= (first_q ? '0 : count) + AreaWidth'(above);
+      held <= place_q == watched ? above : held & ~first_q;
+      in_row <= (above & row_q == 16'(watched_row)) | (in_row & ~first_q);
+      in_column <= (above & column_q == 16'(watched_column)) | (in_column & ~first_q);
+      if (place_q == watched) depth <= data_q;
+    end
+    {count_q, held_q, in_row_q, in_column_q, depth_q} <= {count, held, in_row, in_column, depth};
+    if (rst) begin
+      next_place <= '0;
+      due <= '0;
+    end
+  end
+  always_comb assume (chosen < 4'(Pixels));
+
+  always_comb begin
+    if (started) begin
+      area_in_time: assert (area_valid == due[1]);
+      sums_in_time: assert (sums_valid == due[2]);
+      if (area_valid) area_of_frame: assert (area == count);
+      if (sums_valid) begin
+        none: assert (count_q != 0 || sums == '0);
+        if (held_q) begin
+          row_within: assert (sums.least_row <= 16'(watched_row) && 16'(watched_row) <= sums.greatest_row);
+          column_within: assert (sums.least_column <= 16'(watched_column)
+              && 16'(watched_column) <= sums.greatest_column);
+          highest: assert (peak > 32'(depth_q) || (peak == 32'(depth_q) && peak_place <= watched));
+        end
+        if (count_q != 0) begin
+          if (peak_place == watched) peak_attained: assert (held_q && peak == 32'(depth_q));
+          if (sums.least_row == 16'(watched_row) || sums.greatest_row == 16'(watched_row)) begin
+            row_attained: assert (in_row_q);
+          end
+          if (sums.least_column == 16'(watched_column) || sums.greatest_column == 16'(watched_column)) begin
+            column_attained: assert (in_column_q);
+          end
+        end
+      end
+      some_above: cover (sums_valid && held_q && count_q == AreaWidth'(3) && peak != 32'(depth_q));
+      none_above: cover (sums_valid && count_q == 0);
+      next_follows: cover (area_valid && above && first_q);
+    end
+  end
+
+endmodule

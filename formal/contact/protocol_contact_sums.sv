@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_contact_sums: frames as depth_frames allows them; area and sums count while they are valid.
+
+module protocol_contact_sums #(
+  parameter int Rows    = 128,
+  parameter int Columns = 128
+) (
+  input  logic       clk,
+  input  logic       rst,
+  input  logic       in_valid,
+  input  logic [2:0] in_position,
+  input  logic       area_valid,
+  input  logic       sums_valid,
+  output logic       holds,
+  output logic       counts_area,
+  output logic       counts_sums,
+  output logic       counts
+);
+
+  logic reset;
+  assign counts_area = counts & area_valid;
+  assign counts_sums = counts & sums_valid;
+  depth_frames #(.Rows(Rows), .Columns(Columns)) u_frames (
+    .clk, .rst, .in_valid, .in_position, .holds, .reset, .counts
+  );
+
+endmodule

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// depth_frames: rows of Columns depths, Rows of them in a frame.
+//
+// A frame may begin inside another; none but the first after a reset may lack its start.
+
+module depth_frames #(
+  parameter int Rows    = 128,
+  parameter int Columns = 128
+) (
+  input  logic       clk,
+  input  logic       rst,
+  input  logic       in_valid,
+  input  logic [2:0] in_position,  // frame_start, row_end, frame_end
+  output logic       holds,
+  output logic       reset,
+  output logic       counts
+);
+
+  logic live = 1'b0, frame_start, row_end, frame_end;
+  logic [15:0] next_place = '0, next_column = '0;  // of the next depth; place 0: the first of a frame
+  logic [15:0] place, column;
+  assign {frame_start, row_end, frame_end} = in_position;
+  assign reset = rst | ~holds;
+  assign place = frame_start ? '0 : next_place;
+  assign column = frame_start ? '0 : next_column;
+  assign holds = ~in_valid | rst | ((frame_start | next_place != '0)
+      & (row_end == (column == 16'(Columns - 1))) & (frame_end == (place == 16'(Rows * Columns - 1))));
+  assign counts = live & ~reset;
+  always_ff @(posedge clk) begin
+    live <= live | reset;
+    if (reset) begin
+      next_place <= '0;
+    end else if (in_valid) begin
+      next_place <= frame_end ? '0 : place + 16'd1;
+      next_column <= row_end ? '0 : column + 16'd1;
+    end
+  end
+
+endmodule

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_table_banks: a table's bank changes with a frame alone, and only after a commit or a capture asked for it.
+//
+// One arbitrary table is followed: `pick` is free and constant. Nothing is assumed of writes, frames, tables or resets.
+
+module fv_table_banks
+  import register_map_pkg::*;
+  import stream_pkg::*;
+#(
+  parameter int Present = 15
+) (
+  input logic            clk,
+  input logic            rst,
+  input logic            cold_rst,
+  input logic            write,
+  input logic [31:0]     write_offset,
+  input logic [31:0]     write_ones,
+  input logic [31:0]     read_offset,
+  input logic            frame_start,
+  input logic [3:0]      table_in_use,
+  input capture_status_t reference_status,
+  input capture_status_t floor_status,
+  input logic [1:0]      pick
+);
+
+  logic write_refused, reference_request, floor_request;
+  logic [31:0] read_data;
+  logic [3:0] table_bank, closed;
+  table_banks #(.Present(Present)) dut (.*);
+
+  logic started = 1'b0;
+  logic [1:0] pick_was;
+  always_comb if (!started) assume (rst);
+  always_comb if (started) assume (pick == pick_was);
+
+  // The followed table: a request that no frame has taken, its bank, and its capture.
+  logic has, requested, bank, waits, busy, done, commits, is_reference, is_floor, shown;
+  assign has = Present[pick];
+  assign is_reference = 32'(pick) == TableSelectReference;
+  assign is_floor = 32'(pick) == TableSelectFloor;
+  assign busy = (is_reference && reference_status.busy) || (is_floor && floor_status.busy);
+  assign done = (is_reference && reference_status.done) || (is_floor && floor_status.done);
+  assign waits = requested || (has && bank != table_in_use[pick]);
+  assign commits = write && write_offset == TableCommitOffset && write_ones[pick] && has && !waits && !busy;
+  assign shown = table_bank[pick];
+  logic asks, may_start;
+  assign asks = (is_reference && write_offset == CaptureOffset && write_ones[CaptureStartBit])
+    || (is_floor && write_offset == FloorCaptureOffset && write_ones[FloorCaptureStartBit]);
+  assign may_start = has && !(is_floor && (waits || done));
+
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    pick_was <= pick;
+    if (frame_start && !rst && requested) bank <= !bank;
+    if (frame_start) requested <= 1'b0;
+    if (commits || (done && has)) requested <= 1'b1;
+    if (rst) requested <= 1'b0;
+    if (cold_rst) bank <= 1'b0;
+    if (!started) bank <= cold_rst ? 1'b0 : shown;  // of the power-up
+  end
+
+  always_comb begin
+    if (started) begin
+      bank_of_the_frame: assert (shown == (bank ^ (requested && frame_start && !rst)));
+      closed_while_it_waits: assert (closed[pick] == (waits || busy));
+      if (read_offset == TableCommitOffset) commit_reads: assert (read_data[pick] == waits && read_data[31:4] == '0);
+      if (read_offset == CaptureOffset) reference_reads: assert (read_data == 32'(reference_status.busy) << CaptureBusyBit);
+      if (read_offset == FloorCaptureOffset) floor_reads: assert (read_data == 32'(floor_status.busy) << FloorCaptureBusyBit);
+      if (asks) refused_or_not: assert (write_refused == !may_start);
+      if (write_offset != CaptureOffset && write_offset != FloorCaptureOffset) no_other: assert (!write_refused);
+      if (is_reference) reference_asked: assert (reference_request == (write && asks));
+      if (is_floor) floor_asked: assert (floor_request == (write && asks));
+
+      changes_over: cover (frame_start && requested && has && bank);
+      after_a_capture: cover (frame_start && requested && is_floor && !rst);
+      cold: cover (cold_rst && bank && started);
+    end
+  end
+
+endmodule

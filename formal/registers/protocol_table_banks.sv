@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_table_banks: no write in a reset, and none that is refused.
+
+module protocol_table_banks (
+  input  logic clk,
+  input  logic rst,
+  input  logic write,
+  input  logic write_refused,
+  output logic holds,
+  output logic counts
+);
+
+  logic live = 1'b0;
+  always_ff @(posedge clk) live <= live | rst;
+  assign holds = ~(write & (rst | write_refused));
+  assign counts = live;
+
+endmodule

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// area_average: the mean colour of each block of Numerator / Denominator camera pixels, which is a pixel of the grid.
+//
+//   colour = sum w s / (2^(Bits - 8) sum w), rounded half to even once, clipped to 0..255
+//
+//   row_sums -> block_totals -> round_divide, one for each colour
+//
+// w is the area of a camera pixel in the block. RGB (Bayer 0): s has the three colours of a pixel. Bayer 1: s is one
+// colour, which in_colour names, and the sums run over the pixels of that colour.
+// Stream in: the pixels of a window in raster order, in_row_start with the first of a row, in_frame_start with the
+// first of all; gaps anywhere. Stream out: the grid in raster order, R in 23:16, B in 15:8, G in 7:0; out_user with the
+// first of a frame, out_last with the last of a row. in_abort, in a cycle without a pixel, ends a frame that is not
+// whole: one more word leaves, the first of a frame if none did, and its out_last is the wrong way round.
+// Latency: 16 cycles with en, from the pixel that completes a block, and from in_abort. en low: nothing moves.
+// Bit-accurate model: models/tactile_depth/camera/area_average.py.
+
+`default_nettype none
+
+module area_average #(
+  parameter int Rows        = 128,  // of the grid
+  parameter int Columns     = 128,
+  parameter int Numerator   = 15,
+  parameter int Denominator = 4,
+  parameter int Bits        = 10,  // 2^Bits is full scale of a sample
+  parameter int Bayer       = 1,
+  localparam int Channels = Bayer != 0 ? 1 : 3,
+  localparam int Width = Bits + 2
+) (
+  input  wire                      clk,
+  input  wire                      rst,
+  input  wire                      en,
+  input  wire                      in_valid,
+  input  wire [Channels*Width-1:0] in_samples,  // signed, red lowest
+  input  wire [1:0]                in_colour,   // Bayer: bit 0 a column of blue, bit 1 a row of blue
+  input  wire                      in_row_start,
+  input  wire                      in_frame_start,
+  input  wire                      in_abort,
+  output logic                     out_valid,
+  output logic [23:0]              out_pixel,
+  output logic                     out_last,
+  output logic                     out_user
+);
+
+  localparam int RowSums = 3;
+  localparam int BlockTotals = 3;
+  localparam int Divide = 10;
+  localparam int Latency = RowSums + BlockTotals + Divide;
+  localparam int Lanes = Bayer != 0 ? 2 : 3;
+  localparam int BlockWidth = $clog2(Numerator + 1);
+  localparam int SumWidth = Width + $clog2(Numerator);
+  localparam int AreaWidth = $clog2(Numerator * Numerator + 1);
+  localparam int TotalWidth = Width + $clog2(Numerator * Numerator);
+  localparam int ColumnWidth = $clog2(Columns);
+  localparam int RowWidth = $clog2(Rows);
+
+  logic [Lanes*SumWidth-1:0] sums;
+  logic [BlockWidth-1:0] red_columns;
+  logic ends, row_start, frame_start, blue_row;
+  row_sums #(.Numerator(Numerator), .Denominator(Denominator), .Width(Width), .Bayer(Bayer)) u_row_sums (
+    .clk, .rst, .en, .in_valid, .in_samples, .in_blue_column(in_colour[0]), .in_row_start,
+    .out_ends(ends), .out_sums(sums), .out_red_columns(red_columns)
+  );
+  delay_line #(.Width(3), .Delay(RowSums)) u_marks (
+    .clk, .rst, .en, .in({in_valid & in_row_start, in_frame_start, in_colour[1]}),
+    .out({row_start, frame_start, blue_row})
+  );
+
+  logic complete;
+  logic [3*TotalWidth-1:0] totals;
+  logic [3*AreaWidth-1:0] areas;
+  block_totals #(
+    .Columns(Columns), .Numerator(Numerator), .Denominator(Denominator), .Width(Width), .Bayer(Bayer)
+  ) u_block_totals (
+    .clk, .rst, .en, .in_row_start(row_start), .in_frame_start(frame_start), .in_blue_row(blue_row),
+    .in_ends(ends), .in_sums(sums), .in_red_columns(red_columns),
+    .out_valid(complete), .out_totals(totals), .out_areas(areas)
+  );
+
+  logic [23:0] means;  // blue, green, red
+  for (genvar c = 0; c < 3; c++) begin : g_colour
+    round_divide #(.TotalWidth(TotalWidth), .WeightWidth(AreaWidth), .Drop(Bits - 8)) u_divide (
+      .clk, .en, .total(totals[c*TotalWidth+:TotalWidth]), .weight(areas[c*AreaWidth+:AreaWidth]), .mean(means[8*c+:8])
+    );
+  end
+  assign out_pixel = {means[7:0], means[23:16], means[15:8]};
+
+  // The word that leaves next, and its position in the frame.
+  logic [Latency-2:0] aborts;
+  logic [Divide-2:0] completed;
+  logic mean_next, abort_next, last_column, last_row;
+  logic [ColumnWidth-1:0] column;
+  logic [RowWidth-1:0] row;
+  assign mean_next = completed[Divide-2];
+  assign abort_next = aborts[Latency-2];
+  assign last_column = column == ColumnWidth'(Columns - 1);
+  assign last_row = row == RowWidth'(Rows - 1);
+  always_ff @(posedge clk) begin
+    if (en) begin
+      aborts <= {aborts[Latency-3:0], in_abort};
+      completed <= {completed[Divide-3:0], complete};
+      out_valid <= mean_next | abort_next;
+      out_user <= column == '0 & row == '0;
+      out_last <= last_column ^ abort_next;
+      if (mean_next) begin
+        column <= last_column ? '0 : column + ColumnWidth'(1);
+        if (last_column) row <= last_row ? '0 : row + RowWidth'(1);
+      end
+      if (abort_next) begin
+        column <= '0;
+        row <= '0;
+      end
+    end
+    if (rst) begin
+      aborts <= '0;
+      completed <= '0;
+      out_valid <= 1'b0;
+      column <= '0;
+      row <= '0;
+    end
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Bits < 8 || Rows < 2) begin : g_refused
+    Bits_must_be_at_least_8_and_Rows_at_least_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

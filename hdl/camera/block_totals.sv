@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// block_totals: sums of camera pixels over each block of rows and columns, by colour, from those of row_sums.
+//
+//   total = sum w s,  area = sum w,  w the area of a camera pixel in the block, in units of 1 / Denominator^2
+//
+// RGB (Bayer 0): every area is Numerator^2. Bayer 1: an area is that of the pixels of its colour.
+// Stream in: sums of a block's columns, in the order of the raster, and the marks of the pixels: in_row_start with the
+// first of a row, and in_frame_start if no row is before it. Stream out: a word for each block that is complete.
+// Memory: a line of totals. Latency: 3 cycles with en; en low: nothing moves.
+// Bit-accurate model: models/tactile_depth/camera/block_totals.py.
+
+`default_nettype none
+
+module block_totals #(
+  parameter int Columns     = 128,  // of the grid
+  parameter int Numerator   = 15,
+  parameter int Denominator = 4,
+  parameter int Width       = 12,  // of a sample
+  parameter int Bayer       = 1,
+  localparam int Lanes = Bayer != 0 ? 2 : 3,
+  localparam int BlockWidth = $clog2(Numerator + 1),
+  localparam int SumWidth = Width + $clog2(Numerator),
+  localparam int AreaWidth = $clog2(Numerator * Numerator + 1),
+  localparam int TotalWidth = Width + $clog2(Numerator * Numerator)
+) (
+  input  wire                       clk,
+  input  wire                       rst,
+  input  wire                       en,
+  input  wire                       in_row_start,
+  input  wire                       in_frame_start,
+  input  wire                       in_blue_row,  // Bayer
+  input  wire                       in_ends,      // a block's columns end; the inputs below belong to them
+  input  wire [Lanes*SumWidth-1:0]  in_sums,      // signed
+  input  wire [BlockWidth-1:0]      in_red_columns,
+  output logic                      out_valid,
+  output logic [3*TotalWidth-1:0]   out_totals,  // signed, red lowest
+  output logic [3*AreaWidth-1:0]    out_areas
+);
+
+  localparam int WeightWidth = $clog2(Denominator + 1);
+  localparam int ColumnWidth = $clog2(Columns);
+  localparam int BlockRamBits = 4096;  // a memory larger than this is block RAM
+  localparam int Style = 3 * TotalWidth * Columns > BlockRamBits ? 1 : 0;
+  localparam logic [WeightWidth-1:0] Pixel = WeightWidth'($unsigned(Denominator));
+  localparam logic [BlockWidth-1:0] Block = BlockWidth'($unsigned(Numerator));
+  localparam logic [AreaWidth-1:0] Area = AreaWidth'($unsigned(Numerator * Numerator));
+
+  // The first pixel of a row brings the row's weight, which holds for the whole row.
+
+  logic [WeightWidth-1:0] new_weight, weight, row_weight;
+  logic new_ends, ends_row, row_ends, in_first_row, first_row;
+  logic [ColumnWidth-1:0] column, next_column;
+  block_weights #(.Numerator(Numerator), .Denominator(Denominator)) u_weights (
+    .clk, .en, .step(in_row_start), .restart(in_frame_start), .weight(new_weight), .block_ends(new_ends)
+  );
+  assign weight = in_row_start ? new_weight : row_weight;
+  assign ends_row = in_row_start ? new_ends : row_ends;
+  assign in_first_row = in_row_start ? in_frame_start : first_row;
+  assign column = in_row_start ? '0 : next_column;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      row_weight <= weight;
+      row_ends <= ends_row;
+      first_row <= in_first_row;
+      next_column <= column + ColumnWidth'(in_ends);
+    end
+  end
+
+  // Operands of the multipliers; products, beside what the block's earlier rows add up to; the total, beside what the
+  // memory takes: the total, or where the block ends the row's part in the next one.
+
+  logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, first_q2, blue_q, blue_q2;
+  logic [ColumnWidth-1:0] column_q, column_q2, column_q3;
+  logic [WeightWidth-1:0] weight_q;
+  logic [Lanes*SumWidth-1:0] sums_q;
+  logic [3*TotalWidth-1:0] earlier, stored;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      {ends_q, ends_q2, ends_q3} <= {in_ends, ends_q, ends_q2};
+      {complete_q, complete_q2, out_valid} <= {in_ends & ends_row, complete_q, complete_q2};
+      {first_q, first_q2} <= {in_first_row, first_q};
+      {blue_q, blue_q2} <= {in_blue_row, blue_q};
+      {column_q, column_q2, column_q3} <= {column, column_q, column_q2};
+      weight_q <= weight;
+      sums_q <= in_sums;
+    end
+    if (rst) begin
+      {ends_q, ends_q2, ends_q3} <= '0;
+      {complete_q, complete_q2, out_valid} <= '0;
+    end
+  end
+  ram #(.Width(3 * TotalWidth), .Depth(Columns), .Style(Style)) u_line (
+    .clk, .write_en(en & ends_q3), .write_address(column_q3), .write_data(stored),
+    .read_en(en & ends_q & ~first_q), .read_address(column_q), .read_data(earlier)
+  );
+
+  logic [Lanes*TotalWidth-1:0] parts, wholes;
+  for (genvar l = 0; l < Lanes; l++) begin : g_product
+    logic signed [SumWidth+WeightWidth:0] part, whole;
+    multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_part (
+      .clk, .en, .a(sums_q[l*SumWidth+:SumWidth]), .b({1'b0, weight_q}), .product(part)
+    );
+    multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_whole (
+      .clk, .en, .a(sums_q[l*SumWidth+:SumWidth]), .b({1'b0, Pixel}), .product(whole)
+    );
+    assign parts[l*TotalWidth+:TotalWidth] = TotalWidth'(part);
+    assign wholes[l*TotalWidth+:TotalWidth] = TotalWidth'(whole);
+  end
+
+  for (genvar c = 0; c < 3; c++) begin : g_colour
+    logic counts;
+    logic [TotalWidth-1:0] part, whole, total;
+    if (Bayer == 0) begin : g_rgb
+      assign counts = 1'b1;
+      assign part = parts[c*TotalWidth+:TotalWidth];
+      assign whole = wholes[c*TotalWidth+:TotalWidth];
+    end else if (c == 1) begin : g_green  // in the columns of blue where the row has red, and the other way round
+      assign counts = 1'b1;
+      assign part = blue_q2 ? parts[0+:TotalWidth] : parts[TotalWidth+:TotalWidth];
+      assign whole = blue_q2 ? wholes[0+:TotalWidth] : wholes[TotalWidth+:TotalWidth];
+    end else begin : g_red_or_blue
+      assign counts = blue_q2 == (c == 2);
+      assign part = parts[c/2*TotalWidth+:TotalWidth];
+      assign whole = wholes[c/2*TotalWidth+:TotalWidth];
+    end
+    assign total = (first_q2 ? '0 : earlier[c*TotalWidth+:TotalWidth]) + (counts ? part : '0);
+    always_ff @(posedge clk) begin
+      if (en) begin
+        out_totals[c*TotalWidth+:TotalWidth] <= total;
+        if (!complete_q2) stored[c*TotalWidth+:TotalWidth] <= total;
+        else stored[c*TotalWidth+:TotalWidth] <= counts ? whole - part : '0;
+      end
+    end
+  end
+
+  if (Bayer != 0) begin : g_areas
+    // Red has its rows times its columns, blue the others of both, green the rest of the block.
+    logic blue_row;
+    logic [BlockWidth-1:0] carried, red_rows, row_red_rows, red_rows_q, red_columns_q, blue_rows_q, blue_columns_q;
+    logic signed [2*BlockWidth+1:0] red, blue;
+    logic unused_top;
+    assign unused_top = ^{red[2*BlockWidth+1:AreaWidth], blue[2*BlockWidth+1:AreaWidth]};
+    assign carried = ~row_ends ? row_red_rows : blue_row ? '0 : BlockWidth'(Pixel - row_weight);
+    always_comb begin
+      red_rows = row_red_rows;
+      if (in_row_start) begin
+        red_rows = (in_frame_start ? '0 : carried) + (in_blue_row ? '0 : BlockWidth'(new_weight));
+      end
+    end
+    always_ff @(posedge clk) begin
+      if (en) begin
+        row_red_rows <= red_rows;
+        if (in_row_start) blue_row <= in_blue_row;
+        red_rows_q <= red_rows;
+        red_columns_q <= in_red_columns;
+        blue_rows_q <= Block - red_rows;
+        blue_columns_q <= Block - in_red_columns;
+        out_areas <= {blue[AreaWidth-1:0], Area - red[AreaWidth-1:0] - blue[AreaWidth-1:0], red[AreaWidth-1:0]};
+      end
+    end
+    multiply #(.AWidth(BlockWidth + 1), .BWidth(BlockWidth + 1)) u_red (
+      .clk, .en, .a({1'b0, red_rows_q}), .b({1'b0, red_columns_q}), .product(red)
+    );
+    multiply #(.AWidth(BlockWidth + 1), .BWidth(BlockWidth + 1)) u_blue (
+      .clk, .en, .a({1'b0, blue_rows_q}), .b({1'b0, blue_columns_q}), .product(blue)
+    );
+  end else begin : g_area
+    logic unused_colour;
+    assign unused_colour = ^{blue_q2, in_red_columns};
+    assign out_areas = {3{Area}};
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Columns < 4) begin : g_refused
+    Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

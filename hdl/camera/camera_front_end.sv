@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// camera_front_end: the pixels of the grid from the words of a camera.
+//
+//   s_axis -> axis_skid -> camera_window -> pixel_format -> channel_gain -> area_average -> axis_skid -> m_axis
+//
+// Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv); WordsPerPixel 2: single bytes.
+// Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel per clock.
+// A malformed picture raises one fault for one cycle (camera_window.sv). It leaves as one frame with a row too short or
+// too long, which the frame_guard behind drops whole and flags once; m_axis carries no other malformed frame.
+// Latency: 23 cycles from the word that completes a block, gaps or not; YUYV 25, or 26 from the second pixel of a pair.
+// A stalled sink stops all of it. Parameters: models/tactile_depth/camera/camera_front_end.py, the bit-accurate model.
+
+`default_nettype none
+
+module camera_front_end
+  import stream_pkg::*;
+#(
+  parameter int Rows          = 128,  // of the grid
+  parameter int Columns       = 128,
+  parameter int Numerator     = 15,   // camera pixels for a pixel of the grid: Numerator / Denominator
+  parameter int Denominator   = 4,
+  parameter int WindowColumns = 480,
+  parameter int WindowRows    = 480,
+  parameter int Format        = 0,
+  parameter int Bits          = 10,
+  parameter int Phase         = 0,
+  parameter int MsbAligned    = 1,
+  parameter int HighByteFirst = 0,
+  parameter int WordsPerPixel = 1,
+  parameter int RedCr         = 5743,
+  parameter int GreenCb       = -1410,
+  parameter int GreenCr       = -2925,
+  parameter int BlueCb        = 7258
+) (
+  input  wire                   clk,
+  input  wire                   rst,
+  input  wire camera_settings_t settings,
+  output camera_faults_t        faults,
+  input  wire  [23:0]           s_axis_tdata,
+  input  wire                   s_axis_tvalid,
+  output logic                  s_axis_tready,
+  input  wire                   s_axis_tlast,
+  input  wire                   s_axis_tuser,
+  output logic [23:0]           m_axis_tdata,
+  output logic                  m_axis_tvalid,
+  input  wire                   m_axis_tready,
+  output logic                  m_axis_tlast,
+  output logic                  m_axis_tuser
+);
+
+  localparam int Raw = 0;
+  localparam int Yuyv = 3;
+  localparam int Bayer = Format == Raw ? 1 : 0;
+  localparam int SamplesWidth = (Bayer != 0 ? 1 : 3) * (Bits + 2);
+
+  logic en;  // all of it moves, or nothing: low while the output is full
+
+  logic held_valid, held_ready, held_last, held_user;
+  logic [23:0] held_data;
+  axis_skid #(.Width(26)) u_input (
+    .clk, .rst,
+    .s_valid(s_axis_tvalid), .s_ready(s_axis_tready), .s_data({s_axis_tuser, s_axis_tlast, s_axis_tdata}),
+    .m_valid(held_valid), .m_ready(held_ready), .m_data({held_user, held_last, held_data})
+  );
+
+  logic word_valid, in_window, odd_row, odd_column, word_row_start, word_frame_start, word_abort;
+  logic row_short, row_long, start_missing, start_early, window_outside;
+  logic [23:0] word;
+  camera_window #(
+    .WindowColumns(WindowColumns), .WindowRows(WindowRows), .WordsPerPixel(WordsPerPixel),
+    .PixelPairs(Format == Yuyv ? 1 : 0)
+  ) u_window (
+    .clk, .rst, .en, .columns(settings.columns), .rows(settings.rows), .window_x(settings.window_x),
+    .window_y(settings.window_y), .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last),
+    .s_user(held_user), .out_valid(word_valid), .out_data(word), .out_inside(in_window), .out_odd_row(odd_row),
+    .out_odd_column(odd_column), .out_row_start(word_row_start), .out_frame_start(word_frame_start),
+    .out_abort(word_abort), .row_short, .row_long, .start_missing, .start_early, .window_outside
+  );
+  assign faults = {window_outside, start_early, start_missing, row_long, row_short};
+
+  logic sample_valid, sample_row_start, sample_frame_start, sample_abort;
+  logic [1:0] sample_colour;
+  logic [SamplesWidth-1:0] samples;
+  pixel_format #(
+    .Format(Format), .Bits(Bits), .MsbAligned(MsbAligned), .HighByteFirst(HighByteFirst), .Phase(Phase),
+    .RedCr(RedCr), .GreenCb(GreenCb), .GreenCr(GreenCr), .BlueCb(BlueCb)
+  ) u_format (
+    .clk, .rst, .en, .in_valid(word_valid), .in_data(word), .in_inside(in_window), .in_odd_row(odd_row),
+    .in_odd_column(odd_column), .in_row_start(word_row_start), .in_frame_start(word_frame_start),
+    .in_abort(word_abort), .out_valid(sample_valid), .out_samples(samples), .out_colour(sample_colour),
+    .out_row_start(sample_row_start), .out_frame_start(sample_frame_start), .out_abort(sample_abort)
+  );
+
+  logic colour_valid, colour_row_start, colour_frame_start, colour_abort;
+  logic [1:0] colour_site;
+  logic [SamplesWidth-1:0] colours;
+  channel_gain #(.Bits(Bits), .Bayer(Bayer)) u_gain (
+    .clk, .rst, .en, .black_level(settings.black_level[Bits-1:0]), .red_gain(settings.red_gain),
+    .green_gain(settings.green_gain), .blue_gain(settings.blue_gain), .in_valid(sample_valid), .in_samples(samples),
+    .in_colour(sample_colour), .in_row_start(sample_row_start), .in_frame_start(sample_frame_start),
+    .in_abort(sample_abort), .out_valid(colour_valid), .out_samples(colours), .out_colour(colour_site),
+    .out_row_start(colour_row_start), .out_frame_start(colour_frame_start), .out_abort(colour_abort)
+  );
+
+  logic pixel_valid, pixel_last, pixel_user;
+  logic [23:0] pixel;
+  area_average #(
+    .Rows(Rows), .Columns(Columns), .Numerator(Numerator), .Denominator(Denominator), .Bits(Bits), .Bayer(Bayer)
+  ) u_average (
+    .clk, .rst, .en, .in_valid(colour_valid), .in_samples(colours), .in_colour(colour_site),
+    .in_row_start(colour_row_start), .in_frame_start(colour_frame_start), .in_abort(colour_abort),
+    .out_valid(pixel_valid), .out_pixel(pixel), .out_last(pixel_last), .out_user(pixel_user)
+  );
+
+  axis_skid #(.Width(26)) u_output (
+    .clk, .rst,
+    .s_valid(pixel_valid), .s_ready(en), .s_data({pixel_user, pixel_last, pixel}),
+    .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_data({m_axis_tuser, m_axis_tlast, m_axis_tdata})
+  );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// axil_port: an AXI4-Lite port for registers, with one write and one read in flight.
+//
+// Write: `write` is high in the clock after both address and data were taken, whichever came first; the response leaves
+// in the clock after it. Read: `read` is high in the clock in which the address is taken, and read_data of that clock
+// leaves in the next; if read_late is high with `read`, late_data of 4 clocks later leaves in the clock after that, and
+// writes wait until then. A response waits for its ready, and the next transaction of its kind waits for the response.
+// No ready output depends on an input in the same clock. `refused`, with the data, makes the response SLVERR.
+// Model: models/tactile_depth/registers/axil_port.py.
+
+`default_nettype none
+
+module axil_port
+  import register_map_pkg::*;
+(
+  input  wire                     clk,
+  input  wire                     rst,
+
+  input  wire  [AddressWidth-1:0] s_axil_awaddr,
+  input  wire                     s_axil_awvalid,
+  output logic                    s_axil_awready,
+  input  wire  [31:0]             s_axil_wdata,
+  input  wire  [3:0]              s_axil_wstrb,
+  input  wire                     s_axil_wvalid,
+  output logic                    s_axil_wready,
+  output logic [1:0]              s_axil_bresp,
+  output logic                    s_axil_bvalid,
+  input  wire                     s_axil_bready,
+  input  wire  [AddressWidth-1:0] s_axil_araddr,
+  input  wire                     s_axil_arvalid,
+  output logic                    s_axil_arready,
+  output logic [31:0]             s_axil_rdata,
+  output logic [1:0]              s_axil_rresp,
+  output logic                    s_axil_rvalid,
+  input  wire                     s_axil_rready,
+
+  output logic                    write,
+  output logic [31:0]             write_offset,  // of the register, in bytes
+  output logic [31:0]             write_ones,    // the data, 0 in bytes without strobe
+  output logic [31:0]             write_mask,    // ones in bytes with strobe
+  input  wire                     write_refused,
+  output logic                    read,
+  output logic [31:0]             read_offset,
+  input  wire  [31:0]             read_data,
+  input  wire                     read_refused,
+  input  wire                     read_late,
+  input  wire  [31:0]             late_data,
+  input  wire                     late_refused
+);
+
+  typedef enum logic [1:0] {Okay = 2'b00, SlaveError = 2'b10} response_e;
+
+  logic address_held = 1'b0;  // a clock before the first reset writes no table, whose contents are from power-up
+  logic data_held = 1'b0;
+  logic [AddressWidth-1:0] address;
+  logic [31:0] data;
+  logic [3:0] strobe;
+  logic [3:0] waiting;  // for late_data, one bit a clock
+
+  assign s_axil_awready = !address_held;
+  assign s_axil_wready = !data_held;
+  assign s_axil_arready = !s_axil_rvalid && waiting == '0;
+  assign write = address_held && data_held && !s_axil_bvalid && waiting == '0 && !rst;
+  assign write_offset = 32'({address[AddressWidth-1:2], 2'b00});
+  assign write_mask = {{8{strobe[3]}}, {8{strobe[2]}}, {8{strobe[1]}}, {8{strobe[0]}}};
+  assign write_ones = data & write_mask;
+  assign read = s_axil_arvalid && s_axil_arready && !rst;
+  assign read_offset = 32'({s_axil_araddr[AddressWidth-1:2], 2'b00});
+
+  always_ff @(posedge clk) begin
+    if (s_axil_awvalid && s_axil_awready) begin
+      address_held <= 1'b1;
+      address <= s_axil_awaddr;
+    end
+    if (s_axil_wvalid && s_axil_wready) begin
+      data_held <= 1'b1;
+      data <= s_axil_wdata;
+      strobe <= s_axil_wstrb;
+    end
+    if (write) begin
+      s_axil_bvalid <= 1'b1;
+      s_axil_bresp <= write_refused ? SlaveError : Okay;
+    end
+    if (s_axil_bvalid && s_axil_bready) begin
+      s_axil_bvalid <= 1'b0;
+      address_held <= 1'b0;
+      data_held <= 1'b0;
+    end
+
+    waiting <= {waiting[2:0], read && read_late};
+    if (s_axil_rready) s_axil_rvalid <= 1'b0;
+    if ((read && !read_late) || waiting[3]) begin
+      s_axil_rvalid <= 1'b1;
+      s_axil_rdata <= waiting[3] ? late_data : read_data;
+      s_axil_rresp <= (waiting[3] ? late_refused : read_refused) ? SlaveError : Okay;
+    end
+
+    if (rst) begin
+      address_held <= 1'b0;
+      data_held <= 1'b0;
+      s_axil_bvalid <= 1'b0;
+      s_axil_rvalid <= 1'b0;
+      waiting <= '0;
+    end
+  end
+
+  logic unused_bits;
+  assign unused_bits = ^{address[1:0], s_axil_araddr[1:0]};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// table_access: reads and writes the entries of the tables, one after another.
+//
+// TABLE_INDEX is the entry that is written or read next; it moves on after either, from the last entry to the first.
+// A write of TABLE_LOW makes that entry {TABLE_HIGH, TABLE_LOW}: table_command.write is high with `write`. A read of
+// TABLE_HIGH or TABLE_LOW raises table_command.read in the clock after `read`; the entry's words shall stand on
+// table_answer from 3 clocks later until the next such read, and stand on late_data then. Refused: what has no entry, a
+// write with a byte that is not strobed, and a write of a table that is `closed`. In a reset neither is commanded.
+// Model: models/tactile_depth/registers/table_access.py.
+
+`default_nettype none
+
+module table_access
+  import register_map_pkg::*;
+  import stream_pkg::*;
+#(
+  parameter int GradientWords    = 4096,  // entries of each table; 0: the build has none
+  parameter int CoefficientWords = 0,
+  parameter int ReferenceWords   = 0,
+  parameter int FloorWords       = 0
+) (
+  input  wire                  clk,
+  input  wire                  rst,
+  input  wire                  write,
+  input  wire  [31:0]          write_offset,
+  input  wire  [31:0]          write_ones,  // the data, 0 in bytes without strobe
+  input  wire  [31:0]          write_mask,  // ones in bytes with strobe
+  output logic                 write_refused,
+  input  wire                  read,
+  input  wire  [31:0]          read_offset,
+  output logic [31:0]          read_data,   // the word at read_offset, 0 where there is none
+  output logic                 read_late,   // the word at read_offset comes as late_data, 4 clocks later
+  output logic [31:0]          late_data,
+  output logic                 late_refused,
+
+  input  wire  [1:0]           select,      // TABLE_SELECT
+  input  wire  [3:0]           closed,      // tables that are not to be written
+  output table_command_t       table_command,
+  input  wire table_answer_t   table_answer
+);
+
+  localparam int SlopeWords = GradientWords > CoefficientWords ? GradientWords : CoefficientWords;
+  localparam int MapWords = ReferenceWords > FloorWords ? ReferenceWords : FloorWords;
+  localparam int IndexWidth = $clog2(SlopeWords > MapWords ? SlopeWords : MapWords);
+
+  logic [31:0] size, high;
+  logic [IndexWidth-1:0] index, last;
+  logic has_entry, writes, asked, reads, asked_low, had_entry;
+
+  always_comb begin
+    case (32'(select))
+      TableSelectGradient: size = GradientWords;
+      TableSelectCoefficients: size = CoefficientWords;
+      TableSelectReference: size = ReferenceWords;
+      default: size = FloorWords;
+    endcase
+    case (read_offset)
+      TableIndexOffset: read_data = 32'(index);
+      TableSizeOffset: read_data = size;
+      default: read_data = '0;
+    endcase
+  end
+  assign last = IndexWidth'(size - 32'd1);
+  assign has_entry = 32'(index) < size;
+  assign writes = write && write_offset == TableLowOffset;
+  assign write_refused = write_offset == TableLowOffset && (!has_entry || !(&write_mask) || closed[select]);
+  assign reads = asked && has_entry && !rst;
+  assign read_late = read_offset == TableHighOffset || read_offset == TableLowOffset;
+  assign late_refused = !had_entry;
+  assign late_data = !had_entry ? '0 : asked_low ? table_answer.low : table_answer.high;
+  assign table_command = {writes, reads, select, 24'(index), high, write_ones};
+
+  always_ff @(posedge clk) begin
+    asked <= read && read_late;
+    if (read) asked_low <= read_offset == TableLowOffset;
+    if (asked) had_entry <= has_entry;
+    if (writes || (reads && asked_low)) index <= index == last ? '0 : index + IndexWidth'(1);
+    if (write && write_offset == TableIndexOffset) index <= IndexWidth'(write_ones | (32'(index) & ~write_mask));
+    if (write && write_offset == TableHighOffset) high <= write_ones | (high & ~write_mask);
+    if (rst) {asked, index, high} <= '0;
+  end
+
+endmodule
+
+`default_nettype wire

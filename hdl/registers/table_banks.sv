@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// table_banks: says which of its two banks each table uses, and starts captures into the bank that is not in use.
+//
+// A 1 written to TABLE_COMMIT requests that its table change over, which it does with the next frame_start: table_bank
+// changes in that clock. A table takes the change over with the first pixel of its own next frame, or in a reset, and
+// shows the bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand within a
+// frame of the head of the pipeline. Until then the change-over is pending. A table is `closed`, to writes and to
+// commits, while its change-over is pending or it is captured. `done` of a capture requests the change-over as a commit
+// does. A start written to CAPTURE or FLOOR_CAPTURE raises the request in the clock of the write; from the next clock
+// to that of `done`, `busy` shall be high. Refused: a start for a table that the build has not, and one for the floor
+// while its change-over is pending: the floor takes it a solver's latency after the frame's start, and the capture
+// would write the bank that is to be used. rst forgets what no frame has taken and leaves the banks, because it leaves
+// the tables; cold_rst, together with rst, clears the banks.
+// Model: models/tactile_depth/registers/table_banks.py.
+
+`default_nettype none
+
+module table_banks
+  import register_map_pkg::*;
+  import stream_pkg::*;
+#(
+  parameter int Present = 15  // bit n: the build has table n of TABLE_SELECT
+) (
+  input  wire                   clk,
+  input  wire                   rst,
+  input  wire                   cold_rst,
+  input  wire                   write,
+  input  wire  [31:0]           write_offset,
+  input  wire  [31:0]           write_ones,  // the data, 0 in bytes without strobe
+  output logic                  write_refused,
+  input  wire  [31:0]           read_offset,
+  output logic [31:0]           read_data,   // the word at read_offset, 0 where there is none
+
+  input  wire                   frame_start,  // the first pixel of a frame passes the head of the pipeline
+  output logic [3:0]            table_bank,
+  input  wire  [3:0]            table_in_use,
+  output logic [3:0]            closed,
+  output logic                  reference_request,
+  input  wire  capture_status_t reference_status,
+  output logic                  floor_request,
+  input  wire  capture_status_t floor_status
+);
+
+  localparam logic [3:0] Has = 4'(Present);
+
+  logic [3:0] requested;    // a change-over that no frame has taken
+  logic [3:0] bank = '0;    // no reset: it says where the tables are, which no reset touches
+  logic [3:0] pending, commits, captured;
+  logic starts, starts_reference, starts_floor;
+
+  assign starts = frame_start && !rst;
+  assign table_bank = bank ^ (requested & {4{starts}});
+  assign pending = requested | ((bank ^ table_in_use) & Has);
+  assign captured =
+    (4'(reference_status.done) << TableCommitReferenceBit) | (4'(floor_status.done) << TableCommitFloorBit);
+  assign closed = pending
+    | (4'(reference_status.busy) << TableCommitReferenceBit) | (4'(floor_status.busy) << TableCommitFloorBit);
+  assign commits = write && write_offset == TableCommitOffset ? write_ones[3:0] & ~closed : '0;
+
+  assign starts_reference = write_offset == CaptureOffset && write_ones[CaptureStartBit];
+  assign starts_floor = write_offset == FloorCaptureOffset && write_ones[FloorCaptureStartBit];
+  assign write_refused = (starts_reference && !Has[TableCommitReferenceBit])
+    || (starts_floor && (!Has[TableCommitFloorBit] || pending[TableCommitFloorBit] || floor_status.done));
+  assign reference_request = write && starts_reference;
+  assign floor_request = write && starts_floor;
+
+  always_ff @(posedge clk) begin
+    requested <= (requested & {4{!frame_start}}) | ((commits | captured) & Has);
+    if (starts) bank <= table_bank;
+    if (rst) requested <= '0;
+    if (cold_rst) bank <= '0;
+  end
+
+  assign read_data = read_offset == TableCommitOffset ? 32'(pending)
+    : read_offset == CaptureOffset ? 32'(reference_status.busy) << CaptureBusyBit
+    : read_offset == FloorCaptureOffset ? 32'(floor_status.busy) << FloorCaptureBusyBit : '0;
+
+  logic unused_bits;
+  assign unused_bits = ^write_ones;
+
+endmodule
+
+`default_nettype wire

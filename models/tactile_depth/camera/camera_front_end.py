@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bit-accurate model of hdl/camera/camera_front_end.sv, picture by picture."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_depth.camera.area_average import area_average
+from tactile_depth.camera.channel_gain import channel_gain
+from tactile_depth.camera.pixel_format import colours, pixel_format, pixel_format_parameters
+from tactile_depth.camera_configuration import GAIN_WIDTH, CameraConfiguration
+
+SETTINGS = {"columns": 13, "rows": 13, "window_x": 13, "window_y": 13, "black_level": 12}
+SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN_WIDTH)
+"""Members of `camera_settings_t` (hdl/common/stream_pkg.sv) and their bits, the first on top."""
+
+
+def camera_front_end_parameters(camera: CameraConfiguration) -> dict[str, int]:
+    """Parameters of hdl/camera/camera_front_end.sv."""
+    _, _, width, height = camera.crop
+    return {
+        "Rows": camera.grid[0],
+        "Columns": camera.grid[1],
+        "Numerator": camera.ratio.numerator,
+        "Denominator": camera.ratio.denominator,
+        "WindowColumns": width,
+        "WindowRows": height,
+        "WordsPerPixel": camera.words_per_pixel,
+        **pixel_format_parameters(camera),
+    }
+
+
+def camera_settings(camera: CameraConfiguration) -> dict[str, int]:
+    """Return the settings of the core, by the members of `camera_settings_t`."""
+    red, green, blue = camera.gain_codes
+    return {
+        "columns": camera.picture[1],
+        "rows": camera.picture[0],
+        "window_x": camera.crop[0],
+        "window_y": camera.crop[1],
+        "black_level": camera.black_level,
+        "red_gain": red,
+        "green_gain": green,
+        "blue_gain": blue,
+    }
+
+
+def camera_front_end(words: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
+    """Return the frame of the grid for a picture in the camera's format.
+
+    Parameters
+    ----------
+    words : int array (rows, columns)
+        One word for each pixel (`pixel_format`).
+
+    Returns
+    -------
+    uint8 array (grid rows, grid columns, 3), RGB
+    """
+    x, y, width, height = camera.crop
+    gains: np.ndarray = np.array(camera.gain_codes)
+    colour = None
+    if camera.format.bayer:
+        gains = gains[colours(camera)][y : y + height, x : x + width]
+        colour = (y + (camera.phase_code >> 1)) % 2, (x + camera.phase_code) % 2
+    samples = pixel_format(words, camera)[y : y + height, x : x + width]
+    samples = channel_gain(samples, camera.black_level, gains, camera.sample_width)
+    rows, columns = camera.grid
+    means = area_average(samples, camera.bits, camera.ratio.numerator, camera.ratio.denominator, colour)
+    return means[:rows, :columns]

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a picture to a frame of the grid, as the hardware takes it: averaged as it is, or through a camera's format."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactile_depth.camera.camera_front_end import camera_front_end
+from tactile_depth.camera.pixel_format import photograph
+from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
+from tactile_depth.errors import InputError
+from tactile_depth.resampling import Resampling, resampling
+
+
+@dataclass(frozen=True)
+class GridSampler:
+    """Takes pictures of one size to a grid.
+
+    Attributes
+    ----------
+    scale : float
+        Pixels of the picture per grid pixel.
+    origin : (row, column)
+        First pixel of the picture that the grid covers.
+    plan : Resampling, or None
+        Averages the pictures as they are.
+    camera : CameraConfiguration, or None
+        The pictures are converted to what this camera sends, and then taken as the camera block takes them.
+    """
+
+    scale: float
+    origin: tuple[int, int]
+    plan: Resampling | None
+    camera: CameraConfiguration | None
+
+    def words(self, picture: np.ndarray) -> np.ndarray:
+        """Return what the camera sends for a picture, uint32 (rows, columns)."""
+        assert self.camera is not None
+        return photograph(picture, self.camera)
+
+    def frame(self, picture: np.ndarray) -> np.ndarray:
+        """Return the frame of the grid for a picture, uint8 (rows, columns, 3)."""
+        if self.camera is not None:
+            return camera_front_end(self.words(picture), self.camera)
+        assert self.plan is not None
+        return np.rint(self.plan.average(picture)).astype(np.uint8)
+
+
+def grid_sampler(
+    name: str, picture: tuple[int, int], grid: tuple[int, int], choice: CameraChoice | None = None
+) -> GridSampler:
+    """Return the way from pictures to a grid, (rows, columns) each; `name` names the pictures in errors.
+
+    Raises
+    ------
+    InputError
+        The pictures are smaller than the grid, or the camera cannot be built.
+    """
+    if picture[0] < grid[0] or picture[1] < grid[1]:
+        raise InputError(
+            f"{name}: frames of {picture[0]} x {picture[1]} are smaller than the grid of {grid[0]} x {grid[1]}: give "
+            "larger frames or a smaller grid"
+        )
+    if choice is not None:
+        camera = choice.on(picture, grid)
+        x, y = camera.crop[:2]
+        return GridSampler(float(camera.ratio), (y, x), None, camera)
+    plan = resampling(picture, grid)
+    return GridSampler(plan.scale, plan.origin, plan, None)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""AXI4-Lite, from the side of the client: transactions pin by pin, whole ones, and registers by their names."""
+
+from collections.abc import Awaitable
+from typing import Any
+
+from cocotb.triggers import RisingEdge, gather
+from cocotb_bus.drivers.amba import AXI4LiteMaster, AXIProtocolError
+
+from tactile_depth.registers.axil_port import Response
+from tactile_depth.registers.register_map import MAP, WORD
+
+OFFSET = {register.name: register.offset for register in MAP}
+
+
+async def present(dut: Any, channel: str, **values: Any) -> None:
+    """Offer one beat on channel aw, w or ar until it is taken; then something else stands there."""
+    for name, value in values.items():
+        getattr(dut, f"s_axil_{name}").value = value
+    valid, ready = (getattr(dut, f"s_axil_{channel}{wire}") for wire in ("valid", "ready"))
+    valid.value = 1
+    await RisingEdge(dut.clk)
+    while not ready.value:
+        await RisingEdge(dut.clk)
+    valid.value = 0
+    for name, value in values.items():
+        pin = getattr(dut, f"s_axil_{name}")
+        pin.value = value ^ ((1 << len(pin)) - 1)
+
+
+async def take(dut: Any, channel: str, stall: int = 0) -> int:
+    """Take one response on channel b or r, not before it was there for `stall` clocks; its code."""
+    valid, ready = (getattr(dut, f"s_axil_{channel}{wire}") for wire in ("valid", "ready"))
+    while not valid.value:
+        await RisingEdge(dut.clk)
+    for _ in range(stall):
+        await RisingEdge(dut.clk)
+        assert valid.value, f"{channel}valid fell before {channel}ready came"
+    ready.value = 1
+    await RisingEdge(dut.clk)
+    response = int(getattr(dut, f"s_axil_{channel}resp").value)
+    ready.value = 0
+    await RisingEdge(dut.clk)
+    return response
+
+
+async def write_beats(dut: Any, address: int, data: int, strobe: int = 0xF) -> None:
+    """Address and data of a write, together, without its response."""
+    await gather(present(dut, "aw", awaddr=address), present(dut, "w", wdata=data, wstrb=strobe))
+
+
+async def write(dut: Any, address: int, data: int, strobe: int = 0xF) -> int:
+    """Write pin by pin; the response."""
+    await write_beats(dut, address, data, strobe)
+    return await take(dut, "b")
+
+
+async def read(dut: Any, address: int) -> tuple[int, int]:
+    """Read pin by pin; data and response."""
+    await present(dut, "ar", araddr=address)
+    while not dut.s_axil_rvalid.value:
+        await RisingEdge(dut.clk)
+    data = int(dut.s_axil_rdata.value)
+    return data, await take(dut, "r")
+
+
+async def value_of(dut: Any, name: str) -> int:
+    data, response = await read(dut, OFFSET[name])
+    assert response == Response.OKAY, f"reading {name} is answered {response}"
+    return data
+
+
+def master_of(dut: Any) -> AXI4LiteMaster:
+    """A bus master, which takes every response at once: not to be mixed with the pin-by-pin functions."""
+    return AXI4LiteMaster(dut, "s_axil", dut.clk)
+
+
+async def response_of(transaction: Awaitable) -> Response:
+    """Return the response that ends a master's transaction; errors raise."""
+    try:
+        await transaction
+    except AXIProtocolError as error:
+        return Response(error.xresp)
+    return Response.OKAY
+
+
+class Master:
+    """A bus master that takes every response at once: not to be mixed with the functions that move single pins."""
+
+    def __init__(self, dut: Any) -> None:
+        self.master = master_of(dut)
+
+    async def write(self, address: int, value: int) -> Response:
+        return await response_of(self.master.write(address, value))
+
+    async def read(self, address: int) -> int:
+        return int(await self.master.read(address))
+
+
+class RegisterClient:
+    """Writes and reads registers by their names, through any master with `write` and `read`."""
+
+    def __init__(self, master: Any) -> None:
+        self.master = master
+
+    async def write(self, name: str, value: int) -> Response:
+        """Write a register, of a negative value the lower 32 bits; return the response."""
+        return Response(await self.master.write(OFFSET[name], value & WORD))
+
+    async def read(self, name: str) -> int:
+        return int(await self.master.read(OFFSET[name]))

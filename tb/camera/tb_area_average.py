@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""area_average against its model: every kind of frame, gaps, pauses, broken frames, resets; words, marks, latency."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.camera.area_average import area_average
+from tactile_depth.latency import AREA_AVERAGE
+from tb.camera.slots import Slot, Slots, Window, packed
+from tb.stream import MANY, check_words, drive, parameters
+
+OUTPUTS = ["out_valid", "out_pixel", "out_last", "out_user"]
+
+
+class Bench:
+    """Pixels in, and the words that the model says leave: slot, red, green, blue, last, user; colours of abort -1."""
+
+    def __init__(self, dut: Any) -> None:
+        self.dut = dut
+        names = ("Rows", "Columns", "Numerator", "Denominator", "Bits", "Bayer")
+        self.rows, self.columns, self.numerator, self.denominator, self.bits, self.bayer = parameters(dut, *names)
+        self.width, self.channels = self.bits + 2, 1 if self.bayer else 3
+        self.window = Window(self.rows, self.columns, self.numerator, self.denominator)
+        self.shape = (self.window.height, self.window.width, *([] if self.bayer else [3]))
+        pins = {"in_samples": self.channels * self.width, "in_colour": 2, "in_row_start": 1, "in_frame_start": 1}
+        self.slots = Slots(pins)
+        self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        self.stimuli: list[Slot] = []
+        self.expected: list[Any] = []
+        self.place = 0  # words of the frame that have left
+
+    def samples(self, kind: str) -> np.ndarray:
+        """Samples of a frame: within full scale, of the whole range, constant near a tie, at the limits."""
+        white, limit = (1 << self.bits) - 1, 1 << (self.width - 1)
+        if kind == "picture":
+            return self.rng.integers(0, white, self.shape, endpoint=True)
+        if kind == "range":
+            return self.rng.integers(-limit, limit - 1, self.shape, endpoint=True)
+        if kind == "ties":  # half a grey level, and one pixel in eight beside it
+            half = (1 << self.bits >> 8) // 2
+            tie = 2 * half * int(self.rng.integers(0, 256)) + half
+            return tie + self.rng.choice([0] * 30 + [-1, 1], self.shape)
+        return np.full(self.shape, {"black": 0, "white": white, "lowest": -limit, "highest": limit - 1}[kind])
+
+    def frame(self, samples: np.ndarray, gap: float = 0.0, pixels: int | None = None) -> None:
+        """Append a frame, of which the first `pixels` pixels come."""
+        blue_row, blue_column = (self.slots.random.getrandbits(1) for _ in "rc")
+        colour = (blue_row, blue_column) if self.bayer else None
+        means = area_average(samples, self.bits, self.numerator, self.denominator, colour).reshape(-1, 3)
+        completes = self.window.completes().reshape(-1)
+        words = []
+        for place, marks in enumerate(self.window.marks()):
+            row, column = divmod(place, self.window.width)
+            pixel = packed(np.atleast_1d(samples[row, column]), self.width)
+            site = (row + blue_row & 1) << 1 | column + blue_column & 1
+            words.append({"in_samples": pixel, "in_colour": site, **marks})
+        place = -1
+        for slot in self.slots.apart(words[:pixels], gap):
+            place += slot["in_valid"]
+            if slot["in_valid"] and completes[place]:
+                self.leaves(means[self.place].tolist())
+            self.stimuli.append(slot)
+
+    def leaves(self, colours: list[int], abort: int = 0) -> None:
+        last = int((self.place + 1) % self.columns == 0) ^ abort
+        self.expected.append([len(self.stimuli), *colours, last, int(self.place == 0)])
+        self.place = 0 if abort else (self.place + 1) % (self.rows * self.columns)
+
+    def abort(self) -> None:
+        self.leaves([-1, -1, -1], abort=1)
+        self.stimuli.append(self.slots.idle(in_abort=1))
+
+    def reset(self) -> None:
+        """A reset drops every block inside."""
+        reset = len(self.stimuli)
+        self.expected = [word for word in self.expected if word[0] + AREA_AVERAGE <= reset]
+        self.stimuli.append(self.slots.idle(rst=1))
+        self.place = 0
+
+    async def check(self, pause: float = 0.0) -> None:
+        self.stimuli += [self.slots.idle() for _ in range(AREA_AVERAGE + 1)]
+        seen = await drive(self.dut, self.stimuli, OUTPUTS, pause)
+        aborts = {word[0] for word in self.expected if word[1] < 0}
+        got = []
+        for clock in range(len(self.stimuli)):
+            if int(seen["out_valid"][clock]):
+                slot, pixel = clock - AREA_AVERAGE, seen["out_pixel"][clock]
+                colours = [-1] * 3 if slot in aborts else [int(pixel) >> shift & 255 for shift in (16, 0, 8)]
+                got.append([slot, *colours, int(seen["out_last"][clock]), int(seen["out_user"][clock])])
+        check_words(np.array(got), np.array(self.expected), self.columns, self.rows)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.2)]))
+async def frames(dut: Any, gap: float, pause: float) -> None:
+    bench = Bench(dut)
+    for kind in ("black", "white", "lowest", "highest", *["range", "picture", "ties"] * MANY):
+        bench.frame(bench.samples(kind), gap)
+    await bench.check(pause)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(gap=[0.0, 0.3])
+async def broken_frames(dut: Any, gap: float) -> None:
+    """Broken after each of the first pixels, anywhere, and between frames; at once or later the next one follows."""
+    bench = Bench(dut)
+    pixels = bench.window.height * bench.window.width
+    anywhere = [bench.slots.random.randrange(pixels) for _ in range(10)]
+    row_end = [pixels - 1, pixels - 2, pixels - bench.window.width, pixels - bench.window.width - 1]
+    bench.abort()
+    for count in (0, 1, 2, 3, bench.window.width, *row_end, *anywhere):
+        if count:
+            bench.frame(bench.samples("picture"), gap, count)
+        bench.abort()
+        if bench.slots.random.random() < 0.3:
+            bench.abort()
+        if bench.slots.random.random() < 0.3:
+            bench.frame(bench.samples("picture"), gap)
+    bench.frame(bench.samples("picture"), gap)
+    await bench.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """Nothing that is inside leaves; the next frame is right, and so is a frame that breaks at once."""
+    bench = Bench(dut)
+    pixels = bench.window.height * bench.window.width
+    for age in range(AREA_AVERAGE + 2):
+        if age % 2:
+            bench.frame(bench.samples("picture"), pixels=pixels - bench.slots.random.randrange(2 * bench.columns))
+        else:
+            bench.frame(bench.samples("picture"))
+            bench.abort()
+        bench.stimuli += [bench.slots.idle() for _ in range(age)]
+        bench.reset()
+        if age % 3:
+            bench.abort()
+    bench.frame(bench.samples("picture"))
+    await bench.check()

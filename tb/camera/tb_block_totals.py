@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""block_totals against its model: frames of random sums and of extremes, whole and cut short, gaps, pauses, resets."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.camera.block_totals import block_areas, block_totals
+from tactile_depth.camera.row_sums import sums_over_blocks
+from tactile_depth.latency import BLOCK_TOTALS
+from tb.camera.slots import Slot, Slots, Window, packed, unpacked
+from tb.stream import drive, parameters
+
+ROWS = 3
+FRAMES = 6
+OUTPUTS = ["out_valid", "out_totals", "out_areas"]
+
+
+class Bench:
+    """Frames in, and what the model says of them, in the order of the words that leave."""
+
+    def __init__(self, dut: Any) -> None:
+        self.dut = dut
+        names = ("Columns", "Numerator", "Denominator", "Width", "Bayer")
+        self.columns, self.numerator, self.denominator, self.width, self.bayer = parameters(dut, *names)
+        self.window = Window(ROWS, self.columns, self.numerator, self.denominator)
+        self.lanes = 2 if self.bayer else 3
+        self.sum_width = len(dut.in_sums) // self.lanes
+        pins = {name: len(getattr(dut, name)) for name in ("in_blue_row", "in_sums", "in_red_columns")}
+        self.slots = Slots(pins, ("in_row_start", "in_frame_start", "in_ends", "rst"))
+        self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        self.stimuli: list[Slot] = []
+        self.expected: list[tuple[int, Any]] = []  # slot in which a block is complete, what leaves
+
+    def frame(self, kind: str, gap: float = 0.0, rows: int | None = None) -> None:
+        """Append a frame, of which `rows` rows come."""
+        window, lanes, first = self.window, self.lanes, self.slots.random.getrandbits(1)
+        limit = self.numerator << (self.width - 1)
+        shape = (window.height, self.columns, lanes)
+        sums = self.rng.integers(-limit, limit - self.numerator, shape, endpoint=True)
+        if kind != "random":
+            sums[:] = {"lowest": -limit, "highest": limit - self.numerator}[kind]
+        blue = np.arange(window.height) + first & 1 == 1
+        red_columns = self.rng.integers(0, self.numerator, self.columns, endpoint=True)
+        args = (self.numerator, self.denominator)
+        totals = block_totals(sums, blue if self.bayer else None, *args)
+        areas = np.full(totals.shape, self.numerator**2)
+        if self.bayer:
+            areas = block_areas(sums_over_blocks((~blue).astype(np.int64), *args), red_columns, self.numerator)
+        for row in range(window.height if rows is None else rows):
+            block = 0
+            for column in range(window.width):
+                while self.slots.random.random() < gap:
+                    self.stimuli.append(self.slots.idle())
+                ends = bool(window.column_ends[column])
+                pins = {"in_row_start": column == 0, "in_frame_start": row == column == 0, "in_blue_row": blue[row]}
+                if ends:
+                    pins |= {"in_ends": 1, "in_sums": packed(sums[row, block], self.sum_width)}
+                    pins |= {"in_red_columns": red_columns[block]}
+                    if window.row_ends[row]:
+                        place = int(window.row_ends[:row].sum()), block
+                        self.expected.append((len(self.stimuli), (totals[place].tolist(), areas[place].tolist())))
+                    block += 1
+                self.stimuli.append(self.slots.idle(**pins))
+
+    async def check(self, pause: float = 0.0) -> None:
+        self.stimuli += [self.slots.idle() for _ in range(BLOCK_TOTALS + 1)]
+        seen = await drive(self.dut, self.stimuli, OUTPUTS, pause)
+        total_width, area_width = len(self.dut.out_totals) // 3, len(self.dut.out_areas) // 3
+        got = []
+        for clock in range(BLOCK_TOTALS, len(self.stimuli)):
+            if int(seen["out_valid"][clock]):
+                totals = unpacked(seen["out_totals"][clock], total_width, 3)
+                areas = [area % (1 << area_width) for area in unpacked(seen["out_areas"][clock], area_width, 3)]
+                got.append((clock - BLOCK_TOTALS, (totals, areas)))
+        assert got == self.expected
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.3, 0.3)]))
+async def frames(dut: Any, gap: float, pause: float) -> None:
+    bench = Bench(dut)
+    for kind in ("lowest", "highest", *["random"] * FRAMES):
+        bench.frame(kind, gap)
+        if kind == "random":
+            bench.frame(kind, gap, rows=bench.slots.random.randrange(bench.window.height))
+    await bench.check(pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """A reset drops every block inside; the next frame is right."""
+    bench = Bench(dut)
+    for age in range(1, BLOCK_TOTALS + 2):
+        bench.frame("random")
+        del bench.stimuli[len(bench.stimuli) - age + 1 :]
+        reset = len(bench.stimuli)
+        bench.expected = [(slot, word) for slot, word in bench.expected if slot + BLOCK_TOTALS <= reset]
+        bench.stimuli.append(bench.slots.idle(rst=1))
+    bench.frame("random")
+    await bench.check()

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""block_weights against its model: axes of any length, pauses between pixels, en low."""
+
+import random
+from typing import Any
+
+import cocotb
+
+from tactile_depth.camera.block_weights import block_weights
+from tb.stream import drive, parameters
+
+LONGEST = 60  # pixels of an axis
+AXES = 20
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.4])
+async def axes(dut: Any, pause: float) -> None:
+    weights, ends = block_weights(LONGEST, *parameters(dut, "Numerator", "Denominator"))
+    chance = random.Random(cocotb.RANDOM_SEED)
+    stimuli = []
+    for _ in range(AXES):
+        axis = [{"step": int(chance.random() < 0.7), "restart": 0} for _ in range(chance.randrange(LONGEST))]
+        stimuli += [{"step": 0, "restart": int(chance.random() < 0.5)}, {"step": 1, "restart": 1}, *axis]
+    del stimuli[0]
+    seen = await drive(dut, stimuli, ["weight", "block_ends"], pause)
+    place = 0  # of the pixel that is taken next
+    for clock in range(len(stimuli)):
+        present = 0 if seen["restart"][clock] else place
+        got = int(seen["weight"][clock]), bool(seen["block_ends"][clock])
+        assert got == (weights[present], ends[present]), f"clock {clock}, pixel {present}"
+        if seen["step"][clock]:
+            place = present + 1

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+"""camera_front_end against its model: blanking, gaps and stalls, broken pictures, changing windows, resets.
+
+What leaves goes through the model of frame_guard, as behind the core: each broken picture must be one broken frame.
+"""
+
+import json
+import os
+import random
+from dataclasses import replace
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.camera.camera_front_end import camera_front_end, camera_settings
+from tactile_depth.camera.camera_window import FAULTS
+from tactile_depth.camera_configuration import CameraConfiguration
+from tactile_depth.frame.frame_guard import Word, frame_guard
+from tactile_depth.latency import camera_front_end_latency
+from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
+from tb.camera.slots import camera_words, pack_settings
+from tb.stream import CLOCK_NS, MANY, sample
+
+KINDS = [kind for kind in BREAKS if kind not in SILENT]
+SETTLE = 60
+
+
+class Bench:
+    def __init__(self, dut: Any, offers: str = "none", stalls: str = "none") -> None:
+        self.dut = dut
+        self.camera = CameraConfiguration(**json.loads(os.environ["CAMERA"]))
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        dut.rst.value = 1
+        self.source = AxisSource(dut, "s_axis", prefix="t", offers=profile(offers, 1))
+        self.sink = AxisSink(dut, "m_axis", prefix="t", accepts=profile(stalls, 2))
+        self.came = AxisMonitor(dut, "s_axis", prefix="t")
+        self.left = AxisMonitor(dut, "m_axis", prefix="t")
+        self.faults: list[str] = []
+
+    async def start(self) -> None:
+        self.use(self.camera)
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        cocotb.start_soon(self.watch())
+        await self.reset(3)
+
+    def use(self, camera: CameraConfiguration) -> None:
+        self.camera = camera
+        self.dut.settings.value = pack_settings(camera_settings(camera))
+
+    async def watch(self) -> None:
+        while True:
+            await RisingEdge(self.dut.clk)
+            if not self.dut.rst.value:
+                bits = int(self.dut.faults.value)
+                self.faults += [name for place, name in enumerate(FAULTS) if bits >> place & 1]
+
+    async def reset(self, clocks: int) -> None:
+        self.source.abort()
+        self.dut.rst.value = 1
+        await ClockCycles(self.dut.clk, clocks)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)
+        self.forget()
+
+    def forget(self) -> None:
+        self.came.forget()
+        self.left.forget()
+        self.faults.clear()
+
+    def picture(self) -> tuple[list[Word], np.ndarray]:
+        """Return the words of a picture, and the frame of the grid."""
+        words = self.rng.integers(0, 1 << 24, self.camera.picture)
+        return camera_words(words, self.camera), camera_front_end(words, self.camera)
+
+    def blanked(self, words: list[Word]) -> list[Word | None]:
+        """Return the words with blanking: nothing for any time behind each row, and before the picture."""
+        out: list[Word | None] = [None] * self.random.randrange(20)
+        for word in words:
+            out += [word, *[None] * (self.random.randrange(9) if word.last else 0)]
+        return out
+
+    async def frames(self) -> list[np.ndarray]:
+        """Wait for what is inside; return the good frames as frame_guard lets them pass, uint8 (rows, columns, 3)."""
+        rows, columns = self.camera.grid
+        await ClockCycles(self.dut.clk, SETTLE)
+        while self.dut.m_axis_tvalid.value:
+            await RisingEdge(self.dut.clk)
+        await ClockCycles(self.dut.clk, SETTLE)
+        guarded = frame_guard(self.left.words, rows, columns)
+        assert len(guarded.faults) == len(self.faults), f"camera: {self.faults}, frame_guard: {guarded.faults}"
+        assert not guarded.open
+        good = [np.array(frame.pixels) for frame in guarded.frames if not frame.bad]
+        return [
+            np.stack([frame >> shift & 255 for shift in (16, 0, 8)], -1).reshape(rows, columns, 3) for frame in good
+        ]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(
+    (("offers", "stalls"), [("none", "none"), ("random", "none"), ("none", "random"), ("long", "long")])
+)
+async def pictures(dut: Any, offers: str, stalls: str) -> None:
+    """Every frame equals the model; without stalls the cycles to its last pixel are the same for all."""
+    bench = Bench(dut, offers, stalls)
+    await bench.start()
+    want, last = [], []
+    for _ in range(MANY + 1):
+        words, frame = bench.picture()
+        want.append(frame)
+        last.append(len(bench.came.words) + bench.camera.last_word)
+        await bench.source.send(bench.blanked(words))
+        await ClockCycles(dut.clk, bench.random.choice((0, 1, 2)))
+    got = await bench.frames()
+    np.testing.assert_array_equal(got, want)
+    assert not bench.faults
+    if stalls == "none":
+        pixels = want[0].size // 3
+        out = [bench.left.offered[(index + 1) * pixels - 1] for index in range(len(want))]
+        latencies = {after - bench.came.taken[place] for after, place in zip(out, last, strict=True)}
+        assert latencies == {camera_front_end_latency(bench.camera)}
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(kind=KINDS, stalls=["none", "random"])
+async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
+    """A good picture, a broken one, a good one: the good ones leave, the other is one broken frame."""
+    bench = Bench(dut, stalls, stalls)
+    await bench.start()
+    columns = bench.camera.picture[1] * bench.camera.words_per_pixel
+    places = positions(kind, bench.camera.picture[0], columns)
+    for position in sample([places[0], places[1 % len(places)], bench.random.choice(places), places[-1]]):
+        (before, first), (wrong, _), (after, second) = (bench.picture() for _ in range(3))
+        await bench.source.send([*before, *broken(wrong, kind, position, columns), *after])
+        got = await bench.frames()
+        np.testing.assert_array_equal(got[0], first, f"{kind} at {position}")
+        np.testing.assert_array_equal(got[-1], second, f"{kind} at {position}")
+        harmless = not bench.faults or (kind == "start_extra" and position > bench.camera.last_word)
+        assert len(got) == 2 + harmless, f"{kind} at {position}: {bench.faults}"
+        bench.forget()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def settings_change_between_pictures(dut: Any) -> None:
+    """Window anywhere, gains and black level of any size; a window that leaves the picture is a fault."""
+    bench = Bench(dut)
+    await bench.start()
+    built = bench.camera
+    rows, columns = built.picture
+    _, _, width, height = built.crop
+    for _ in range(4 * MANY):
+        x, y = bench.random.randint(0, columns - width), bench.random.randint(0, rows - height)
+        red, green, blue = (bench.random.randrange(1 << 14) / (1 << 12) for _ in range(3))
+        black = bench.random.randrange(1 << bench.camera.bits)
+        window = (x, y, width, height)
+        black = bench.random.choice((0, black))
+        bench.use(replace(built, window=window, gains=(red, green, blue), black_level=black))
+        await ClockCycles(dut.clk, 2)
+        words, frame = bench.picture()
+        await bench.source.send(words)
+        np.testing.assert_array_equal(await bench.frames(), [frame])
+        bench.forget()
+    dut.settings.value = pack_settings({**camera_settings(built), "window_x": columns - width + 1})
+    await ClockCycles(dut.clk, 2)
+    await bench.source.send(bench.picture()[0])
+    assert await bench.frames() == []
+    assert bench.faults == ["window_outside"]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """Anywhere in a picture and behind it; the next one is right."""
+    bench = Bench(dut)
+    await bench.start()
+    for clocks in (1, 7, 60, 200, *(bench.random.randrange(500) for _ in range(4))):
+        cocotb.start_soon(bench.source.send(bench.picture()[0]))
+        await ClockCycles(dut.clk, clocks)
+        await bench.reset(1)
+        words, frame = bench.picture()
+        await bench.source.send(words)
+        np.testing.assert_array_equal(await bench.frames(), [frame], f"reset after {clocks} clocks")
+        bench.forget()

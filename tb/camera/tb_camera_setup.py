@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: Apache-2.0
+"""camera_setup against tactile_depth.camera.camera_setup, in every clock; a camera on its lines, with faults."""
+
+import itertools
+import os
+import random
+from collections.abc import Callable
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
+
+from tactile_depth.camera.camera_setup import CameraSetup, Entry, Kind
+from tb.camera.sccb_camera import SccbCamera
+from tb.stream import CLOCK_NS, REGRESS, parameters, sample
+
+Fault = Callable[[str, int, int], int | None]
+COUNTS = ("AddressBytes", "DeviceId", "QuarterClocks", "MillisecondClocks", "Attempts")
+
+
+# Lists with each kind of entry, for registers of one and of two bytes.
+LISTS = {
+    "short": (
+        Entry(Kind.PINS, 2, 2),
+        Entry(Kind.PINS, 1, 0),
+        Entry(Kind.CHECK, 0x0A, 0x76),
+        Entry(Kind.PLAIN_WRITE, 0x12, 0x80),
+        Entry(Kind.WRITE, 0xA5, 0x5A),
+        Entry(Kind.PINS, 1, 1),
+        Entry(Kind.WRITE, 0x03, 0xFF),
+    ),
+    "wide": (
+        Entry(Kind.PINS, 1, 0),
+        Entry(Kind.CHECK, 0x300A, 0x56),
+        Entry(Kind.PLAIN_WRITE, 0x3008, 0x82),
+        Entry(Kind.WRITE, 0xC35A, 0x01),
+    ),
+}
+
+
+class Bench:
+    """The device, its model beside it in every clock, and a camera on its lines."""
+
+    def __init__(self, dut: Any, faults: Fault | None = None, acknowledges: bool = True) -> None:
+        self.dut, self.list = dut, LISTS[os.environ["LIST"]]
+        self.address_bytes, self.device_id, quarter, millisecond, attempts = parameters(dut, *COUNTS)
+        self.model = CameraSetup(self.list, self.address_bytes, self.device_id, quarter, millisecond, attempts)
+        checks = {entry.address: entry.data for entry in self.list if entry.kind == Kind.CHECK}
+        self.camera = SccbCamera(self.device_id, self.address_bytes, checks, acknowledges)
+        if faults is not None:
+            self.camera.faults = faults
+
+    async def start(self) -> None:
+        dut = self.dut
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        dut.rst.value, dut.restart.value, dut.sio_d.value = 1, 0, 1
+        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await ClockCycles(dut.clk, 4)
+        cocotb.start_soon(self.follow())
+        await RisingEdge(dut.clk)
+        dut.rst.value = 0
+
+    async def follow(self) -> None:
+        """Compare every output in every clock; the camera answers on the line."""
+        dut, edge = self.dut, RisingEdge(self.dut.clk)
+        expected = None
+        while True:
+            await edge
+            if expected is not None:
+                self.compare(expected)
+            sio_d, restart = int(dut.sio_d.value), bool(dut.rst.value) or bool(dut.restart.value)
+            self.model.edge(sio_d, restart)
+            expected = self.model.outputs
+            levels = int(expected.sio_c), int(not expected.sio_d_low)
+            line = self.camera.follow(levels[0], levels[1] & self.camera.line)
+            dut.sio_d.value = levels[1] & line
+
+    def compare(self, expected: Any) -> None:
+        dut = self.dut
+        for name in ("power_down", "reset_n", "sio_c", "sio_d_low", "done", "failed", "entry"):
+            assert int(getattr(dut, name).value) == int(getattr(expected, name)), name
+        if expected.found is not None:
+            assert int(dut.found.value) == expected.found, "found"
+
+    async def end(self) -> None:
+        """Wait until the list has ended, one way or the other."""
+        while not (self.dut.done.value or self.dut.failed.value):
+            await RisingEdge(self.dut.clk)
+        await ClockCycles(self.dut.clk, 3)
+
+    def check_registers(self) -> None:
+        """Every register that is written has its last value."""
+        last = {entry.address: entry.data for entry in self.list if entry.kind in (Kind.WRITE, Kind.PLAIN_WRITE)}
+        assert {address: self.camera.registers.get(address) for address in last} == last
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(acknowledges=[True, False])
+async def whole_list(dut: Any, acknowledges: bool) -> None:
+    """Every register arrives, whatever the camera does in the ninth bit; the pins end as the list says."""
+    bench = Bench(dut, acknowledges=acknowledges)
+    await bench.start()
+    await bench.end()
+    assert dut.done.value
+    assert not dut.failed.value
+    bench.check_registers()
+    last = [entry.address for entry in bench.list if entry.kind == Kind.PINS][-1]
+    assert (int(dut.power_down.value) << 1 | int(dut.reset_n.value)) == last
+    sent = [len(data) for data in bench.camera.transmissions]
+    address_bytes = bench.address_bytes
+    expected = {Kind.WRITE: [2 + address_bytes, 1 + address_bytes, 2], Kind.CHECK: [1 + address_bytes, 2]}
+    expected |= {Kind.PLAIN_WRITE: [2 + address_bytes], Kind.PINS: []}
+    assert sent == [count for entry in bench.list for count in expected[entry.kind]]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(kind=["write", "read", "silent"], times=sample([1, 2, 3]))
+async def faults_that_end(dut: Any, kind: str, times: int) -> None:
+    """A write that is lost, an answer with a wrong bit, and none at all: the entry is sent again until it is right."""
+    count: dict[int, int] = {}
+    chance = random.Random(cocotb.RANDOM_SEED)
+
+    def faults(what: str, address: int, value: int) -> int | None:
+        if what == ("write" if kind == "write" else "read"):
+            count[address] = count.get(address, 0) + 1
+            if count[address] <= times:
+                return value ^ 1 << chance.randrange(8) if kind == "read" else None
+        return value
+
+    bench = Bench(dut, faults)
+    await bench.start()
+    await bench.end()
+    if kind == "write":  # what is not read back is lost, and nobody knows
+        plain = {entry.address for entry in bench.list if entry.kind == Kind.PLAIN_WRITE}
+        for address in plain - {entry.address for entry in bench.list if entry.kind == Kind.WRITE}:
+            bench.camera.registers[address] = next(e.data for e in bench.list if e.address == address)
+    assert dut.done.value
+    bench.check_registers()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def faults_that_stay(dut: Any) -> None:
+    """An entry that is never right ends the list with its number and with what was read, after as many attempts."""
+    list_of = LISTS[os.environ["LIST"]]
+    attempts = parameters(dut, "Attempts")[0]
+    compared = [index for index, entry in enumerate(list_of) if entry.kind in (Kind.WRITE, Kind.CHECK)]
+    bench, wrong = Bench(dut), 0
+    await bench.start()
+    for place in compared if REGRESS else (compared[0], compared[-1]):
+        broken = list_of[place].address
+        reads = [index for index in compared if list_of[index].address == broken]
+        wrong = list_of[reads[0]].data ^ 0x10
+
+        def faults(what: str, address: int, value: int, broken: int = broken, wrong: int = wrong) -> int | None:
+            return wrong if what == "read" and address == broken else value
+
+        bench.camera.faults = faults
+        bench.camera.transmissions.clear()
+        dut.restart.value = 1
+        await RisingEdge(dut.clk)
+        dut.restart.value = 0
+        await ClockCycles(dut.clk, 2)
+        await bench.end()
+        assert dut.failed.value
+        assert not dut.done.value
+        assert (int(dut.entry.value), int(dut.found.value)) == (reads[0], wrong)
+        reading = [data for data in bench.camera.transmissions if len(data) == 2 and data[0] & 1]
+        assert reading[-attempts:] == [[bench.device_id | 1, wrong]] * attempts
+    bench.camera.faults = lambda what, address, value: value
+    dut.restart.value = 1
+    await RisingEdge(dut.clk)
+    dut.restart.value = 0
+    await ClockCycles(dut.clk, 2)
+    await bench.end()
+    assert dut.done.value
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(pin=["rst", "restart"])
+async def begun_afresh(dut: Any, pin: str) -> None:
+    """A reset or a restart, whenever it comes, begins with the first entry; the camera starts up all the same."""
+    bench = Bench(dut)
+    await bench.start()
+    chance = random.Random(cocotb.RANDOM_SEED)
+    for _ in range(12 if REGRESS else 4):
+        await ClockCycles(dut.clk, chance.randint(1, 3000))
+        getattr(dut, pin).value = 1
+        await ClockCycles(dut.clk, chance.randint(1, 3))
+        getattr(dut, pin).value = 0
+    await ClockCycles(dut.clk, 2)
+    await bench.end()
+    assert dut.done.value
+    bench.check_registers()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def camera_clock(dut: Any) -> None:
+    """XCLK has its period in every state, and stands still in a reset."""
+    (half,) = parameters(dut, "XclkHalfClocks")
+    bench = Bench(dut)
+    await bench.start()
+    levels = []
+    for _ in range(40 * half):
+        await RisingEdge(dut.clk)
+        await ReadOnly()
+        levels.append(int(dut.xclk.value))
+    edges = [index for index, (a, b) in enumerate(itertools.pairwise(levels)) if a != b]
+    assert {b - a for a, b in itertools.pairwise(edges)} == {half}
+    await RisingEdge(dut.clk)
+    dut.rst.value = 1
+    await ClockCycles(dut.clk, 2)
+    for _ in range(3 * half):
+        await RisingEdge(dut.clk)
+        assert not dut.xclk.value

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0
+"""camera_window against tactile_depth.camera.camera_window: pixels, marks, breaks and faults of what was taken.
+
+That the model flags and drops what it should is tests/camera/test_camera_window.py.
+"""
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
+from tactile_depth.frame.frame_guard import Word
+from tactile_depth.latency import CAMERA_WINDOW
+from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, video
+from tb.stream import CLOCK_NS, MANY, REGRESS, parameters
+
+KINDS = [kind for kind in BREAKS if kind not in SILENT]
+STALLS = {"none": ("none", "none"), "gaps": ("random", "none"), "both": ("random", "random")}
+LARGEST = (1 << 13) - 1
+
+
+class Bench:
+    def __init__(self, dut: Any, offers: str = "none", enabled: str = "none") -> None:
+        self.dut = dut
+        names = ("WindowColumns", "WindowRows", "WordsPerPixel", "PixelPairs")
+        self.width, self.height, self.words, pairs = parameters(dut, *names)
+        self.pairs = bool(pairs)
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        dut.rst.value, dut.en.value = 1, 1
+        self.source = AxisSource(dut, "s", offers=profile(offers, 1))
+        self.enabled = profile(enabled, 2)
+        self.forget()
+
+    def forget(self) -> None:
+        self.taken: list[Any] = []  # word and settings
+        self.clocks: list[int] = []  # of each word, counted with en
+        self.out: list[Any] = []
+        self.faults: list[Any] = []
+
+    def use(self, settings: Settings) -> None:
+        """Set the picture that comes next."""
+        self.settings = settings
+        names = ("columns", "rows", "window_x", "window_y")
+        for name, value in zip(names, settings, strict=True):
+            getattr(self.dut, name).value = value
+
+    def any_settings(self) -> Settings:
+        """A picture around the window, at its edges or anywhere in it."""
+        columns = self.width + self.random.choice((0, 1, 2, 5))
+        columns += columns % 2 if self.pairs else 0
+        rows = self.height + self.random.choice((0, 1, 3))
+        x, y = self.random.randint(0, columns - self.width), self.random.randint(0, rows - self.height)
+        return Settings(columns, rows, x, y)
+
+    async def start(self) -> None:
+        self.use(self.any_settings())
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        cocotb.start_soon(self.enable())
+        cocotb.start_soon(self.watch())
+        await self.reset(3)
+
+    async def enable(self) -> None:
+        while True:
+            self.dut.en.value = int(next(self.enabled))
+            await RisingEdge(self.dut.clk)
+
+    async def watch(self) -> None:
+        dut, clock, before = self.dut, 0, None
+        while True:
+            await RisingEdge(dut.clk)
+            settings = Settings(*(int(getattr(dut, pin).value) for pin in ("columns", "rows", "window_x", "window_y")))
+            if not dut.rst.value:
+                faults = [name for name in FAULTS if getattr(dut, name).value]
+                assert dut.en.value or not faults, f"{faults} while en is low: would count more than once"
+                assert len(faults) < 2, f"{faults} at once"
+                self.faults += faults
+                if dut.en.value:
+                    clock += 1
+                    self.step(clock, settings if before is None else before)
+                else:
+                    assert not dut.s_ready.value
+            before = settings
+
+    def step(self, clock: int, settings: Settings) -> None:
+        dut = self.dut
+        assert not (dut.out_valid.value and dut.out_abort.value)
+        if dut.out_abort.value:
+            self.out.append(None)
+        if dut.out_valid.value:
+            marks = [int(getattr(dut, f"out_{name}").value) for name in ("odd_row", "odd_column", "inside")]
+            names = ("row_start", "frame_start") if marks[2] else ()
+            starts = [int(getattr(dut, f"out_{name}").value) for name in names]
+            self.out.append((clock - CAMERA_WINDOW, int(dut.out_data.value), *marks, *starts))
+        if dut.s_valid.value and dut.s_ready.value:
+            self.taken.append((Word(int(dut.s_data.value), int(dut.s_last.value), int(dut.s_user.value)), settings))
+            self.clocks.append(clock)
+
+    async def reset(self, clocks: int) -> None:
+        self.source.abort()
+        self.dut.rst.value = 1
+        await ClockCycles(self.dut.clk, clocks)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)
+        self.forget()
+
+    def picture(self) -> list[Word]:
+        columns, rows = self.settings.columns * self.words, self.settings.rows
+        return video((self.random.getrandbits(24) for _ in range(rows * columns)), columns)
+
+    async def check(self, what: Any) -> Any:
+        await ClockCycles(self.dut.clk, 20)
+        want = camera_window(self.taken, (self.width, self.height), self.words, self.pairs)
+        expected: list[Any] = []
+        for position, pixel in want.out:
+            if pixel is None:
+                expected.append(None)
+                continue
+            starts = [int(pixel.row_start), int(pixel.frame_start)] if pixel.inside else []
+            marks = pixel.row % 2, pixel.column % 2, int(pixel.inside)
+            expected.append((self.clocks[position], pixel.data, *marks, *starts))
+        assert self.faults == [name for _, name in want.faults], f"{what}: faults"
+        assert self.out == expected, f"{what}: pixels and breaks"
+        return want
+
+    def places(self, kind: str) -> Sequence[int]:
+        return positions(kind, self.settings.rows, self.settings.columns * self.words)
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(kind=KINDS, stalls=list(STALLS))
+async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
+    """A good picture, a broken one, a good one, for every position of the break; with stalls for a few of them."""
+    bench = Bench(dut, *STALLS[stalls])
+    await bench.start()
+    bench.use(Settings(bench.width + 2, bench.height + 2, 1, 1))
+    await ClockCycles(dut.clk, 2)
+    places = bench.places(kind)
+    stride = 1 if REGRESS or stalls == "none" else min(7, len(places))
+    for position in places[bench.random.randrange(stride) :: stride]:
+        wrong = broken(bench.picture(), kind, position, bench.settings.columns * bench.words)
+        await bench.source.send([*bench.picture(), *wrong, *bench.picture()])
+        await bench.check(f"{kind} at {position}")
+        bench.forget()
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(stalls=list(STALLS))
+async def windows_anywhere(dut: Any, stalls: str) -> None:
+    """Settings that change before, with and within pictures; some leave the picture."""
+    bench = Bench(dut, *STALLS[stalls])
+    await bench.start()
+    outside = 0
+    for _ in range(20 * MANY):
+        settings = bench.any_settings()
+        if bench.random.random() < 0.4:
+            field = bench.random.choice(Settings._fields)
+            limit = {"columns": settings.x + bench.width, "rows": settings.y + bench.height}.get(field, 0)
+            settings = settings._replace(**{field: bench.random.choice((limit, max(limit - 1, 0), limit + 1, LARGEST))})
+        size = settings if max(settings.columns, settings.rows) < LARGEST else bench.settings
+        bench.use(settings)
+        bench.settings = size
+        await ClockCycles(dut.clk, bench.random.choice((0, 1, 2)))
+        await bench.source.send(bench.picture())
+        outside += "window_outside" in bench.faults
+        await bench.check(settings)
+        await bench.reset(1)
+    assert outside, "a poor test"
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """At every position of a picture; the next one is right."""
+    bench = Bench(dut)
+    await bench.start()
+    bench.use(Settings(bench.width + 1 + bench.pairs, bench.height + 1, 1, 0))
+    for position in range(bench.settings.columns * bench.settings.rows * bench.words):
+        words = bench.picture()
+        if position % 3 == 0:
+            words[position] = words[position]._replace(last=1 - words[position].last)
+        cocotb.start_soon(bench.source.send(words))
+        await ClockCycles(dut.clk, position + 2)
+        await bench.reset(1 + position % 2)
+        await bench.source.send(bench.picture())
+        assert not (await bench.check(f"reset at {position}")).faults
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(stalls=list(STALLS))
+async def random_streams(dut: Any, stalls: str) -> None:
+    """Broken and good pictures, several faults in one, stray words, marks flipped anywhere."""
+    bench = Bench(dut, *STALLS[stalls])
+    await bench.start()
+    rng, flagged = bench.random, set()
+    for index in range(30 * MANY):
+        if index % 10 == 0:
+            bench.use(bench.any_settings())
+        words = bench.picture()
+        for _ in range(rng.choice((0, 0, 1, 1, 2, 3))):
+            place = rng.randrange(len(words))
+            match rng.randrange(5):
+                case 0:
+                    words[place] = words[place]._replace(last=1 - words[place].last)
+                case 1:
+                    words[place] = words[place]._replace(user=1 - words[place].user)
+                case 2:
+                    words = words[:place] + words[place + rng.randint(1, 5) :]
+                case 3:
+                    words[place:place] = words[place : place + rng.randint(1, 5)]
+                case 4:
+                    words[0] = words[0]._replace(user=0)
+            words = words or bench.picture()
+        await bench.source.send(words)
+        if index % 10 == 9:
+            flagged |= {name for _, name in (await bench.check(f"random stream {index}")).faults}
+            await bench.reset(1)
+    assert flagged >= {"row_short", "row_long", "start_early", "start_missing"}, f"only {flagged}: a poor test"

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""round_divide against its model: ties and their neighbours, limits, negative and too large totals, pauses."""
+
+import random
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.camera.round_divide import round_divide
+from tactile_depth.latency import ROUND_DIVIDE
+from tb.stream import MANY, drive, parameters
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def means(dut: Any, pause: float) -> None:
+    total_width, weight_width, drop = parameters(dut, "TotalWidth", "WeightWidth", "Drop")
+    chance = random.Random(cocotb.RANDOM_SEED)
+    low, high = -(1 << (total_width - 1)), (1 << (total_width - 1)) - 1
+    heaviest = (1 << weight_width) - 1
+    weights = [1, heaviest, max(heaviest - 1, 1), *(chance.randint(1, heaviest) for _ in range(40 * MANY))]
+    operands = [(total, weight) for weight in weights[:3] for total in (low, -1, 0, 1, high)]
+    for weight in weights:
+        divisor = weight << drop
+        for mean in (0, 1, 254, 255, 256, chance.randrange(256)):
+            for beside in (-1, 0, 1):
+                operands.append((mean * divisor + beside, weight))
+                operands.append((mean * divisor + divisor // 2 + beside, weight))
+        operands.append((chance.randint(-2 * divisor, 300 * divisor), weight))
+    stimuli = [{"total": total, "weight": weight} for total, weight in operands if low <= total <= high]
+    stimuli += [{"total": 0, "weight": 1}] * ROUND_DIVIDE
+    seen = await drive(dut, stimuli, ["mean"], pause)
+    totals = np.array([word.to_signed() for word in seen["total"]])
+    divisors = np.array([int(word) for word in seen["weight"]])
+    got = [int(word) for word in seen["mean"][ROUND_DIVIDE:]]
+    np.testing.assert_array_equal(got, round_divide(totals, divisors, drop)[:-ROUND_DIVIDE])

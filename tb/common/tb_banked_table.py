@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""banked_table against its model in every clock: frames of any length, both ports of the free bank, pauses, resets."""
+
+import random
+from pathlib import Path
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.common.banked_table import BankedTable
+from tb.stream import CLOCK_NS, parameters
+
+CLOCKS = 6000
+
+
+class Bench:
+    """Drives one clock at a time at random, as the header allows it."""
+
+    banks: Any = None  # contents; no reset touches them, so the next test begins with them
+
+    def __init__(self, dut: Any, pause: float) -> None:
+        self.dut, self.pause = dut, pause
+        self.width, self.depth = parameters(dut, "Width", "Depth")
+        self.chance = random.Random(cocotb.RANDOM_SEED)
+        self.named = 0  # bank of the frame that comes
+        self.begun: int | None = None  # clocks with en since frame_start, until the change
+        self.word: int | None = None  # that is read
+        self.free_word: int | None = None
+        self.changes = 0
+
+    async def start(self) -> None:
+        """Verilator begins with random pins, which may have written a word before the first edge: see test_power_up."""
+        pins = ("en", "frame_start", "change", "read", "free_write", "free_read", "table_bank")
+        for pin in pins:
+            getattr(self.dut, pin).value = 0
+        self.dut.rst.value = 1
+        if Bench.banks is None:
+            Bench.banks = BankedTable.of(np.array([int(line, 16) for line in Path("table.hex").read_text().split()]))
+        self.banks.wanted = 0
+        self.banks.begin_frame()
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await RisingEdge(self.dut.clk)
+        await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+
+    async def clock(self, reset: bool = False) -> None:
+        chance, dut, banks = self.chance, self.dut, self.banks
+        en = chance.random() >= self.pause
+        if banks.wanted == banks.in_use and self.begun is None and chance.random() < 0.1:
+            banks.wanted ^= 1
+        settled = banks.wanted == banks.in_use and not reset
+        start = self.begun is None and chance.random() < 0.2
+        change = self.begun is not None and (self.begun >= 2 or chance.random() < 0.5)
+        address, free_address, write_address = (chance.randrange(self.depth) for _ in range(3))
+        write = settled and chance.random() < 0.5
+        read = not reset and chance.random() < 0.5 and not (write and write_address == free_address)
+        written = chance.getrandbits(self.width)
+        for pin, value in {
+            **{"rst": reset, "en": en, "table_bank": banks.wanted, "frame_start": start, "change": change},
+            **{"read": chance.random() < 0.8 or change, "read_address": address},
+            **{"free_write": write, "free_write_address": write_address, "free_write_word": written},
+            **{"free_read": read, "free_read_address": free_address},
+        }.items():
+            getattr(dut, pin).value = int(value)
+        await RisingEdge(dut.clk)
+        self.check()
+        self.free_word = None
+        if reset:
+            banks.begin_frame()
+            self.named, self.begun, self.word = banks.in_use, None, None
+            return
+        if en:
+            if change:
+                self.changes += self.named != banks.in_use
+                banks.in_use, self.begun = self.named, None
+            elif self.begun is not None:
+                self.begun += 1
+            if start:
+                self.named, self.begun = banks.wanted, 0
+            self.word = int(banks.words[banks.in_use][address]) if int(dut.read.value) else None
+        if read:  # in the clock of a change: of the bank that was left
+            self.free_word = int(banks.free[free_address])
+        if write:
+            banks.write(write_address, written)
+
+    def check(self) -> None:
+        dut = self.dut
+        assert int(dut.table_in_use.value) == self.banks.in_use, "table_in_use"
+        if self.word is not None:
+            assert int(dut.read_word.value) == self.word, "read_word"
+        if self.free_word is not None:
+            assert int(dut.free_word.value) == self.free_word, "free_word"
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.5])
+async def frames_and_bus(dut: Any, pause: float) -> None:
+    """Reads of frames, with both ports of the free bank at work; resets now and then."""
+    bench = Bench(dut, pause)
+    await bench.start()
+    for _ in range(CLOCKS):
+        await bench.clock(bench.chance.random() < 0.005)
+    assert bench.changes > CLOCKS // 100, f"{bench.changes} change-overs: a poor test"

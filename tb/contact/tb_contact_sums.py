@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""contact_sums against its model: area and sums of each frame, in their clocks and in no others."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.contact.contact_sums import CYCLES_TO_AREA, ContactSums, Sums, Thresholds, cycles_to_sums
+from tb.contact.depth_bench import WORD_LOW, DepthBench
+from tb.stream import REGRESS
+
+FRAMES = 1000 if REGRESS else 200
+
+
+class Bench(DepthBench):
+    """Drives one clock at a time; `touching` changes in the clock of area_valid, the earliest that it may."""
+
+    def __init__(self, dut: Any, gap: float = 0.0) -> None:
+        super().__init__(dut, gap)
+        self.model = ContactSums(self.rows, self.columns, bool(self.bottom_first))
+        self.cycles_to_sums = cycles_to_sums(self.lanes)
+        self.touching = False  # of the frame that comes in
+        self.seen: list[Sums] = []
+        self.due: dict[int, Sums] = {}  # by the clock of the frame's last depth
+        self.changes: dict[int, bool] = {}  # of `touching`, by clock
+
+    async def edge(
+        self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
+    ) -> None:
+        self.drive_depth(valid, depths, position)
+        if settings is not None:
+            self.drive(on_threshold=settings.on, off_threshold=settings.off)
+        self.drive(touching=int(self.changes.pop(self.now, self.driven.get("touching", 0))))
+        await RisingEdge(self.dut.clk)
+        self.check()
+        if valid:
+            for depth in self.in_turn(depths, position):
+                sums = self.model.beat(*depth, settings, self.touching)
+            if sums is not None:
+                self.due[self.now] = sums
+                self.touching = bool(self.random.getrandbits(1))
+                self.changes[self.now + CYCLES_TO_AREA] = self.touching
+        if settings is not None:  # from now on they do not count
+            self.drive(on_threshold=self.random.randint(self.low, self.high), off_threshold=0)
+        self.now += 1
+
+    def check(self) -> None:
+        dut = self.dut
+        area_of = self.due.get(self.now - CYCLES_TO_AREA)
+        assert bool(dut.area_valid.value) == (area_of is not None), "area_valid"
+        if area_of is not None:
+            assert int(dut.area.value) == area_of.area, "area"
+        sums = self.due.pop(self.now - self.cycles_to_sums, None)
+        assert bool(dut.sums_valid.value) == (sums is not None), "sums_valid"
+        if sums is not None:
+            value = int(dut.sums.value)
+            words = tuple(value >> 32 * word & 0xFFFF_FFFF for word in range(len(sums.words)))
+            assert words == sums.words, f"sums {words}, the model says {sums}"
+            self.seen.append(sums)
+
+    async def reset(self) -> None:
+        self.dut.rst.value = 1
+        await self.edge(False, [0] * self.lanes, (0, 0, 0))
+        self.dut.rst.value = 0
+        self.due.clear()
+        self.seen.clear()
+
+    async def settle(self) -> None:
+        await self.idle(self.cycles_to_sums + 1)
+
+
+@cocotb.test(timeout_time=100, timeout_unit="ms")
+@cocotb.parametrize(gap=[0.0, 0.1])
+async def random_frames(dut: Any, gap: float) -> None:
+    """Maps of every kind, back to back or with gaps, and thresholds near their values."""
+    bench = Bench(dut, gap)
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for _ in range(FRAMES):
+        depth = bench.random_map(rng)
+        await bench.frame(depth, Thresholds(*bench.random_thresholds(rng, depth)))
+    await bench.settle()
+    areas = [sums.area for sums in bench.seen]
+    assert len(areas) == FRAMES
+    assert areas.count(0) > FRAMES // 50, "hardly a frame with nothing above: a poor test"
+    assert areas.count(bench.pixels) > FRAMES // 50, "hardly a frame with all above: a poor test"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def ties_and_edges(dut: Any) -> None:
+    """The first of equal peaks in stream order; a lone one in each corner; all and nothing above."""
+    bench = Bench(dut)
+    await bench.start()
+    maps = bench.edge_maps()
+    for depth in maps:
+        await bench.frame(depth, Thresholds(0, 0))
+    await bench.frame(bench.full(bench.low), Thresholds(WORD_LOW, WORD_LOW))
+    await bench.settle()
+    assert len(bench.seen) == len(maps) + 1
+    first_row = bench.rows - 1 if bench.bottom_first else 0
+    assert bench.seen[4].peak_position == (first_row, 0), "not the first of the equals"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def interrupted_frames(dut: Any) -> None:
+    """A frame that begins inside another begins afresh, with its own thresholds."""
+    bench = Bench(dut)
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
+        await bench.frame(bench.random_map(rng), Thresholds(-3, 5), words=int(words))
+        if words % 3 == 0:
+            await bench.frame(bench.random_map(rng), Thresholds(0, 0))
+            await bench.settle()
+    assert len(bench.seen) > bench.beats // 3 - 1
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """In any clock of a frame and after it: nothing of it is left."""
+    bench = Bench(dut)
+    await bench.start()
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for clocks in range(1, bench.beats + bench.cycles_to_sums + 2):
+        await bench.frame(bench.random_map(rng), Thresholds(0, -1), words=clocks)
+        await bench.idle(max(0, clocks - bench.beats))
+        await bench.reset()
+        await bench.idle(int(rng.integers(0, bench.cycles_to_sums + 2)))
+        await bench.frame(bench.random_map(rng), Thresholds(0, 0))
+        await bench.settle()
+        assert len(bench.seen) == 1

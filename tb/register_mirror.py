@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of registers that software writes, followed at the AXI4-Lite pins."""
+
+from typing import Any
+
+from tactile_depth.registers.axil_port import Response, strobed_bits
+from tactile_depth.registers.register_map import MAP, REGISTERS
+
+OFFSETS = {register.offset: register.name for register in MAP}
+
+
+class RegisterMirror:
+    """The words of some registers, as the cores see them in the clock of the latest call of `clock`.
+
+    A write takes effect at the clock edge at which `bvalid` rises. Only plain registers are followed: those that read
+    what was written.
+    """
+
+    def __init__(self, dut: Any, *names: str) -> None:
+        self.dut = dut
+        self.names = names
+        self.address = self.data = self.strobe = 0  # of the latest write
+        self.reset()
+
+    def reset(self) -> None:
+        """Return to the values after a reset."""
+        self.words = {
+            name: sum((field.reset or 0) << field.low for field in REGISTERS[name].fields) for name in self.names
+        }
+        self.answered = False
+
+    def clock(self) -> None:
+        """Take one clock edge out of reset."""
+        dut = self.dut
+        answers = bool(dut.s_axil_bvalid.value)
+        name = OFFSETS.get(self.address & ~3) if answers and not self.answered else None
+        if name in self.words and int(dut.s_axil_bresp.value) == Response.OKAY:
+            mask = strobed_bits(self.strobe)
+            self.words[name] = (self.data & mask | self.words[name] & ~mask) & REGISTERS[name].mask("rw")
+        self.answered = answers
+        if dut.s_axil_awvalid.value and dut.s_axil_awready.value:
+            self.address = int(dut.s_axil_awaddr.value)
+        if dut.s_axil_wvalid.value and dut.s_axil_wready.value:
+            self.data, self.strobe = int(dut.s_axil_wdata.value), int(dut.s_axil_wstrb.value)

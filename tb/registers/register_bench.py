@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bench of a core of registers behind axil_port: one call a clock sets all inputs, and compares all outputs.
+
+A core has the inputs write, write_offset, write_ones, write_mask (some), read_offset and the output read_data.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.registers.axil_port import strobed_bits
+from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS
+from tb.stream import CLOCK_NS, REGRESS
+
+RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
+OFFSET = {register.offset: register.name for register in MAP}
+UNMAPPED = tuple(offset for offset in range(0, 1 << ADDRESS_WIDTH, 4) if offset not in OFFSET)
+WHOLE = 0xF  # every byte is strobed
+
+
+class RegisterBench:
+    """Drives a core clock by clock; the subclass of a core has its model.
+
+    Attributes
+    ----------
+    random : random.Random
+        From cocotb's seed.
+    """
+
+    idle: Mapping[str, int] = MappingProxyType({})  # inputs beside the bus, while a test sets no other value
+
+    def __init__(self, dut: Any) -> None:
+        self.dut, self.clocks = dut, 0
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+
+    # A core's own: its model.
+
+    def word(self, name: str) -> int:
+        """Return the word that a read of a register shows, 0 for a register of another core."""
+        raise NotImplementedError
+
+    def refuses(self, name: str, ones: int, mask: int) -> bool:
+        """Return True if a write is refused; compared with the pin write_refused of cores that have it."""
+        return False
+
+    def outputs(self) -> dict[str, int]:
+        """Return all other outputs in this clock."""
+        return {}
+
+    def step(self, write: tuple[str, int, int] | None) -> None:
+        """Take the clock edge, with the allowed write of this clock: register, ones, mask."""
+        raise NotImplementedError
+
+    def reset(self) -> None:
+        """Take a clock edge in reset."""
+        raise NotImplementedError
+
+    # The pins.
+
+    async def start(self) -> None:
+        """Hold the reset for two clocks, with all inputs idle."""
+        for name in ("write", "write_offset", "write_ones", "write_mask", "read_offset", "rst", *self.idle):
+            if hasattr(self.dut, name):
+                getattr(self.dut, name).value = self.idle.get(name, 0)
+        self.dut.rst.value = 1
+        for _ in range(2):
+            await RisingEdge(self.dut.clk)
+        self.reset()
+
+    def expect(self, name: str, expected: int) -> None:
+        got = int(getattr(self.dut, name).value)
+        assert got == expected, f"clock {self.clocks}: {name} is {got:#x}, expected {expected:#x}"
+
+    async def clock(
+        self, write: tuple[str | int, int, int] | None = None, read_at: str | int = 0, rst: bool = False, **inputs: int
+    ) -> int:
+        """Set the inputs of one clock, compare its outputs, and return read_data.
+
+        Parameters
+        ----------
+        write : (register or offset, data, strobe), optional
+        read_at : str or int
+            Register or offset.
+        rst : bool
+        inputs : int
+            Inputs that are not idle.
+        """
+        dut = self.dut
+        self.inputs = {**self.idle, **inputs}
+        offset, data, strobe = write or (self.random.choice(UNMAPPED), self.random.getrandbits(32), WHOLE)
+        offset = REGISTERS[offset].offset if isinstance(offset, str) else offset
+        mask = strobed_bits(strobe)
+        name, ones = OFFSET.get(offset, ""), data & mask
+        self.ones = ones
+        refused = self.refuses(name, ones, mask)
+        allowed = write is not None and not refused and not rst
+        read_offset = REGISTERS[read_at].offset if isinstance(read_at, str) else read_at
+        driven = {"write": allowed, "write_offset": offset, "write_ones": ones, "write_mask": mask, "rst": rst}
+        for pin, value in (driven | {"read_offset": read_offset} | self.inputs).items():
+            if hasattr(dut, pin):
+                getattr(dut, pin).value = int(value)
+        self.read_name = OFFSET.get(read_offset, "")
+        self.rst, self.allowed = rst, (name, ones, mask) if allowed else None
+        await RisingEdge(dut.clk)
+        word = self.word(self.read_name)
+        self.expect("read_data", word)
+        if hasattr(dut, "write_refused"):
+            self.expect("write_refused", refused)
+        for pin, value in self.outputs().items():
+            self.expect(pin, value)
+        self.step(self.allowed) if not rst else self.reset()
+        self.clocks += 1
+        return word
+
+    async def random_clocks(
+        self, registers: tuple[str, ...], resets: float = 0.005, count: int = RANDOM_CLOCKS
+    ) -> None:
+        """Write and read registers at random, those named more often than all others, with `random_inputs`."""
+        rng = self.random
+
+        def any_offset() -> int:
+            chosen = rng.random()
+            if chosen < 0.8:
+                return REGISTERS[rng.choice(registers)].offset
+            return rng.choice(tuple(OFFSET) if chosen < 0.95 else UNMAPPED)
+
+        for _ in range(count):
+            data = rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), rng.getrandbits(4), (1 << 32) - 1))
+            strobe = rng.choice((WHOLE, WHOLE, rng.getrandbits(4)))
+            write = (any_offset(), data, strobe) if rng.random() < 0.5 else None
+            await self.clock(write, any_offset(), rng.random() < resets, **self.random_inputs())
+
+    async def other_offsets(self, registers: tuple[str, ...]) -> None:
+        """Write and read at every offset that differs in one bit from that of a register."""
+        for name in registers:
+            for bit in range(32):
+                offset = REGISTERS[name].offset ^ 1 << bit
+                await self.clock((offset, self.random.getrandbits(32) | 1, WHOLE), offset, **self.random_inputs())
+                await self.clock(read_at=name, **self.random_inputs())
+
+    def random_inputs(self) -> dict[str, Any]:
+        """Return random inputs beside the bus."""
+        return {}

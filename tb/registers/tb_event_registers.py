@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks hdl/registers/event_registers.sv against its model, every output in every clock."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import cocotb
+
+from tactile_depth.registers.event_registers import (
+    COUNTERS,
+    EVENT_COUNTERS,
+    EVENTS,
+    INTERRUPT_EVENTS,
+    INTERRUPT_STATUS,
+    LATENCY,
+    LEVELS,
+    STATUS,
+    STICKY_EVENTS,
+    EventRegisters,
+)
+from tactile_depth.registers.register_map import WORD
+from tb import structs
+from tb.registers.register_bench import WHOLE, RegisterBench
+
+COUNTER_ORDER = (  # of the words of `counts`, from the lowest
+    *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST", "SATURATIONS"),
+)
+READ = ("STATUS", "INTERRUPT_STATUS", LATENCY, *COUNTERS)
+
+
+class Bench(RegisterBench):
+    """The events."""
+
+    idle: Mapping[str, int] = dict.fromkeys(
+        ("events", "levels", "first_depth_latency", "first_depth_latency_valid", "interrupt_mask"), 0
+    )
+
+    def __init__(self, dut: Any) -> None:
+        super().__init__(dut)
+        self.model = EventRegisters()
+
+    def word(self, name: str) -> int:
+        levels = STATUS.pack(**structs.unpack("levels_t", self.inputs["levels"])) if name == "STATUS" else 0
+        return self.model.values.get(name, 0) | levels
+
+    def outputs(self) -> dict[str, int]:
+        return {"irq": int(self.model.irq)}
+
+    def step(self, write: tuple[str, int, int] | None) -> None:
+        if write:
+            self.model.write(*write[:2])
+        events, valid = structs.unpack("events_t", self.inputs["events"]), self.inputs["first_depth_latency_valid"]
+        saturations = events.pop("saturations")
+        self.model.clock(
+            [name for name, happens in events.items() if happens],
+            saturations,
+            self.inputs["first_depth_latency"] if valid else None,
+            self.inputs["interrupt_mask"],
+        )
+
+    def reset(self) -> None:
+        self.model.reset()
+
+    async def happen(self, *events: str, saturations: int = 0, **inputs: Any) -> int:
+        """Run a clock with these events."""
+        members = dict.fromkeys(events, 1) | {"saturations": saturations}
+        return await self.clock(events=structs.pack("events_t", members), **inputs)
+
+    def set_counters(self, **counts: int) -> None:
+        """Put counts into the core and its model: 2^32 events would take too long."""
+        self.model.values.update(counts)
+        words = (self.model.values[name] << 32 * n for n, name in enumerate(COUNTER_ORDER))
+        self.dut.counts.value = sum(words)
+
+    def random_inputs(self) -> dict[str, Any]:
+        rng = self.random
+        members: dict[str, int] = {name: int(rng.random() < 0.1) for name in EVENTS}
+        members["saturations"] = rng.getrandbits(13) if rng.random() < 0.1 else 0
+        return {
+            "events": structs.pack("events_t", members),
+            "levels": rng.getrandbits(3),
+            "first_depth_latency": rng.getrandbits(32),
+            "first_depth_latency_valid": int(rng.random() < 0.1),
+            "interrupt_mask": rng.getrandbits(2),
+        }
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def each_event(dut: Any) -> None:
+    """An event sets its bits and counts once; a written 1 clears its bit alone; a level shows as it is."""
+    assert {*EVENTS, "saturations"} == set(structs.members("events_t"))
+    bench = Bench(dut)
+    await bench.start()
+    for event in (*EVENTS, "saturations"):
+        for bit in range(13) if event == "saturations" else (0,):
+            await bench.happen(*({event} - {"saturations"}), saturations=(event == "saturations") << bit)
+            bits = {"STATUS": STATUS.pack(**{STICKY_EVENTS[event]: 1})} if event in STICKY_EVENTS else {"STATUS": 0}
+            if event == "saturations":
+                bits["STATUS"] = STATUS.pack(saturation=1)
+            interrupt = INTERRUPT_EVENTS.get(event)
+            bits["INTERRUPT_STATUS"] = INTERRUPT_STATUS.pack(**{interrupt: 1}) if interrupt else 0
+            for register, expected in bits.items():
+                assert await bench.clock(read_at=register) == expected, event
+                await bench.clock(write=(register, WORD & ~expected, WHOLE))
+                assert await bench.clock(read_at=register) == expected, f"{event} was cleared by a 0"
+                await bench.clock(write=(register, expected, WHOLE))
+                assert await bench.clock(read_at=register) == 0
+            counts = {name: await bench.clock(read_at=name) for name in COUNTERS}
+            counter = "SATURATIONS" if event == "saturations" else EVENT_COUNTERS.get(event)
+            assert counts == {name: int(name == counter) << bit for name in COUNTERS}, event
+            await bench.clock(write=("CONTROL", 2, WHOLE))
+    for level in LEVELS:
+        shown = await bench.clock(read_at="STATUS", levels=structs.pack("levels_t", {level: 1}))
+        assert shown == STATUS.pack(**{level: 1})
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def an_event_in_the_clock_of_its_clearing(dut: Any) -> None:
+    """It is kept; one in the clock before is cleared."""
+    bench = Bench(dut)
+    await bench.start()
+    for register in ("STATUS", "INTERRUPT_STATUS", "CONTROL"):
+        for before, same in ((1, 0), (0, 1), (1, 1)):
+            await bench.happen(*(EVENTS if before else ()), saturations=9 * before)
+            await bench.happen(*(EVENTS if same else ()), saturations=9 * same, write=(register, WORD, WHOLE))
+            for name in READ:
+                await bench.clock(read_at=name)
+            for name in ("STATUS", "INTERRUPT_STATUS", "CONTROL"):
+                await bench.clock(write=(name, WORD, WHOLE))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def counters_stay_at_the_top(dut: Any) -> None:
+    """A counter near its end counts up to all ones, and stays there until it is cleared; every bit is counted."""
+    bench = Bench(dut)
+    await bench.start()
+    sources: dict[str, dict[str, Any]] = {name: {"events": event} for event, name in EVENT_COUNTERS.items()}
+    for name in COUNTERS:
+        event, step = sources.get(name, {}).get("events"), 1 if name in sources else 255
+        for start in (WORD - step - 1, *((1 << bit) - 1 for bit in range(9, 32)), *(1 << bit for bit in range(32))):
+            bench.set_counters(**{name: start})
+            for _ in range(3):
+                await bench.happen(*([event] if event else []), saturations=0 if event else step, read_at=name)
+            expected = min(start + 3 * step, WORD)
+            assert await bench.clock(read_at=name) == expected, f"{name} from {start:#x}"
+        await bench.clock(write=("CONTROL", 2, 0xE), read_at=name)
+        await bench.clock(write=("CONTROL", WORD & ~2, WHOLE), read_at=name)
+        assert await bench.clock(read_at=name) == expected, f"{name} was cleared by a 0"
+        await bench.clock(write=("CONTROL", 2, WHOLE))
+        assert await bench.clock(read_at=name) == 0
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def counters_count_for_themselves(dut: Any) -> None:
+    """Counters with any words in them count on, whatever the other ones hold."""
+    bench = Bench(dut)
+    await bench.start()
+    for _ in range(100):
+        bench.set_counters(**{name: bench.random.getrandbits(32) for name in COUNTERS})
+        await bench.clock(**bench.random_inputs())
+        for name in COUNTERS:
+            await bench.clock(read_at=name)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def the_last_latency_stays(dut: Any) -> None:
+    """It changes with a valid one alone."""
+    bench = Bench(dut)
+    await bench.start()
+    for clocks in (0x1234_5678, WORD, 0, 34_567, *(1 << bit for bit in range(32))):
+        await bench.clock(first_depth_latency=clocks, first_depth_latency_valid=1)
+        await bench.clock(first_depth_latency=99, write=("CONTROL", 2, WHOLE))
+        assert await bench.clock(read_at=LATENCY) == clocks
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def the_interrupt(dut: Any) -> None:
+    """It is high while a bit is set and not masked, a clock late."""
+    bench = Bench(dut)
+    await bench.start()
+    for event, bit in INTERRUPT_EVENTS.items():
+        own = INTERRUPT_STATUS.field(bit).mask
+        await bench.happen(event)
+        for mask in (INTERRUPT_STATUS.mask() & ~own, own, 0, INTERRUPT_STATUS.mask()):
+            for _ in range(2):
+                await bench.clock(interrupt_mask=mask)
+            assert bench.model.irq == bool(mask & own)
+        await bench.clock(interrupt_mask=own, write=("INTERRUPT_STATUS", own, WHOLE))
+        await bench.clock(interrupt_mask=own)
+        await bench.clock(interrupt_mask=own)
+        assert not bench.model.irq
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def random_events(dut: Any) -> None:
+    """Random events, writes, reads and resets."""
+    bench = Bench(dut)
+    await bench.start()
+    await bench.random_clocks((*READ, "STATUS", "INTERRUPT_STATUS", "CONTROL"))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def other_offsets(dut: Any) -> None:
+    """An offset that differs in one bit from that of a register is not taken for it."""
+    bench = Bench(dut)
+    await bench.start()
+    await bench.other_offsets((*READ, "CONTROL"))

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks hdl/registers/setting_registers.sv against its model, every output in every clock."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cocotb
+
+from tactile_depth.registers.register_map import REGISTERS, WORD
+from tactile_depth.registers.setting_registers import MASKS, RESETS, SETTINGS, SettingRegisters
+from tb.registers.register_bench import WHOLE, RegisterBench
+
+
+class Bench(RegisterBench):
+    """The settings."""
+
+    def __init__(self, dut: Any) -> None:
+        super().__init__(dut)
+        given = int(dut.Resets.value)
+        self.model = SettingRegisters({name: given >> 32 * n & WORD for n, name in enumerate(SETTINGS)})
+
+    def word(self, name: str) -> int:
+        return self.model.values.get(name, 0)
+
+    def outputs(self) -> dict[str, int]:
+        return {"settings": sum(self.model.values[name] << 32 * n for n, name in enumerate(SETTINGS))}
+
+    def step(self, write: tuple[str, int, int] | None) -> None:
+        if write:
+            self.model.write(*write)
+
+    def reset(self) -> None:
+        self.model.reset()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_values(dut: Any) -> None:
+    """After a reset every setting has the value of the map."""
+    bench = Bench(dut)
+    await bench.start()
+    for name in SETTINGS:
+        fields = [f for f in REGISTERS[name].fields if f.setting and f.reset is not None]
+        assert RESETS[name] == sum((f.reset or 0) << f.low for f in fields)
+        assert await bench.clock(read_at=name) == bench.model.resets[name]
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(name=list(SETTINGS))
+async def every_bit_and_byte(dut: Any, name: str) -> None:
+    """A write sets the bits of its strobed bytes, and no other bit."""
+    bench = Bench(dut)
+    await bench.start()
+    for strobe in range(16):
+        for word in (0, WORD, 0x5AA5_C33C):
+            await bench.clock(write=(name, ~word & WORD, WHOLE), read_at=name)
+            await bench.clock(write=(name, word, strobe), read_at=name)
+            await bench.clock(read_at=name)
+    for bit in range(32):
+        await bench.clock(write=(name, 1 << bit, WHOLE), read_at=name)
+        assert await bench.clock(read_at=name) == 1 << bit & MASKS[name]
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def random_writes(dut: Any) -> None:
+    """Random writes, reads and resets."""
+    bench = Bench(dut)
+    await bench.start()
+    await bench.random_clocks(tuple(SETTINGS))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def other_offsets(dut: Any) -> None:
+    """An offset that differs in one bit from that of a register is not taken for it."""
+    bench = Bench(dut)
+    await bench.start()
+    await bench.other_offsets(tuple(SETTINGS))

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tactile_depth, driven and watched at its pins.
+
+Whatever a test sends, `Pipeline.check` feeds the models with what the monitor saw on s_axis and compares every code,
+side-band, latency, counter and status bit; `contact` is compared in every clock. Each test begins with a device after a
+reset whose tables are as built.
+"""
+
+import os
+import random
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.frame.frame_guard import Word
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.sensor import synthetic
+from tb import functional_coverage
+from tb.axil import Master, RegisterClient
+from tb.axis import AxisMonitor, AxisSink, AxisSource, BeatMonitor, positions, profile, video
+from tb.pixels import pack
+from tb.second_client import SecondMaster, SecondSink, SecondSource
+from tb.selection import SECOND_CLIENT
+from tb.stream import CLOCK_NS, configuration
+from tb.tactile_depth import device_tables
+from tb.tactile_depth.contact_watch import RECORD, ContactWatch
+from tb.tactile_depth.device_tables import Content, DeviceTables
+from tb.tactile_depth.scoreboard import STATUS, Checked, Scoreboard
+
+CONTROL, COMMIT = REGISTERS["CONTROL"], REGISTERS["TABLE_COMMIT"]
+HEAD_CLOCKS = 2  # from the clock of a pixel on the pins to that in which it is the first at the head of the pipeline
+SKID_WORDS = 2  # beats that a stalled output holds
+FLAT = (135, 135, 135)  # a colour of no contact
+RESET_CLOCKS = 3
+RECORD_PROFILES = ("none", "one_in_4", "alternate", "random")  # profiles of a sink of records that lose none
+Stream = Sequence[Word | None]
+
+
+class Pipeline:
+    """Drivers, monitors, scoreboard and registers of one test."""
+
+    def __init__(self, dut: Any, offers: str = "none", accepts: str = "none", timeout: int = 0) -> None:
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.random = dut, random.Random(cocotb.RANDOM_SEED)
+        self.config: Configuration = configuration()
+        self.rows, self.columns = self.config.rows, self.config.columns
+        self.pixels = self.rows * self.columns
+        self.held = SKID_WORDS * self.config.lanes  # depths that a stalled output holds
+        self.timeout, self.stalled = timeout, accepts != "none"
+        self.profiles = offers, accepts
+        dut.rst.value, dut.cold_rst.value, dut.m_event_tready.value = 1, 0, 1
+        master: Any
+        self.source: Any
+        self.sink: Any
+        if SECOND_CLIENT:
+            self.source = SecondSource(dut, profile(offers, 1))
+            self.sink = SecondSink(dut, profile(accepts, 2))
+            master = SecondMaster(dut)
+        else:
+            self.source = AxisSource(dut, "s_axis", prefix="t", offers=profile(offers, 1))
+            self.sink = AxisSink(dut, "m_axis", prefix="t", accepts=profile(accepts, 2))
+            master = Master(dut)
+        self.into = AxisMonitor(dut, "s_axis", prefix="t", silence=bool(timeout))
+        self.out = BeatMonitor(dut, "m_axis", self.config.lanes, prefix="t")
+        self.registers = RegisterClient(master)
+        self.read, self.write = self.registers.read, self.registers.write
+        self.tables = DeviceTables(self.config, self.registers)
+        self.contact = ContactWatch(dut, self.config, profile(accepts if accepts in RECORD_PROFILES else "none", 3))
+        self.scoreboard = Scoreboard(self.config, self.contact)
+
+    async def start(self) -> None:
+        """Start clock and monitors, reset, and write back the tables that the tests before have changed."""
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        cocotb.start_soon(self.contact.watch_contact())
+        cocotb.start_soon(self.contact.watch_events())
+        functional_coverage.start(self.dut, self.config, *self.profiles)
+        await self.reset(RESET_CLOCKS)
+        if device_tables.changed:
+            await self.tables.restore()
+            await self.send(self.plain())  # takes them into use
+            await self.idle()
+            device_tables.changed.clear()
+            self.disturb(*self.profiles)
+            await self.reset(RESET_CLOCKS)
+        if self.timeout:
+            await self.write("TIMEOUT", self.timeout)
+
+    def disturb(self, offers: str, accepts: str) -> None:
+        """Begin the profiles of source and sink afresh."""
+        self.source.offers = profile(offers, 1)
+        self.sink.stall(profile(accepts, 2))
+
+    async def reset(self, clocks: int) -> None:
+        """Reset for so many clocks; frames sent before no longer count."""
+        self.source.abort()
+        self.dut.rst.value = 1
+        await ClockCycles(self.dut.clk, clocks)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)  # AXI: the first edge out of reset comes before the first word
+        self.forget()
+        self.contact.events.reset()
+        self.scoreboard.reset()
+
+    def forget(self) -> None:
+        """Forget what the monitors saw."""
+        if SECOND_CLIENT:
+            self.sink.words()
+        self.into.forget()
+        self.out.forget()
+        self.contact.forget()
+
+    # Frames.
+
+    def frame(self) -> list[Word]:
+        """Words of a frame of random colours."""
+        return video((self.random.getrandbits(24) for _ in range(self.pixels)), self.columns)
+
+    def plain(self, colour: Sequence[int] = FLAT) -> list[Word]:
+        """Words of a frame of one colour."""
+        return video([int(pack(colour))] * self.pixels, self.columns)
+
+    def frame_of(self, slopes: np.ndarray) -> list[Word]:
+        """Words of a frame whose slopes are those of the gradient table nearest to `slopes`, (rows, columns, 2).
+
+        With flat-fielding, by a reference of 128: of its colours.
+        """
+        bits = self.config.bits_per_channel
+        if self.config.flat_field:
+            coefficients: Any = synthetic(bits).coefficients
+            deviation = slopes @ np.linalg.pinv(coefficients[..., 0]).T
+            rgb = np.clip(np.rint(128 * (1 + deviation)), 0, 255).astype(int)
+            return video(pack(rgb).ravel(), self.columns)
+        entries = self.tables.content.entries["gradient"] * self.config.gradient_lsb
+        bins = ((slopes.reshape(-1, 1, 2) - entries) ** 2).sum(axis=-1).argmin(axis=1)
+        rgb = np.stack([(bins >> shift & (1 << bits) - 1) << 8 - bits for shift in (2 * bits, bits, 0)], axis=-1)
+        return video(pack(rgb), self.columns)
+
+    def pressed(self, slope: float = 0.5) -> list[Word]:
+        """Words of a frame with a pyramid in it: up one side and down the other along both axes."""
+        along, down = (np.where(np.arange(n) < n // 2, slope, -slope) for n in (self.columns, self.rows))
+        return self.frame_of(np.stack(np.meshgrid(along, down), axis=-1))
+
+    def places(self, fault: str) -> list[int]:
+        """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
+        size, pixels = self.columns, self.pixels
+        inner = self.rows // 2 * size
+        chosen = (0, 1, size - 2, size - 1, size, inner + 3, inner + size - 1, pixels - size, pixels - 2, pixels - 1)
+        return [position for position in chosen if position in positions(fault, self.rows, size)]
+
+    def depth_of(self, *frames: Stream) -> np.ndarray:
+        """Depth codes (frames, rows, columns) that whole frames are expected to have."""
+        words = [[word.data for word in frame if word is not None] for frame in frames]
+        return self.scoreboard.model(words, self.tables.content)[0]
+
+    # Traffic.
+
+    async def send(self, *streams: Stream) -> None:
+        """Send words, one stream after another; None is a clock of pause."""
+        await self.source.send([word for stream in streams for word in stream])
+
+    async def idle(self) -> None:
+        """Wait until no frame is in flight."""
+        for _ in range(400 * self.pixels // 64):
+            if not STATUS.unpack(await self.read("STATUS"))["busy"]:
+                return
+        raise AssertionError("busy does not end")
+
+    async def until(self, reached: Callable[[], object]) -> None:
+        """Wait until something is so, clock by clock."""
+        while not reached():
+            await RisingEdge(self.dut.clk)
+
+    async def drain(self) -> None:
+        """Wait until every frame has left. The source must be idle."""
+        await RisingEdge(self.dut.clk)  # the monitor may see the last word after the test does
+        frames, _ = self.scoreboard.frames(self.into, self.timeout)
+        words = sum(not frame.bad for frame in frames) * self.pixels
+        await self.idle()
+        for _ in range(100 * SKID_WORDS * self.columns):
+            if len(self.out.words) >= words:
+                break
+            await RisingEdge(self.dut.clk)
+        await ClockCycles(self.dut.clk, 4 * self.columns)
+
+    async def check(self, counters: bool = True, contents: Sequence[Content] | None = None) -> Checked:
+        """Let everything drain, then compare it with the models.
+
+        `contents` is what the tables hold for each frame, where they differ.
+        """
+        await self.drain()
+        if SECOND_CLIENT:
+            assert self.sink.words() == self.out.words, "the second client's sink saw other words than the monitor"
+        checked = self.scoreboard.compare(
+            self.into, self.out, self.timeout, contents or self.tables.content, not self.stalled
+        )
+        if self.contact.packets:
+            have = [await self.read(name) for name in RECORD]
+            assert have == self.contact.packets[-1], "the registers of the last record"
+        await self.scoreboard.check_registers(self.registers, counters)
+        self.forget()
+        return checked
+
+    async def clear_status(self, **bits: int) -> None:
+        """Clear bits of STATUS by writing ones to them."""
+        await self.write("STATUS", STATUS.pack(**bits))
+        self.scoreboard.sticky -= bits.keys()
+
+
+async def started(dut: Any, **arguments: Any) -> Pipeline:
+    """Return the device after a reset, its tables as built."""
+    pipeline = Pipeline(dut, **arguments)
+    await pipeline.start()
+    return pipeline

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Watches `contact` in every clock and the records of contact events, and compares both with their models."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.contact.contact_events import ContactEvents, Settings, record
+from tactile_depth.contact.threshold_comparator import ThresholdComparator
+from tactile_depth.latency import last_pixel_to_first_depth
+from tactile_depth.registers.register_map import MAP, REGISTERS
+from tb.register_mirror import RegisterMirror
+
+CONTROL = REGISTERS["CONTROL"]
+SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
+RECORD = [register.name for register in MAP if register.name.startswith("RECORD_")]
+
+
+class ContactWatch:
+    """Models of the contact unit beside the device.
+
+    Attributes
+    ----------
+    raised : list of int
+        Clocks in which `contact` rose.
+    packets : list of list of int
+        Records that left, in words.
+    takes : iterator of bool
+        When the sink of records takes a word.
+    """
+
+    def __init__(self, dut: Any, config: Configuration, takes: Iterator[bool]) -> None:
+        self.dut, self.config, self.takes = dut, config, takes
+        self.pixels = config.rows * config.columns
+        self.comparator = ThresholdComparator()
+        self.events = ContactEvents(config.rows, config.columns, config.solver == "tridiagonal")
+        self.registers = RegisterMirror(dut, *SETTINGS, "CONTROL")
+        self.raised: list[int] = []
+        self.packets: list[list[int]] = []
+        self.settings: list[Settings] = []  # when the first depth of each frame left
+        self.drops: list[tuple[int, bool, int, bool]] = []  # clock, contact, threshold, hold: under drop_frames
+
+    def forget(self) -> None:
+        """Forget what left."""
+        self.raised.clear()
+        self.packets.clear()
+        self.settings.clear()
+
+    def setting(self, register: str) -> int:
+        """Return the value of a register that the cores have in this clock."""
+        word = self.registers.words[register]
+        return (word ^ 1 << 31) - (1 << 31) if "THRESHOLD" in register else word
+
+    @property
+    def depth_bits(self) -> int:
+        """Width of a depth on m_axis."""
+        return 8 * ((self.config.data_width + 7) // 8)
+
+    def signed(self, data: Any) -> int:
+        """Return the depth code of a depth on m_axis."""
+        return (int(data) ^ 1 << self.depth_bits - 1) - (1 << self.depth_bits - 1)
+
+    def depths(self, data: Any) -> list[int]:
+        """Return the depth codes of a beat on m_axis."""
+        beat, mask = int(data), (1 << self.depth_bits) - 1
+        return [self.signed(beat >> lane * self.depth_bits & mask) for lane in range(self.config.lanes)]
+
+    async def watch_contact(self) -> None:
+        """Compare `contact` with the model's, which takes the beats and the registers of the clock before."""
+        dut, model, edge = self.dut, self.comparator, RisingEdge(self.dut.clk)
+        await edge
+        clock, was = 1, False
+        while True:
+            await edge
+            clock += 1
+            contact = bool(dut.contact.value)
+            if dut.rst.value:
+                model.reset()
+                self.registers.reset()
+                was = False
+                continue
+            self.registers.clock()
+            control = CONTROL.unpack(self.registers.words["CONTROL"])
+            hold, threshold = bool(control["hold_contact"]), self.setting("THRESHOLD")
+            if control["drop_frames"]:  # depth that does not leave counts too: see `check_with_drops`
+                self.drops.append((clock, contact, threshold, hold))
+                continue
+            assert contact == model.contact, f"contact is {contact} in clock {clock}"
+            if contact and not was:
+                self.raised.append(clock)
+            was = contact
+            leaves, user = dut.m_axis_tvalid.value and dut.m_axis_tready.value, dut.m_axis_tuser.value
+            if not leaves:
+                model.idle(hold)
+                continue
+            if user:
+                self.settings.append(Settings(*map(self.setting, SETTINGS)))
+            for lane, depth in enumerate(self.depths(dut.m_axis_tdata.value)):
+                model.beat(depth, bool(user) and not lane, threshold, hold)
+
+    def check_with_drops(self, codes: np.ndarray, last_taken: Sequence[int]) -> None:
+        """Compare `contact` where frames were dropped: depth counts when it would leave if nothing stalled.
+
+        Parameters
+        ----------
+        codes : int64 array (frames, rows, columns)
+            Depth of the frames sent while CONTROL.drop_frames was set, none of them malformed.
+        last_taken : sequence of int
+            Clock of the last pixel of each.
+        """
+        first = [end + last_pixel_to_first_depth(self.config) for end in last_taken]
+        beats = defaultdict(list)
+        for begin, frame in zip(first, codes, strict=True):
+            for place, code in enumerate(frame.flat):
+                beats[begin + place // self.config.lanes].append((int(code), place == 0))
+        for clock, contact, threshold, hold in self.drops:
+            assert contact == self.comparator.contact, f"contact is {contact} in clock {clock}"
+            for depth in beats.get(clock, ()):
+                self.comparator.beat(*depth, threshold, hold)
+            if clock not in beats:
+                self.comparator.idle(hold)
+
+    async def watch_events(self) -> None:
+        """Collect packets. Each word stays the same until it is taken, and only a reset ends a packet early."""
+        dut, edge = self.dut, RisingEdge(self.dut.clk)
+        while True:
+            await RisingEdge(dut.m_event_tvalid)
+            words, held = [], None
+            await edge
+            while dut.m_event_tvalid.value and not dut.rst.value:
+                word = int(dut.m_event_tdata.value), bool(dut.m_event_tlast.value)
+                assert held in (None, word), "a word of a record changed before it was taken"
+                held = word
+                if dut.m_event_tready.value:
+                    held = None
+                    words.append(word[0])
+                    if word[1]:
+                        self.packets.append(words)
+                        words = []
+                dut.m_event_tready.value = int(next(self.takes))
+                await edge
+            assert dut.rst.value or (held is None and not words), "a record broke off"
+
+    def check_events(self, depth: np.ndarray, taken: Sequence[int]) -> None:
+        """Compare the record of each frame with the model's.
+
+        Parameters
+        ----------
+        depth : int64 array (frames, rows, columns)
+        taken : sequence of int
+            Clock of the first pixel of each frame.
+        """
+        columns, wanted = self.config.columns, []
+        for codes, settings in zip(depth, self.settings, strict=True):
+            for place, code in enumerate(codes.flat):
+                row_ends, frame_ends = place % columns == columns - 1, place == self.pixels - 1
+                made = self.events.beat(int(code), not place, row_ends, frame_ends, settings, 0)
+            wanted.append(made)
+        records = [record(words) for words in self.packets]
+        assert [made._replace(time=0) for made in records] == wanted, "records of contact events"
+        times = [made.time for made in records]
+        assert [time - times[0] for time in times] == [clock - taken[0] for clock in taken], "time stamps"

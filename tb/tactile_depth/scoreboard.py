@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scoreboard of tactile_depth: expected frames, counters and status bits, from what the monitor saw on s_axis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.frame.frame_guard import Frame, frame_guard
+from tactile_depth.gradient.divergence import divergence
+from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import slope_codes, solve, zeroed
+from tb.axil import RegisterClient
+from tb.axis import AxisMonitor
+from tb.pixels import unpack
+from tb.tactile_depth.contact_watch import SETTINGS, ContactWatch
+from tb.tactile_depth.device_tables import Content
+
+STATUS = REGISTERS["STATUS"]
+STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
+COUNTERS = ("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST")
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Frames that were compared.
+
+    Attributes
+    ----------
+    codes : int64 array (frames, rows, columns)
+        Depth of the frames that left.
+    faults : list of str
+        Faults in their order.
+    taken : list of (int, int)
+        Clocks of the first and of the last pixel of each frame, the broken ones included.
+    first_depths : list of int
+        Clocks in which the first depth of each frame that left stood on the pins.
+    """
+
+    codes: np.ndarray
+    faults: list[str]
+    taken: list[tuple[int, int]]
+    first_depths: list[int]
+
+
+class Scoreboard:
+    """Expected values; every frame is compared on all codes, side-bands and latencies.
+
+    Attributes
+    ----------
+    counters : dict
+        Expected values of the counters, by register.
+    sticky : set of str
+        Bits of STATUS that are expected to be set.
+    latency : int
+        Expected value of FIRST_DEPTH_LATENCY, as measured at the pins.
+    dark_level : int
+        Value of the register that the frames to come use.
+    """
+
+    def __init__(self, config: Configuration, watch: ContactWatch) -> None:
+        self.config, self.watch = config, watch
+        self.rows, self.columns = config.rows, config.columns
+        self.pixels = self.rows * self.columns
+        self.sensor = synthetic(config.bits_per_channel)
+        self.reset()
+
+    def reset(self) -> None:
+        """Expect what a reset leaves."""
+        self.counters = dict.fromkeys(COUNTERS, 0)
+        self.sticky: set[str] = set()
+        self.latency = self.dark_level = 0
+
+    def before_the_floor(self, words: Any, content: Content, monitor: Monitor | None = None) -> np.ndarray:
+        """Return the depth codes (frames, rows, columns) of pixel words before the floor is subtracted."""
+        rgb = unpack(words).reshape(-1, self.rows, self.columns, 3)
+        slopes = slope_codes(rgb, self.sensor, self.config, monitor, None, self.dark_level, content.slopes)
+        return solve(divergence(slopes, self.config.neumann), self.config, monitor)
+
+    def model(self, words: Any, contents: Content | Sequence[Content]) -> tuple[np.ndarray, int]:
+        """Return the depth codes (frames, rows, columns) of pixel words, and the number of values clipped.
+
+        `contents` is what the tables hold for all frames, or for each.
+        """
+        monitor = Monitor()
+        each = [contents] * len(words) if isinstance(contents, Content) else contents
+        codes = [np.zeros((0, self.rows, self.columns), np.int64)]
+        for _, alike in groupby(zip(words, each, strict=True), key=lambda pair: id(pair[1])):
+            some, (content, *_) = zip(*alike, strict=True)
+            codes.append(zeroed(self.before_the_floor(some, content, monitor), self.config, monitor, content.floor))
+        return np.concatenate(codes), monitor.saturations.total()
+
+    def frames(self, into: AxisMonitor, timeout: int) -> tuple[list[Frame], list[str]]:
+        """Return the frames that the device has taken, and the faults."""
+        guarded = frame_guard(into.words, self.rows, self.columns, timeout)
+        assert not guarded.open, "a poor test: the last frame of the stream is not complete"
+        return guarded.frames, guarded.faults
+
+    def depth(self, out: AxisMonitor, count: int) -> np.ndarray:
+        """Return the depth codes (frames, rows, columns) that left, of so many frames, and check their side-bands."""
+        beats = out.words
+        assert len(beats) == count * self.pixels, f"{len(beats)} beats left, expected those of {count} frames"
+        for place, beat in enumerate(beats):
+            assert beat.user == (place % self.pixels == 0), f"tuser of beat {place}"
+            assert beat.last == (place % self.columns == self.columns - 1), f"tlast of beat {place}"
+        codes = np.array([self.watch.signed(beat.data) for beat in beats], np.int64)
+        return codes.reshape(-1, self.rows, self.columns)
+
+    def used(
+        self, into: AxisMonitor, out: AxisMonitor, candidates: Sequence[Sequence[Content]], timeout: int = 0
+    ) -> list[Content]:
+        """Return the content of the tables that each frame used, of those that it may have used.
+
+        The pins do not tell the clock in which a stalled frame takes its tables. Where there are several candidates,
+        the whole depth map tells them apart; where none gives the map that left, the first is returned.
+        """
+        frames, _ = self.frames(into, timeout)
+        left = iter(self.depth(out, sum(not frame.bad for frame in frames)))
+        chosen = []
+        for frame, contents in zip(frames, candidates, strict=True):
+            if not frame.bad:
+                depth = next(left)
+                if len(contents) > 1:
+                    models = ((content, self.model([frame.pixels], content)[0][0]) for content in contents)
+                    matching = [content for content, codes in models if np.array_equal(codes, depth)]
+                    contents = matching or contents
+            chosen.append(contents[0])
+        return chosen
+
+    def compare(
+        self, into: AxisMonitor, out: AxisMonitor, timeout: int, contents: Content | Sequence[Content], drained: bool
+    ) -> Checked:
+        """Compare what left with the models of what was taken, and count it.
+
+        `drained` asserts the latency from the last pixel to the first depth, because no sink stalled before it, and
+        to the last depth of each frame of which no beat waited.
+        """
+        frames, faults = self.frames(into, timeout)
+        expected, clipped = self.model([frame.pixels for frame in frames], contents)
+        good = [index for index, frame in enumerate(frames) if not frame.bad]
+        codes = self.depth(out, len(good))
+        for index, (have, want) in enumerate(zip(codes, expected[good], strict=True)):
+            np.testing.assert_array_equal(have, want, f"depth codes of frame {index} of those that left")
+        taken = [(into.taken[frame.first], into.taken[frame.last]) for frame in frames]
+        first_depths, last_depths = out.offered[:: self.pixels], out.offered[self.pixels - 1 :: self.pixels]
+        for place, (index, clock, end) in enumerate(zip(good, first_depths, last_depths, strict=True)):
+            first, last = taken[index]
+            own = slice(place * self.pixels, (place + 1) * self.pixels)
+            waited = out.offered[own] != out.taken[own]
+            self.latency = clock - first
+            if drained:
+                assert clock - last == last_pixel_to_first_depth(self.config), f"{clock - last} clocks from last pixel"
+            if drained and not waited:
+                assert end - last == last_pixel_to_last_depth(self.config), f"{end - last} clocks to the last depth"
+        self.watch.check_events(codes, [taken[index][0] for index in good])
+        self.counters["FRAMES_IN"] += len(good)
+        self.counters["FRAMES_OUT"] += len(good)
+        self.counters["FRAMES_DROPPED"] += len(faults)
+        self.counters["SATURATIONS"] += clipped
+        self.sticky |= {STICKY.get(fault, fault) for fault in faults} | ({"saturation"} if clipped else set())
+        return Checked(codes, faults, taken, first_depths)
+
+    async def check_registers(self, registers: RegisterClient, counters: bool = True) -> None:
+        """Compare counters, status bits, settings and the latency that the hardware counted."""
+        if counters:
+            have = {name: await registers.read(name) for name in self.counters}
+            assert have == self.counters, f"counters are {have}, expected {self.counters}"
+        await registers.read("STATUS")  # the last events are in the bits of the next read
+        status = STATUS.unpack(await registers.read("STATUS"))
+        assert not status.pop("busy"), "busy after everything left"
+        assert status.pop("contact") == self.watch.comparator.contact
+        assert status.pop("touching") == self.watch.events.touching
+        bits = {name for name, value in status.items() if value}
+        assert bits == self.sticky, f"sticky bits {bits}, expected {self.sticky}"
+        for name in SETTINGS:
+            assert await registers.read(name) == self.watch.setting(name) % 2**32, f"{name} is not what the cores have"
+        latency = await registers.read("FIRST_DEPTH_LATENCY")
+        assert latency == self.latency, f"FIRST_DEPTH_LATENCY is {latency}, at the pins it was {self.latency}"

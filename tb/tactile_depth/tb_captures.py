@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Captures of tactile_depth: the reference and the floor measured from frames, and dark pixels."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import cocotb
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.calibration.flat_field import captured_gains
+from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.latency import first_depth_latency
+from tactile_depth.registers.axil_port import Response
+from tactile_depth.registers.register_map import REGISTERS
+from tb.axis import broken, video
+from tb.pixels import pack, unpack
+from tb.selection import Level, case
+from tb.tactile_depth.bench import HEAD_CLOCKS, Pipeline, Stream, started
+from tb.tactile_depth.device_tables import one_word, reference_entries
+
+CAPTURE, FLOOR_CAPTURE = REGISTERS["CAPTURE"], REGISTERS["FLOOR_CAPTURE"]
+DARK_LEVEL = 50
+
+
+async def capturing(pipeline: Pipeline, register: str) -> bool:
+    """Return whether a capture is under way."""
+    return bool(REGISTERS[register].unpack(await pipeline.read(register))["busy"])
+
+
+@case(Level.FORMATS, needs=lambda config: not config.flat_field)
+async def a_capture_without_a_reference_is_refused(dut: Any) -> None:
+    """The build has no flat field."""
+    pipeline = await started(dut)
+    assert await pipeline.write("CAPTURE", CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
+    assert not await capturing(pipeline, "CAPTURE")
+
+
+@case(Level.FORMATS, needs=lambda config: not config.auto_zero)
+async def a_capture_without_a_floor_is_refused(dut: Any) -> None:
+    """The build has no auto-zero."""
+    pipeline = await started(dut)
+    assert await pipeline.write("FLOOR_CAPTURE", FLOOR_CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
+    assert not await capturing(pipeline, "FLOOR_CAPTURE")
+
+
+@case(Level.FORMATS, needs=lambda config: config.flat_field)
+async def reference(dut: Any) -> None:
+    """Capture two frames after a broken one: the colours of later frames are relative to their mean."""
+    pipeline = await started(dut)
+    rng, columns = pipeline.random, pipeline.columns
+    shades = [pack([[rng.randint(90, 160) for _ in range(3)] for _ in range(pipeline.pixels)]) for _ in range(2)]
+    still = [video(shade, columns) for shade in shades]
+    assert await pipeline.write("CAPTURE", CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
+    await pipeline.send(broken(pipeline.frame(), "row_short", 1, columns), *still, pipeline.pressed())
+    while await capturing(pipeline, "CAPTURE"):
+        await RisingEdge(dut.clk)
+    await pipeline.check()
+    colours = unpack(shades).reshape(2, pipeline.rows, columns, 3)
+    pipeline.tables.use("reference", reference_entries(captured_gains(colours, pipeline.config)))
+    await pipeline.send(pipeline.pressed(), still[0])
+    await pipeline.check()
+    await pipeline.reset(2)
+    await pipeline.send(pipeline.pressed())
+    await pipeline.check()
+
+
+@case(Level.FORMATS, needs=lambda config: config.auto_zero)
+async def floor(dut: Any) -> None:
+    """Capture the floor from two frames with a broken one between them, while more frames stream.
+
+    Frames that begin before the capture ends keep the old floor from first depth to last. Later frames use the new
+    one. Both kinds are in the pipeline at once.
+    """
+    pipeline = await started(dut, offers="random")
+    tables, into = pipeline.tables, pipeline.into
+    assert await pipeline.write("FLOOR_CAPTURE", FLOOR_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
+    frames = [pipeline.pressed(slope) for slope in (0.25, 0.125, -0.25)]
+    late = 3 + first_depth_latency(pipeline.config) // pipeline.pixels
+    stream: Sequence[Stream] = frames[0], broken(pipeline.frame(), "row_short", 1, pipeline.columns), *frames[1:]
+    more = (pipeline.pressed(pipeline.random.uniform(-0.3, 0.3)) for _ in range(late))
+    sending = cocotb.start_soon(pipeline.send(*stream, *more))
+    asked = answered = 0  # clocks of the last read that says busy, and of the first that does not
+    while not answered:
+        began = into.clock_count
+        if await capturing(pipeline, "FLOOR_CAPTURE"):
+            asked = began
+        else:
+            answered = into.clock_count
+    await sending
+    await pipeline.drain()
+    assert not await capturing(pipeline, "FLOOR_CAPTURE")
+    assert not await pipeline.read("TABLE_COMMIT")
+
+    def measured(*words: Any) -> Any:
+        codes = pipeline.scoreboard.before_the_floor([[word.data for word in some] for some in words], tables.content)
+        return one_word(captured_floor(codes, pipeline.config))
+
+    old = tables.content
+    new = old.with_table("floor", measured(*frames[:2]))
+    sent, _ = pipeline.scoreboard.frames(into, 0)
+    starts = [into.taken[frame.first] + HEAD_CLOCKS for frame in sent]
+    candidates = [[old] * (start <= answered) + [new] * (start > asked) for start in starts]
+    used = pipeline.scoreboard.used(into, pipeline.out, candidates)
+    later = [content is new for content in used]
+    assert later == sorted(later), f"a frame had the old floor after one with the new floor: {later}"
+    assert 3 < later.count(False) < len(later), "a poor test: no frame has one of the floors"
+    await pipeline.check(contents=used)
+    tables.use("floor", measured(*frames[:2]))
+    await pipeline.send(frames[0], frames[1])
+    await pipeline.check()
+    # One capture after another, the second as soon as it is let in.
+    start = FLOOR_CAPTURE.pack(start=1)
+    for frame in frames[1:]:
+        while await pipeline.write("FLOOR_CAPTURE", start) != Response.OKAY:
+            pass
+        await pipeline.send(frame)
+        while await capturing(pipeline, "FLOOR_CAPTURE"):
+            pass
+        assert await pipeline.write("FLOOR_CAPTURE", start) == Response.SLVERR, "accepted before the change-over"
+        await pipeline.check()
+        await pipeline.send(frame)
+        tables.use("floor", measured(frame))
+        await pipeline.check()
+    await pipeline.reset(2)
+    await pipeline.send(frames[2])
+    await pipeline.check()
+
+
+@case(Level.FORMATS, needs=lambda config: config.flat_field)
+async def dark_pixels_are_held(dut: Any) -> None:
+    """Anywhere in a row, and a whole row of them; each is counted."""
+    pipeline = await started(dut)
+    words = [word.data for word in pipeline.pressed()]
+    for row in range(pipeline.rows):
+        for column in range(pipeline.columns):
+            if row == 2 or pipeline.random.random() < 0.3:
+                colour = [pipeline.random.randrange(DARK_LEVEL) for _ in range(3)]
+                words[row * pipeline.columns + column] = int(pack(colour))
+    await pipeline.write("DARK_LEVEL", DARK_LEVEL)
+    pipeline.scoreboard.dark_level = DARK_LEVEL
+    await pipeline.send(video(words, pipeline.columns), pipeline.frame())
+    await RisingEdge(dut.clk)
+    dark = (unpack([word.data for word in pipeline.into.words]) < DARK_LEVEL).all(axis=-1).sum()
+    pipeline.scoreboard.counters["DARK_PIXELS"] += int(dark)
+    pipeline.scoreboard.sticky.add("dark")
+    await pipeline.check()

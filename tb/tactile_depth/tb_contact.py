@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`contact` and the records of contact events of tactile_depth, with thresholds and areas at their limits."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.triggers import ClockCycles
+
+from tb.selection import Level, case, up_to
+from tb.tactile_depth.bench import CONTROL, started
+
+
+@case(Level.FORMATS, whole_rows=True)
+@cocotb.parametrize(accepts=up_to({Level.FORMATS: ["none"], Level.WHOLE: ["random"]}))
+async def contact(dut: Any, accepts: str) -> None:
+    """Raised by the deciding beat, cleared by the next frame's first, held by its bit."""
+    pipeline = await started(dut, accepts=accepts)
+    pressed, flat = pipeline.pressed(), pipeline.plain()
+    codes = pipeline.depth_of(pressed, flat)
+    flat_peak, peak = int(codes[1].max()), int(codes[0].max())
+    assert flat_peak < peak, "a poor test: pressing is no deeper than not pressing"
+
+    await pipeline.send(pressed)
+    await pipeline.check()
+    assert not pipeline.contact.comparator.contact, "raised by the threshold after reset"
+
+    await pipeline.write("THRESHOLD", peak)
+    await pipeline.send(pressed)
+    await pipeline.check()
+    assert not pipeline.contact.comparator.contact, "raised by a depth equal to the threshold"
+
+    await pipeline.write("THRESHOLD", peak - 1)
+    await pipeline.send(pressed)
+    await pipeline.idle()
+    await pipeline.until(lambda: len(pipeline.out.words) == pipeline.pixels)
+    await ClockCycles(dut.clk, 2)
+    deciding = int(np.argmax(codes[0]))
+    assert pipeline.contact.raised == [pipeline.out.taken[deciding] + 1]
+    await pipeline.check()
+    assert dut.contact.value
+
+    await pipeline.send(flat)
+    await pipeline.check()
+    assert not dut.contact.value
+
+    await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
+    await pipeline.send(pressed, flat, flat)
+    await pipeline.check()
+    assert dut.contact.value, "not held"
+    await pipeline.write("CONTROL", 0)
+    await ClockCycles(dut.clk, 2)
+    assert not dut.contact.value, "still held after hold_contact was cleared"
+    await pipeline.send(flat)
+    await pipeline.check()
+    assert not dut.contact.value
+
+    await pipeline.send(pressed, flat, pressed)
+    await pipeline.check()
+    assert dut.contact.value
+
+
+@case()
+async def records_at_the_limits(dut: Any) -> None:
+    """Both thresholds at a depth of the frame and one below it, the least area at that of the frame and one above."""
+    pipeline = await started(dut)
+    pressed = pipeline.pressed()
+    codes = pipeline.depth_of(pressed)
+    depths = np.unique(codes)
+    chosen = [int(depth) for depth in depths[:: max(1, len(depths) // 4)]]
+    # One threshold stands where it always decides, at once, against what the other says of the frame before.
+    for name, other, always in (
+        ("THRESHOLD", "OFF_THRESHOLD", int(depths[-1])),
+        ("OFF_THRESHOLD", "THRESHOLD", int(depths[0])),
+    ):
+        await pipeline.write(other, always)
+        for depth in chosen:
+            for code in (depth, depth - 1):
+                await pipeline.write(name, code)
+                await pipeline.send(pressed, pressed)
+                await pipeline.check(counters=False)
+    # Most depths below 0, then all: their sum is, and at last the peak.
+    for name in ("THRESHOLD", "OFF_THRESHOLD"):
+        await pipeline.write(name, -(1 << pipeline.config.data_width - 1))
+    await pipeline.send(pipeline.pressed(-0.5))
+    await pipeline.check(counters=False)
+    assert pipeline.contact.events.touching
+    await pipeline.send(pipeline.frame_of(np.full((pipeline.rows, pipeline.columns, 2), 0.5)))
+    assert (await pipeline.check(counters=False)).codes.max() < 0
+    await pipeline.write("THRESHOLD", chosen[0])
+    area = int((codes > chosen[0]).sum())
+    for least, debounce in ((area, 1), (area + 1, 1), (area, 3), (area + 1, 2), (area, 2), (0, 0)):
+        await pipeline.write("OFF_THRESHOLD", chosen[0])
+        await pipeline.write("MINIMUM_AREA", least)
+        await pipeline.write("DEBOUNCE", debounce)
+        for _ in range(debounce + 1):
+            await pipeline.send(pressed)
+            await pipeline.check(counters=False)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Malformed frames through tactile_depth: dropped whole, each counted and flagged, and the next good frame is right."""
+
+from itertools import product
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.frame.frame_guard import FAULTS
+from tactile_depth.registers.register_map import WORD
+from tb.axis import broken
+from tb.selection import Level, case, named, up_to
+from tb.tactile_depth.bench import CONTROL, Stream, started
+from tb.tactile_depth.scoreboard import STATUS, STICKY
+
+TIMEOUT = 60  # clocks
+
+
+@case(whole_rows=True)
+@cocotb.parametrize(fault=named(FAULTS), accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
+async def malformed(dut: Any, fault: str, accepts: str) -> None:
+    """A, B, A back to back, B broken: B never leaves nor raises contact, both A come out the same."""
+    timeout = TIMEOUT if fault == "timed_out" else 0
+    pipeline = await started(dut, accepts=accepts, timeout=timeout)
+    flat, pressed = pipeline.plain(), pipeline.pressed()
+    codes = pipeline.depth_of(pressed, flat)
+    await pipeline.write("THRESHOLD", (int(codes[0].max()) + int(codes[1].max())) // 2)
+    a = [word._replace(data=word.data ^ pipeline.random.getrandbits(3)) for word in flat]
+    for position in pipeline.places(fault)[: 2 if pipeline.stalled else None]:
+        b = broken(pressed, fault, position, pipeline.columns, timeout + 1)
+        await pipeline.send(a, b, a)
+        checked = await pipeline.check()
+        assert checked.faults == [fault], f"{fault} at {position}: {checked.faults}"
+        assert len(checked.codes) == 2
+        np.testing.assert_array_equal(checked.codes[0], checked.codes[1])
+        assert not pipeline.contact.comparator.contact, f"{fault} at {position} raised contact"
+
+    bit = STATUS.pack(**{STICKY.get(fault, fault): 1})
+    await pipeline.write("STATUS", WORD ^ bit)
+    assert await pipeline.read("STATUS") == bit
+    await pipeline.write("STATUS", bit)
+    assert await pipeline.read("STATUS") == 0
+    pipeline.scoreboard.sticky.clear()
+    await pipeline.write("CONTROL", CONTROL.pack(clear_counters=1))
+    pipeline.scoreboard.counters = dict.fromkeys(pipeline.scoreboard.counters, 0)
+    await pipeline.send(a)
+    await pipeline.check()
+
+
+@case()
+@cocotb.parametrize(fault=up_to({Level.WHOLE: named(FAULTS[-1:]), Level.LONG: named(FAULTS[:-1])}))
+async def faults_side_by_side(dut: Any, fault: str) -> None:
+    """A broken frame between whole and broken ones: each is counted by itself, and the whole ones are right."""
+    timeout = TIMEOUT if fault == "timed_out" else 0
+    pipeline = await started(dut, timeout=timeout)
+    silent = timeout + pipeline.pixels  # the guard may be filling up the frame before
+    for before, after in product(("good", "bad"), repeat=2):
+        sides: dict[str, Stream] = {
+            "good": pipeline.frame(),
+            "bad": broken(pipeline.frame(), "row_short", 3, pipeline.columns),
+        }
+        middle = broken(pipeline.frame(), fault, pipeline.places(fault)[0], pipeline.columns, silent)
+        await pipeline.send(pipeline.frame(), sides[before], middle, sides[after], pipeline.frame())
+        checked = await pipeline.check()
+        assert len(checked.codes) == 2 + (before == "good") + (after == "good")
+        own = [] if fault == "start_missing" and before == "bad" else [fault]  # the rest of the frame before
+        assert checked.faults == [*["row_short"] * (before == "bad"), *own, *["row_short"] * (after == "bad")]
+
+
+@case(Level.FORMATS, whole_rows=True)
+@cocotb.parametrize(accepts=["none", "random"])
+async def every_fault_in_a_row(dut: Any, accepts: str) -> None:
+    """Broken frames between good ones and right after one another, all in flight together."""
+    pipeline = await started(dut, accepts=accepts)
+    faults = [fault for fault in FAULTS if fault != "timed_out"]
+    streams: list[Stream] = []
+    for fault in (*faults, *reversed(faults)):
+        for position in pipeline.places(fault)[:2]:
+            streams.append(broken(pipeline.frame(), fault, position, pipeline.columns))
+        streams.append(pipeline.frame())
+    await pipeline.send(*streams)
+    assert set((await pipeline.check()).faults) == set(faults)
+
+
+@case()
+async def starts_one_after_another(dut: Any) -> None:
+    """Each start of frame breaks the frame before it; the last of them is kept, its latency its own."""
+    pipeline = await started(dut)
+    for count in (1, 2, 3, 5):
+        starts = [word for _ in range(count) for word in pipeline.frame()[:1]]
+        await pipeline.send(pipeline.frame(), starts, pipeline.frame())
+        assert (await pipeline.check()).faults == ["start_early"] * count
+
+
+@case()
+async def words_before_the_first_frame(dut: Any) -> None:
+    """Dropped and counted as one; the frame after them is right."""
+    pipeline = await started(dut)
+    await pipeline.send([word._replace(user=0) for word in pipeline.frame()[:37]], pipeline.frame())
+    assert (await pipeline.check()).faults == ["start_missing"]
+
+
+@case(whole_rows=True)
+async def silence(dut: Any) -> None:
+    """Without the time-out register a frame is waited for; with it, for as many clocks as it says."""
+    pipeline = await started(dut)
+    frame = pipeline.frame()
+    await pipeline.send(frame[:100], [None] * 10 * pipeline.pixels, frame[100:])
+    assert len((await pipeline.check()).codes) == 1
+    timeout = 50
+    pipeline.timeout = timeout
+    pipeline.into.silence = True
+    await pipeline.write("TIMEOUT", timeout)
+    for clocks, waited in ((timeout, True), (timeout + 1, False), (10 * timeout, False)):
+        await pipeline.send(frame[:100], [None] * clocks, frame[100:], [None] * 3 * timeout, frame)
+        left = len((await pipeline.check()).codes)
+        assert left == 1 + waited, f"{left} frames left after {clocks} silent clocks with TIMEOUT {timeout}"
+
+
+@case()
+@cocotb.parametrize(
+    offers=["none", "random"], accepts=up_to({Level.WHOLE: ["alternate", "random"], Level.LONG: ["none"]})
+)
+async def random_streams(dut: Any, offers: str, accepts: str) -> None:
+    """Good and broken frames, stray words and pauses at random."""
+    pipeline = await started(dut, offers=offers, accepts=accepts)
+    rng = pipeline.random
+    for _ in range(12):
+        words = pipeline.frame()
+        for _ in range(rng.choice((0, 0, 0, 1, 2))):
+            place = rng.randrange(len(words))
+            flip = rng.choice(("last", "user"))
+            match rng.randrange(4):
+                case 0:
+                    words[place] = words[place]._replace(**{flip: 1 - getattr(words[place], flip)})
+                case 1:
+                    del words[place : place + rng.randint(1, 40)]
+                case 2:
+                    words[place:place] = words[place : place + rng.randint(1, 40)]
+                case 3:
+                    words = words[: place + 1]
+        await pipeline.send(words, [None] * rng.choice((0, 0, 1, 30)))
+    await pipeline.send(pipeline.frame()[:1], pipeline.frame())  # ends a frame that is still open
+    await pipeline.check()

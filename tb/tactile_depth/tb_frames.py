@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames through tactile_depth: codes, latencies and intervals under gaps and stalls, at the limits of the words."""
+
+import json
+import os
+from itertools import pairwise, product, repeat
+from typing import Any
+
+import cocotb
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.configuration import COLUMNS
+from tactile_depth.latency import first_depth_latency
+from tactile_depth.registers.register_map import REGISTERS
+from tactile_depth.tactile_depth import top_parameters
+from tb.axis import PROFILES
+from tb.selection import Level, case, up_to
+from tb.stream import MANY, configuration
+from tb.tactile_depth.bench import CONTROL, started
+from tb.tactile_depth.scoreboard import STATUS
+
+SOLVER = list(COLUMNS).index(configuration().solver)
+PAIRS = list(product(PROFILES, PROFILES))  # of gaps and stalls
+OFTEN = [("random", "random"), ("random", "one_in_4")]  # pairs that every build is tried with
+
+
+def half(solver: int) -> list[tuple[str, str]]:
+    """Return every second pair of gaps and stalls: the two solvers together are tried with all of them."""
+    return [pair for number, pair in enumerate(PAIRS) if (number + number // len(PROFILES)) % 2 == solver]
+
+
+def others(pairs: list[tuple[str, str]], but: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [pair for pair in pairs if pair not in but]
+
+
+@case(Level.FIRST, whole_rows=True)
+async def the_configuration_is_that_of_the_models(dut: Any) -> None:
+    """Every parameter that the models derive is the device's, but for those that the test of the build replaced.
+
+    The pitch is not derived: it belongs to a calibration.
+    """
+    pipeline = await started(dut)
+    derived = top_parameters(pipeline.config) | json.loads(os.environ.get("PARAMETERS", "{}"))
+    del derived["PitchNm"]
+    device = {name: getattr(dut, name).value.to_signed() for name in derived}
+    assert device == derived
+    assert await pipeline.read("GRID") == REGISTERS["GRID"].pack(rows=pipeline.rows, columns=pipeline.columns)
+
+
+@case(Level.FIRST, whole_rows=True)
+async def one_frame(dut: Any) -> None:
+    """It drains by itself, nothing follows; latencies are those of tactile_depth.latency."""
+    pipeline = await started(dut)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+    assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
+    await pipeline.idle()
+
+
+@case(whole_rows=True)
+async def nothing_unknown(dut: Any) -> None:
+    """Handshakes, side-bands and contact are 0 or 1 from the second clock after reset on, valid or not."""
+    pipeline = await started(dut, accepts="random")
+    await RisingEdge(dut.clk)
+    sending = cocotb.start_soon(pipeline.send(pipeline.frame()))
+    names = "s_axis_tready m_axis_tvalid m_axis_tlast m_axis_tuser contact s_axil_awready s_axil_wready"
+    pins = [getattr(dut, pin) for pin in f"{names} s_axil_bvalid s_axil_arready s_axil_rvalid".split()]
+    for _ in range(first_depth_latency(pipeline.config) + pipeline.pixels):
+        await RisingEdge(dut.clk)
+        for pin in pins:
+            assert pin.value.is_resolvable, f"{pin._name} is {pin.value}"
+    await sending
+    await pipeline.check()
+
+
+@case(Level.STREAM)
+async def back_to_back(dut: Any) -> None:
+    """One frame every N^2 clocks exactly, and every latency the same."""
+    pipeline = await started(dut)
+    frames = 6
+    sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(frames))))
+    counted = set()
+    while len(pipeline.out.words) < (frames - 1) * pipeline.pixels:
+        counted.add(await pipeline.read("FIRST_DEPTH_LATENCY"))
+    assert counted == {0, first_depth_latency(pipeline.config)}, "counted by the hardware, over all frames"
+    await sending
+    checked = await pipeline.check()
+    (first, _), *_, (_, last) = checked.taken
+    assert last - first == frames * pipeline.pixels - 1, "the input was not taken at one pixel a clock"
+    latencies = {depth - first for depth, (first, _) in zip(checked.first_depths, checked.taken, strict=True)}
+    assert latencies == {first_depth_latency(pipeline.config)}
+    intervals = {after - before for before, after in pairwise(checked.first_depths)}
+    assert intervals == {pipeline.pixels}
+
+
+@case(Level.STREAM, whole_rows=True)
+@cocotb.parametrize(
+    (
+        ("offers", "accepts"),
+        up_to(
+            {
+                Level.STREAM: OFTEN[:1],
+                Level.FORMATS: OFTEN[1:],
+                Level.DISTURBED: others(half(SOLVER), OFTEN),
+                Level.LONG: others(PAIRS, OFTEN + half(SOLVER)),
+            }
+        ),
+    )
+)
+async def gaps_and_stalls(dut: Any, offers: str, accepts: str) -> None:
+    """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
+    pipeline = await started(dut, offers=offers, accepts=accepts)
+    await pipeline.send(*(pipeline.frame() for _ in range(2 if accepts == "none" else 5)))
+    await pipeline.check()
+
+
+@case(whole_rows=True)
+async def a_sink_that_waits_for_long(dut: Any) -> None:
+    """The input stops; then everything comes, and a frame sent after it is timed as ever."""
+    pipeline = await started(dut)
+    pipeline.stalled = True
+    pipeline.sink.stall(repeat(False))
+    frames = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(6))))
+    await ClockCycles(dut.clk, 5 * pipeline.pixels)
+    taken = len(pipeline.into.words)
+    await ClockCycles(dut.clk, 2 * pipeline.pixels)
+    assert len(pipeline.into.words) == taken < 6 * pipeline.pixels, "the input did not stop"
+    pipeline.sink.stall(repeat(True))
+    await frames
+    await pipeline.check()
+    pipeline.stalled = False
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+    assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
+
+
+@case()
+async def many_frames(dut: Any) -> None:
+    """Ties of every rounding and clips of all that can: random colours."""
+    pipeline = await started(dut)
+    await pipeline.send(*(pipeline.frame() for _ in range(MANY)))
+    await pipeline.check()
+
+
+@case(Level.FORMATS, whole_rows=True)
+@cocotb.parametrize(accepts=["none", "random"])
+async def saturation(dut: Any, accepts: str) -> None:
+    """A pyramid deeper than full scale: clipped where the model clips, counted, flagged; never wrapped."""
+    pipeline = await started(dut, accepts=accepts)
+    steep = pipeline.pressed(slope=1.0)
+    await pipeline.send(steep, pipeline.frame(), steep)
+    codes = (await pipeline.check()).codes
+    assert pipeline.scoreboard.counters["SATURATIONS"] > 0, "a poor test: nothing clips"
+    limit = 1 << pipeline.config.data_width - 1
+    assert codes.max() == limit - 1 or codes.min() == -limit, "no depth at full scale"
+    await pipeline.clear_status(saturation=1)
+    await pipeline.send(pipeline.plain())
+    await pipeline.check()
+    assert not pipeline.scoreboard.sticky
+
+
+@case(Level.FORMATS)
+@cocotb.parametrize(taken=[0, 5])
+async def depth_frames_are_dropped(dut: Any, taken: int) -> None:
+    """With drop_frames a sink that stands still costs frames and no time; the next one after it is whole.
+
+    The sink takes about so many words of the first frame.
+    """
+    pipeline = await started(dut)
+    frames = [pipeline.plain(), pipeline.plain(), pipeline.pressed(), pipeline.plain()]
+    codes = pipeline.depth_of(*frames)
+    await pipeline.write("THRESHOLD", int(codes[2].max()) - 1)
+    await pipeline.write("CONTROL", CONTROL.pack(drop_frames=1))
+    pipeline.sink.stall(len(pipeline.out.words) < taken for _ in repeat(None))
+    began = pipeline.into.clock_count
+    await pipeline.send(*frames[:2], frames[2][: pipeline.columns])
+    await ClockCycles(dut.clk, pause := 20)  # so that the first frame's latency and the last one's differ
+    await pipeline.send(frames[2][pipeline.columns :])
+    assert pipeline.into.clock_count - began < 3 * pipeline.pixels + pause + 8, "the input waited"
+    await ClockCycles(dut.clk, first_depth_latency(pipeline.config) + pipeline.pixels)
+    assert dut.contact.value, "contact waits for a sink that stands still"
+    latency = await pipeline.read("FIRST_DEPTH_LATENCY")
+    assert latency == first_depth_latency(pipeline.config), f"{latency}: of a frame that was dropped"
+    assert STATUS.unpack(await pipeline.read("STATUS"))["busy"], "not busy while two depths wait"
+    assert await pipeline.read("DEPTH_DROPPED") == 3
+    assert STATUS.unpack(await pipeline.read("STATUS"))["depth_dropped"]
+    gone = len(pipeline.out.words)
+    assert taken <= gone <= taken + bool(taken) * (2 * pipeline.config.lanes - 1)
+    pipeline.sink.stall(repeat(True))
+    await ClockCycles(dut.clk, 8)
+    await pipeline.send(frames[3])
+    await pipeline.idle()
+    await ClockCycles(dut.clk, 4 * pipeline.columns)
+    left = [pipeline.contact.signed(beat.data) for beat in pipeline.out.words]
+    part = codes[0].flat[: gone + pipeline.held]
+    assert left == [*part.tolist(), *codes[3].flat], "the words that had found room, then a whole frame"
+    assert await pipeline.read("FRAMES_OUT") == 1
+    assert await pipeline.read("FIRST_DEPTH_LATENCY") == latency
+    assert len(pipeline.contact.packets) == len(frames), "each frame leaves its record"
+    pipeline.contact.check_with_drops(codes, pipeline.into.taken[pipeline.pixels - 1 :: pipeline.pixels])
+    await pipeline.reset(2)

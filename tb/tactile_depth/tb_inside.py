@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The one test of tactile_depth that sets a register inside: counts that would take too long to reach at the pins."""
+
+from typing import Any
+
+from tactile_depth.latency import first_depth_latency
+from tb.selection import case
+from tb.tactile_depth.bench import started
+
+
+@case(inside=True)
+async def the_clock_comes_round(dut: Any) -> None:
+    """Wherever the count of clocks returns to 0 while a frame is in flight, its latency is that of any other."""
+    pipeline = await started(dut)
+    for ahead in (5, pipeline.pixels // 2, pipeline.pixels + 5, first_depth_latency(pipeline.config)):
+        dut.u_video.now.value = (1 << 32) - ahead
+        await pipeline.send(pipeline.frame())
+        await pipeline.check()
+        assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Registers of tactile_depth while frames come and go: no access disturbs a code or a latency."""
+
+from itertools import repeat
+from typing import Any
+
+import cocotb
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.registers.axil_port import Response, strobed_bits
+from tactile_depth.registers.register_map import MAP, REGISTERS, TABLES
+from tb.axil import OFFSET, present, read, take, write
+from tb.axis import broken, video
+from tb.pixels import pack
+from tb.selection import Level, case, up_to
+from tb.tactile_depth.bench import COMMIT, CONTROL, Pipeline, started
+from tb.tactile_depth.scoreboard import STATUS
+
+CAPTURE, FLOOR_CAPTURE, INTERRUPT = (REGISTERS[name] for name in ("CAPTURE", "FLOOR_CAPTURE", "INTERRUPT_STATUS"))
+WRITABLE = [register.name for register in MAP if register.writable]
+TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
+
+
+def as_sent(config: Configuration) -> bool:
+    """Return whether the build has the gradient table alone: no reference and no floor."""
+    return not config.flat_field and not config.auto_zero
+
+
+async def busy(pipeline: Pipeline) -> bool:
+    """Return STATUS.busy."""
+    return bool(STATUS.unpack(await pipeline.read("STATUS"))["busy"])
+
+
+@case()
+async def busy_while_a_frame_is_in_flight(dut: Any) -> None:
+    """From its first pixel to its last depth, whatever the source pauses; and not before or after."""
+    pipeline = await started(dut)
+    source, out = pipeline.into, pipeline.out
+    polls: list[tuple[int, int, bool]] = []  # clock before, clock after, busy
+
+    async def poll() -> None:
+        while True:
+            before, value = source.clock_count, await busy(pipeline)
+            polls.append((before, source.clock_count, value))
+            await ClockCycles(dut.clk, pipeline.random.randrange(3))
+
+    for pause in (0, 1, 4, 30):
+        polling = cocotb.start_soon(poll())
+        await ClockCycles(dut.clk, 20)
+        frame = pipeline.frame()
+        await pipeline.send(frame[:1], [None] * pause, frame[1:-1], [None] * pause, frame[-1:])
+        await pipeline.until(lambda: len(out.words) == pipeline.pixels)
+        await ClockCycles(dut.clk, 20)
+        polling.cancel()
+        await ClockCycles(dut.clk, 20)  # for the read that it had begun
+        first, last = source.taken[0], out.taken[-1]
+        inside = [value for before, after, value in polls if before >= first and after <= last]
+        outside = [value for before, after, value in polls if after <= first or before > last + 1]
+        assert len(inside) > 20, len(inside)
+        assert all(inside), f"{len(inside) - sum(inside)} of {len(inside)} reads say that nothing is in flight"
+        assert outside
+        assert not any(outside), "busy without a frame"
+        polls.clear()
+        await pipeline.check()
+
+
+@case(Level.FORMATS, whole_rows=True)
+async def busy_until_the_last_depth_is_taken(dut: Any) -> None:
+    """A sink that stands still holds back the last depths of a frame."""
+    pipeline = await started(dut)
+    out, before_them = pipeline.out, pipeline.pixels - pipeline.held
+    pipeline.sink.stall(len(out.words) < before_them for _ in repeat(None))
+    await pipeline.send(pipeline.frame())
+    await pipeline.until(lambda: len(out.words) >= before_them)
+    await ClockCycles(dut.clk, 4 * pipeline.columns)
+    assert len(out.words) < pipeline.pixels
+    assert await busy(pipeline), "not while the last depths wait"
+    pipeline.sink.stall(repeat(True))
+    await pipeline.check()
+
+
+@case()
+async def busy_from_the_clock_after_the_first_pixel(dut: Any) -> None:
+    """The address of STATUS is taken before, with and after the first pixel."""
+    pipeline = await started(dut)
+    after_pixel = {}
+    for lead in range(-1, 5):
+        dut.s_axil_rready.value = 0
+        sending = cocotb.start_soon(pipeline.send([None] * (20 - lead), pipeline.frame()))
+        await ClockCycles(dut.clk, 20)
+        await present(dut, "ar", araddr=OFFSET["STATUS"])
+        asked = pipeline.into.clock_count
+        await RisingEdge(dut.clk)
+        value = STATUS.unpack(int(dut.s_axil_rdata.value))["busy"]
+        assert await take(dut, "r") == Response.OKAY
+        dut.s_axil_rready.value = 1
+        await sending
+        after_pixel[asked - pipeline.into.taken[0]] = value
+        await pipeline.check()
+    assert after_pixel.keys() >= {0, 1}, f"a poor test: clocks after the first pixel are {list(after_pixel)}"
+    assert all(value == (clocks > 0) for clocks, value in after_pixel.items()), after_pixel
+
+
+@case(Level.FORMATS, whole_rows=True)
+async def interrupts(dut: Any) -> None:
+    """A record and a dropped frame set their bits; `irq` is high while a bit that is set is unmasked."""
+    pipeline = await started(dut)
+    good, malformed = pipeline.frame(), broken(pipeline.frame(), "row_long", pipeline.columns - 1, pipeline.columns)
+
+    async def seen(cleared: int = 0) -> tuple[int, bool]:
+        await pipeline.write("INTERRUPT_STATUS", cleared)
+        await ClockCycles(dut.clk, 2)
+        return await pipeline.read("INTERRUPT_STATUS"), bool(dut.irq.value)
+
+    for mask in (0, *(INTERRUPT.pack(**{name: 1}) for name in ("record", "frame_dropped"))):
+        await pipeline.write("INTERRUPT_MASK", mask)
+        assert await seen() == (0, False)
+        for stream, bits in (
+            ((good,), INTERRUPT.pack(record=1)),
+            ((malformed, good), INTERRUPT.pack(record=1, frame_dropped=1)),
+        ):
+            await pipeline.send(*stream)
+            await pipeline.check()
+            assert await seen() == (bits, bool(bits & mask)), f"INTERRUPT_MASK {mask:#x}"
+            assert await seen(cleared=bits & ~mask) == (bits & mask, bool(bits & mask))
+            assert await seen(cleared=bits) == (0, False)
+
+
+@case()
+async def the_register_port_waits(dut: Any) -> None:
+    """Address and word of a write in either order, each taken once; answers stay until they are taken; bytes without a
+    strobe keep what they hold."""
+    pipeline = await started(dut)
+    pins = {name: getattr(dut, f"s_axil_{name}") for name in ("awready", "wready", "arready", "bvalid", "rvalid")}
+    dut.s_axil_bready.value = dut.s_axil_rready.value = 0
+
+    async def stays(clocks: int = 3, **wanted: Any) -> None:
+        for _ in range(clocks):
+            await RisingEdge(dut.clk)
+            got = {name: int(pin.value) for name, pin in pins.items()}
+            assert got == {"awready": 1, "wready": 1, "arready": 1, "bvalid": 0, "rvalid": 0} | wanted
+
+    held = 0
+    for strobe in (15, *range(16), 15):
+        data = pipeline.random.getrandbits(32)
+        beats = {"aw": {"awaddr": OFFSET["TIMEOUT"]}, "w": {"wdata": data, "wstrb": strobe}}
+        first, second = beats if strobe & 1 else reversed(beats)
+        await stays()
+        await present(dut, first, **beats[first])
+        await RisingEdge(dut.clk)
+        await stays(**{f"{first}ready": 0})
+        await present(dut, second, **beats[second])
+        while not dut.s_axil_bvalid.value:
+            await RisingEdge(dut.clk)
+        await stays(awready=0, wready=0, bvalid=1)
+        assert await take(dut, "b", 2) == Response.OKAY
+        mask = strobed_bits(strobe)
+        held = data & mask | held & ~mask
+        await present(dut, "ar", araddr=OFFSET["TIMEOUT"])
+        await RisingEdge(dut.clk)
+        for _ in range(4):
+            await stays(1, arready=0, rvalid=1)
+            assert int(dut.s_axil_rdata.value) == held
+        assert await take(dut, "r", 2) == Response.OKAY
+    assert await write(dut, OFFSET["GRID"], 0) == Response.SLVERR
+    assert await write(dut, OFFSET["TIMEOUT"], 0) == Response.OKAY
+    assert await read(dut, OFFSET["TIMEOUT"]) == (0, Response.OKAY)
+    dut.s_axil_bready.value = dut.s_axil_rready.value = 1
+    await pipeline.send(pipeline.frame())
+    await pipeline.check()
+
+
+@case(whole_rows=True)
+@cocotb.parametrize(accepts=["none", "random"])
+async def written_all_the_time(dut: Any, accepts: str) -> None:
+    """They disturb no code and no latency."""
+    pipeline = await started(dut, offers="random", accepts=accepts)
+    running, refused = True, 0
+
+    async def writes() -> None:
+        nonlocal refused
+        rng = pipeline.random
+        while running:
+            word = rng.getrandbits(32)
+            name = rng.choice(("THRESHOLD", "TIMEOUT", "CONTROL", *TABLE_REGISTERS, "GRID"))
+            if name in ("TIMEOUT", "CONTROL"):
+                word = word | 1 << 20 if name == "TIMEOUT" else word & ~CONTROL.pack(clear_counters=1, drop_frames=1)
+            refused += await pipeline.write(name, word) == Response.SLVERR
+            await pipeline.read(
+                rng.choice(("STATUS", "FRAMES_IN", "FIRST_DEPTH_LATENCY", "TABLE_INDEX", "TABLE_COMMIT"))
+            )
+
+    sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(4))))
+    await ClockCycles(dut.clk, 12)
+    writing = cocotb.start_soon(writes())
+    await sending
+    await pipeline.until(lambda: len(pipeline.out.words) >= 4 * pipeline.pixels - 40)
+    running = False
+    await writing
+    assert refused > 5
+    await pipeline.write("CONTROL", 0)
+    await pipeline.check()
+
+
+@case(needs=as_sent, whole_rows=True)
+async def written_phase_by_phase(dut: Any) -> None:
+    """Each of them while nothing moves, while a frame comes, fills up, is waited for, leaves and is stalled."""
+    pipeline = await started(dut)
+    columns, first = pipeline.columns, pipeline.tables.content.entries["gradient"][0].tolist()
+
+    async def write_all() -> None:
+        for name in WRITABLE:
+            assert await pipeline.write(name, 0) == Response.OKAY, name
+        assert await pipeline.tables.write_entry("gradient", 0, *first) == Response.OKAY
+
+    await write_all()
+    frame, silence = pipeline.frame(), [None] * 100
+    sending = cocotb.start_soon(pipeline.send(frame[:columns], silence, frame[columns:]))
+    await ClockCycles(dut.clk, columns + 10)
+    await write_all()  # inside the frame
+    await sending
+    await write_all()  # before its first depth
+    await pipeline.until(lambda: pipeline.out.words)
+    await write_all()  # while it leaves
+    pipeline.sink.stall(repeat(False))
+    await ClockCycles(dut.clk, 4)
+    await write_all()
+    pipeline.sink.stall(repeat(True))
+    await pipeline.idle()
+    await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
+    await write_all()  # while it fills up
+    await pipeline.check()
+
+
+@case(needs=as_sent, whole_rows=True)
+@cocotb.parametrize(accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
+async def written_in_every_phase(dut: Any, accepts: str) -> None:
+    """Each register at each pixel of a frame, while frames come without a gap: no code and no latency changes."""
+    pipeline = await started(dut, accepts=accepts)
+    rng, running = pipeline.random, True
+    colours = [[135 + rng.randint(-3, 3) for _ in range(3)] for _ in range(pipeline.pixels)]
+    frame = video(pack(colours), pipeline.columns)
+    values: dict[str, Any] = dict.fromkeys((*WRITABLE, "GRID"), lambda: rng.getrandbits(32)) | {
+        # As they are: the records of the frames in flight are compared too.
+        "OFF_THRESHOLD": lambda: REGISTERS["OFF_THRESHOLD"].reset,
+        "MINIMUM_AREA": lambda: REGISTERS["MINIMUM_AREA"].reset,
+        "DEBOUNCE": lambda: REGISTERS["DEBOUNCE"].reset,
+        "TIMEOUT": lambda: rng.randint(2, 300),  # no frame is silent
+        "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
+        "TABLE_SELECT": lambda: TABLES["gradient"],  # TABLE_LOW is then an entry of the bank that no frame uses
+        "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1, floor=1),  # the build has none of these
+        "CAPTURE": lambda: CAPTURE.pack(start=1),  # nor a reference to capture
+        "FLOOR_CAPTURE": lambda: FLOOR_CAPTURE.pack(start=1),  # nor a floor
+    }
+    refused = {"GRID", "CAPTURE", "FLOOR_CAPTURE"}
+    missing = {name: set(range(pipeline.pixels)) for name in values}
+
+    async def feed() -> None:
+        while running:
+            await pipeline.send(frame, frame)
+
+    feeding = cocotb.start_soon(feed())
+    await pipeline.until(lambda: pipeline.into.words)
+    await ClockCycles(dut.clk, 4)
+    while any(missing.values()):
+        phase = len(pipeline.into.words) % pipeline.pixels
+        name = max(missing, key=lambda name: (phase in missing[name], len(missing[name])))
+        if phase not in missing[name]:
+            await RisingEdge(dut.clk)
+            continue
+        missing[name].discard(phase)
+        answer = await pipeline.write(name, values[name]())
+        assert answer == (Response.SLVERR if name in refused else Response.OKAY), f"{name} at pixel {phase}: {answer}"
+    running = False
+    await feeding
+    await pipeline.write("CONTROL", 0)
+    await pipeline.check()

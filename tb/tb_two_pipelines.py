@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""two_pipelines: each wrapper has the depth of its own configuration and its own calibration."""
+
+import json
+import os
+import random
+from dataclasses import replace
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge, gather
+
+from tactile_depth.configuration import Configuration
+from tactile_depth.latency import first_depth_latency
+from tactile_depth.sensor import Sensor, synthetic
+from tactile_depth.tactile_depth import tactile_depth
+from tb.axis import AxisMonitor, AxisSource, video
+from tb.pixels import unpack
+from tb.stream import CLOCK_NS
+
+STEEPNESS = {"left": 1.0, "right": -0.5}  # of each gel, relative to the synthetic sensor
+
+
+def calibration(side: str, config: Configuration) -> Sensor:
+    """Return the calibration of a pipeline: colours of the synthetic sensor stand for other slopes."""
+    sensor = synthetic(config.bits_per_channel)
+    assert sensor.gradient is not None
+    return replace(sensor, gradient=sensor.gradient * STEEPNESS[side])
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def codes(dut: Any) -> None:
+    """Send a frame to each at the same time, and compare each depth map with its own model."""
+    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    rng = random.Random(cocotb.RANDOM_SEED)
+    configs = {side: Configuration(**choices) for side, choices in json.loads(os.environ["CONFIGURATIONS"]).items()}
+    sources = {side: AxisSource(dut, f"{side}_s_axis", prefix="t") for side in configs}
+    outputs = {side: AxisMonitor(dut, f"{side}_m_axis", prefix="t") for side in configs}
+    dut.rst.value = dut.left_m_axis_tready.value = dut.right_m_axis_tready.value = 1
+    await ClockCycles(dut.clk, 3)
+    dut.rst.value = 0
+    await RisingEdge(dut.clk)
+    pixels = {side: [rng.getrandbits(24) for _ in range(c.rows * c.columns)] for side, c in configs.items()}
+    sending = [cocotb.start_soon(sources[side].send(video(pixels[side], c.columns))) for side, c in configs.items()]
+    await gather(*sending)
+    await ClockCycles(dut.clk, max(2 * first_depth_latency(config) for config in configs.values()))
+    for side, config in configs.items():
+        frame = unpack(pixels[side]).reshape(1, config.rows, config.columns, 3)
+        want, others = (
+            tactile_depth(frame, calibration(name, config), config) for name in (side, *configs.keys() - {side})
+        )
+        assert (want != others).any(), "a poor test: the calibrations give the same depth"
+        width = 8 * ((config.data_width + 7) // 8)
+        got = [(word.data ^ 1 << width - 1) - (1 << width - 1) for word in outputs[side].words]
+        np.testing.assert_array_equal(got, want.ravel(), f"the depth map of {side}")

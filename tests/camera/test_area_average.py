@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""area_average: RTL against the model, the model against the average of the Python package and against fractions."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tactile_depth.camera.area_average import area_average
+from tactile_depth.resampling import resampling
+
+GRID = {"Rows": 3, "Columns": 8}
+RATIOS = [(8, 1), (1, 1), (5, 4), (9, 5), (2, 1), (7, 3), (5, 2), (15, 4), (16, 5), (29, 4), (47, 8)]
+PATTERN_RATIOS = [ratio for ratio in RATIOS if ratio[0] >= 2 * ratio[1]]
+
+
+@pytest.mark.structures(
+    "numerator denominator bits bayer",
+    verilator=[(15, 4, 10, 1), (5, 4, 8, 0)],
+    icarus=[(5, 2, 12, 1), (1, 1, 8, 0), (3, 2, 10, 0)],
+    regress=[*((*ratio, 8, 0) for ratio in RATIOS), *((*ratio, 10, 1) for ratio in PATTERN_RATIOS), (2, 1, 8, 1)],
+    regress_verilator=[(1, 1, 8, 0), (2, 1, 12, 1), (8, 1, 10, 0)],
+)
+def test_rtl(run_tb: Callable[..., None], numerator: int, denominator: int, bits: int, bayer: int) -> None:
+    ratio = {"Numerator": numerator, "Denominator": denominator}
+    run_tb("area_average", {**GRID, **ratio, "Bits": bits, "Bayer": bayer})
+
+
+@given(st.integers(1, 24), st.integers(1, 24), st.integers(0, 40), st.integers(0, 40), st.integers(0, 2**32 - 1))
+def test_rgb_is_the_average_of_the_package(rows: int, columns: int, below: int, beside: int, seed: int) -> None:
+    camera = (rows + below, columns + beside)
+    picture = np.random.default_rng(seed).integers(0, 256, (*camera, 3))
+    plan = resampling(camera, (rows, columns))
+    top, left = plan.origin
+    means = area_average(picture[top:, left:], 8, plan.numerator, plan.denominator)[:rows, :columns]
+    np.testing.assert_array_equal(means, np.rint(plan.average(picture)))
+
+
+def overlap(pixel: int, block: int, numerator: int, denominator: int) -> int:
+    ends = min((pixel + 1) * denominator, (block + 1) * numerator)
+    return max(0, ends - max(pixel * denominator, block * numerator))
+
+
+@pytest.mark.parametrize("colour", [(0, 0), (0, 1), (1, 0), (1, 1)])
+@pytest.mark.parametrize(("numerator", "denominator"), PATTERN_RATIOS)
+def test_a_pattern_is_averaged_colour_by_colour(numerator: int, denominator: int, colour: tuple[int, int]) -> None:
+    """The mean of each colour over its pixels, weighted by the area in the block, rounded as Python rounds."""
+    rows = columns = 2
+    length = -(-rows * numerator // denominator)
+    samples = np.random.default_rng(numerator).integers(0, 1024, (length, length))
+    means = area_average(samples, 10, numerator, denominator, colour)
+    for i, j, of in np.ndindex(rows, columns, 3):
+        total = area = 0
+        for row, column in np.ndindex(samples.shape):
+            site = (row + colour[0]) % 2 + (column + colour[1]) % 2
+            height, width = (overlap(*pair, numerator, denominator) for pair in ((row, i), (column, j)))
+            if site == of:
+                total += height * width * int(samples[row, column])
+                area += height * width
+        assert means[i, j, of] == min(round(Fraction(total, 4 * area)), 255)

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""block_weights: RTL against the model, the model against fractions."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import ceil
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tactile_depth.camera.block_weights import block_weights, pixels_of
+
+
+@pytest.mark.structures(
+    "numerator denominator",
+    verilator=[(15, 4)],
+    icarus=[(1, 1), (7, 5), (8, 1)],
+    regress=[(15, 4), (2, 1), (3, 2), (127, 16), (4, 3)],
+    regress_verilator=[(1, 1)],
+)
+def test_rtl(run_tb: Callable[..., None], numerator: int, denominator: int) -> None:
+    run_tb("block_weights", {"Numerator": numerator, "Denominator": denominator})
+
+
+@given(st.integers(1, 60), st.integers(1, 30), st.integers(1, 40))
+def test_weights_are_overlaps_of_pixel_and_block(extra: int, denominator: int, pixels: int) -> None:
+    numerator = denominator + extra - 1
+    block = Fraction(numerator, denominator)
+    weights, ends = block_weights(pixels, numerator, denominator)
+    for pixel in range(pixels):
+        boundary = (pixel // block + 1) * block
+        assert Fraction(int(weights[pixel]), denominator) == min(boundary, Fraction(pixel + 1)) - pixel
+        assert ends[pixel] == (boundary <= pixel + 1)
+
+
+@given(st.integers(1, 40), st.integers(1, 12), st.integers(1, 12))
+def test_the_last_pixel_ends_the_last_block(blocks: int, denominator: int, extra: int) -> None:
+    numerator = denominator + extra - 1
+    pixels = pixels_of(blocks, numerator, denominator)
+    assert pixels == ceil(Fraction(numerator, denominator) * blocks)
+    ends = block_weights(pixels, numerator, denominator)[1]
+    assert ends[-1]
+    assert ends.sum() == blocks

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""row_sums: RTL against the model, the model against overlaps computed pixel by pixel."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tactile_depth.camera.row_sums import red_columns, row_sums, sums_over_blocks
+
+
+@pytest.mark.structures(
+    "numerator denominator width bayer",
+    verilator=[(15, 4, 12, 1)],
+    icarus=[(15, 4, 12, 1), (4, 3, 6, 0), (5, 2, 5, 1)],
+    regress=[(1, 1, 10, 0), (8, 1, 14, 1), (15, 4, 10, 0), (2, 1, 10, 1)],
+    regress_verilator=[(4, 3, 10, 0)],
+)
+def test_rtl(run_tb: Callable[..., None], numerator: int, denominator: int, width: int, bayer: int) -> None:
+    run_tb("row_sums", {"Numerator": numerator, "Denominator": denominator, "Width": width, "Bayer": bayer})
+
+
+@given(st.integers(1, 12), st.integers(0, 40), st.integers(1, 12), st.integers(0, 2**32 - 1))
+def test_sums_are_weighted_by_overlaps(denominator: int, extra: int, blocks: int, seed: int) -> None:
+    numerator = denominator + extra
+    values = np.random.default_rng(seed).integers(-100, 100, -(-blocks * numerator // denominator))
+    begin = np.arange(len(values)) * denominator
+    got = sums_over_blocks(values, numerator, denominator)
+    for block in range(blocks):
+        first, end = block * numerator, (block + 1) * numerator
+        overlaps = np.clip(np.minimum(begin + denominator, end) - np.maximum(begin, first), 0, None)
+        assert got[block] == overlaps @ values
+
+
+@given(st.integers(1, 6), st.integers(0, 10), st.booleans())
+def test_columns_of_red_and_blue_fill_a_block(denominator: int, extra: int, first: bool) -> None:
+    numerator = 2 * denominator + extra
+    blue = (np.arange(40) + first) % 2 == 1
+    red = red_columns(blue, numerator, denominator)
+    np.testing.assert_array_equal(red + red_columns(~blue, numerator, denominator), numerator)
+    assert red.min() > 0  # from a ratio of 2 on every block has both
+    assert red.max() < numerator
+
+
+def test_a_row_of_a_pattern_is_split_by_columns() -> None:
+    row = np.array([[1, 10, 2, 20, 3, 30]])
+    blue = np.array([False, True] * 3)
+    np.testing.assert_array_equal(row_sums(row, blue, 2, 1), [[[1, 10], [2, 20], [3, 30]]])
+    np.testing.assert_array_equal(row_sums(row, blue, 3, 1), [[[3, 10], [3, 50]]])

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""centroid: RTL against the model, and the model against exact fractions."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tactile_depth.contact.centroid import FRACTION, mean
+
+
+@pytest.mark.structures(
+    "position_width area_width", verilator=[(7, 15)], icarus=[(3, 6)], regress=[(10, 21), (2, 4), (5, 9)]
+)
+def test_rtl(run_tb: Callable[..., None], position_width: int, area_width: int) -> None:
+    run_tb("centroid", {"PositionWidth": position_width, "AreaWidth": area_width})
+
+
+@given(st.lists(st.integers(0, 1023), min_size=1, max_size=300))
+def test_the_mean_is_the_nearest(positions: list[int]) -> None:
+    exact = Fraction(sum(positions), len(positions))
+    assert mean(sum(positions), len(positions), 10) == round(exact * 2**FRACTION)  # of a Fraction: ties to even
+
+
+def test_a_total_beyond_the_largest_position_is_refused() -> None:
+    with pytest.raises(ValueError, match="too large for 3 positions of 4 bits"):
+        mean(48, 3, 4)

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""contact_sums: RTL against the model, and the model against numpy on whole maps."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from tactile_depth.contact.contact_sums import ContactSums, Thresholds
+
+
+@pytest.mark.structures(
+    "width rows columns lanes bottom_first",
+    verilator=[(24, 5, 8, 1, 0)],
+    icarus=[(6, 5, 8, 1, 1), (6, 5, 8, 4, 1)],
+    regress=[
+        *((6, 5, 8, 1, 0), (32, 5, 16, 1, 1), (12, 9, 4, 1, 0)),
+        *((24, 5, 16, 2, 0), (12, 3, 64, 32, 1), (32, 5, 16, 8, 1)),
+    ],
+)
+def test_rtl(run_tb: Callable[..., None], width: int, rows: int, columns: int, lanes: int, bottom_first: int) -> None:
+    parameters = {"Width": width, "Rows": rows, "Columns": columns, "Lanes": lanes, "BottomFirst": bottom_first}
+    run_tb("contact_sums", parameters)
+
+
+@given(arrays(np.int64, (5, 8), elements=st.integers(-8, 7)), st.integers(-9, 8), st.booleans(), st.booleans())
+def test_sums_are_those_of_numpy(depth: Any, threshold: int, touching: bool, bottom_first: bool) -> None:
+    model = ContactSums(5, 8, bottom_first)
+    thresholds = Thresholds(99, threshold) if touching else Thresholds(threshold, 99)
+    stream = (depth[::-1] if bottom_first else depth).ravel()
+    for index, code in enumerate(stream):
+        sums = model.beat(int(code), index == 0, index % 8 == 7, index == 39, thresholds, touching)
+    rows, columns = np.nonzero(depth > threshold)
+    assert sums is not None
+    assert (sums.area, sums.row_sum, sums.column_sum) == (rows.size, rows.sum(), columns.sum())
+    assert sums.volume == depth[depth > threshold].sum()
+    if rows.size:
+        assert (sums.least, sums.greatest) == ((rows.min(), columns.min()), (rows.max(), columns.max()))
+        assert sums.peak == depth.max() == depth[sums.peak_position]
+        row, column = sums.peak_position
+        place = (4 - row if bottom_first else row) * 8 + column
+        assert (stream[:place] < sums.peak).all(), "not the first of equal peaks"

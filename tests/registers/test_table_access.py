@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+"""hdl/registers/table_access.sv against models/tactile_depth/registers/table_access.py."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+ALL = {"GradientWords": 8, "CoefficientWords": 36, "ReferenceWords": 5000, "FloorWords": 1250}
+SMALL = {"GradientWords": 0, "CoefficientWords": 6, "ReferenceWords": 0, "FloorWords": 5}
+WORDS = {"all": ALL, "small": SMALL, "lookup": {"GradientWords": 4096}}
+
+
+@pytest.mark.structures(
+    "words", both=[("small",)], icarus=[("all",)], regress=[("lookup",)], regress_verilator=[("all",)]
+)
+def test_table_access(run_tb: Callable[..., None], words: Any) -> None:
+    run_tb("table_access", parameters=WORDS[words])

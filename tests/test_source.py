@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames and keys of `tactile-depth live`: a camera that is fast, slow or gone, and the terminal."""
+
+import contextlib
+import os
+import pty
+import select
+import sys
+import termios
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_depth.cli import source as sources
+from tactile_depth.cli.failure import Failure
+from tactile_depth.cli.keys import pressed_keys
+from tactile_depth.cli.source import Source
+
+# A camera.
+
+
+@pytest.fixture
+def camera(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Make camera 0 out of items; it is asked for each as fast as it can be."""
+
+    def connect(items: Any) -> Any:
+        monkeypatch.setattr(sources, "_camera", lambda name: iter(items))
+        return Source("0")
+
+    return connect
+
+
+def numbered(count: int) -> list[Any]:
+    return [np.full((2, 2, 3), index, np.uint8) for index in range(count)]
+
+
+def test_a_camera_that_is_too_fast_loses_its_oldest_frames_and_they_are_counted(camera: Any) -> None:
+    with camera(numbered(50)) as source:
+        source._thread.join()
+        taken = [frame for frame in source.frames() if frame is not None]
+    assert [frame.index for frame in taken] == list(range(50 - len(taken), 50))
+    assert [int(frame.image[0, 0, 0]) for frame in taken] == [frame.index for frame in taken]
+    assert 0 < len(taken) <= sources.QUEUED
+    assert source.counts.dropped == 50 - len(taken)
+    assert source.counts.read == 50
+
+
+def test_a_silent_source_gives_none_meanwhile(camera: Any) -> None:
+    released = threading.Event()
+
+    def items() -> Iterator[Any]:
+        released.wait(10)
+        yield from numbered(1)
+
+    with camera(items()) as source:
+        frames = source.frames(patience_s=0.01)
+        assert next(frames) is None
+        released.set()
+        assert next(frame for frame in frames if frame is not None).index == 0
+
+
+class Camera:
+    """Stands for cv2 and its camera, which reads one frame and then fails."""
+
+    COLOR_BGR2RGB = None
+
+    def __init__(self, good: int = 1) -> None:
+        self.good, self.reads, self.released = good, 0, False
+
+    def VideoCapture(self, name: str) -> Any:
+        self.name = name
+        return self
+
+    def isOpened(self) -> Any:
+        return self.good > 0
+
+    def read(self) -> Any:
+        self.reads += 1
+        return (self.reads <= self.good), np.array([[[1, 2, 3]]], np.uint8)
+
+    def cvtColor(self, image: np.ndarray, _: Any) -> Any:
+        return image[..., ::-1]
+
+    def release(self) -> None:
+        self.released = True
+
+
+def test_a_camera_that_is_unplugged_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    device = Camera()
+    monkeypatch.setattr(sources, "load_opencv", lambda: device)
+    monkeypatch.setattr(sources, "QUEUED", 100)
+    with Source("3") as source, pytest.raises(Failure, match="camera 3 gives no frames any more"):
+        assert [frame.image.tolist() for frame in source.frames()] == [[[[3, 2, 1]]]]  # type: ignore[union-attr]
+    assert device.name == 3  # type: ignore[comparison-overlap]
+    assert device.released
+    assert source.counts.failed == sources.DEAD_AFTER
+
+
+def test_a_camera_that_is_not_there_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sources, "load_opencv", lambda: Camera(good=0))
+    with pytest.raises(Failure, match="camera /dev/video9 cannot be opened"):
+        Source("/dev/video9")
+
+
+# Keys.
+
+
+def test_the_terminal_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keys come one by one while the block runs; afterwards lines and echo are back, also after an error."""
+    ours, theirs = pty.openpty()
+    with os.fdopen(theirs, "r") as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        before = termios.tcgetattr(stdin)
+        with contextlib.suppress(KeyboardInterrupt), pressed_keys() as key:
+            assert key() == ""  # type: ignore[misc]
+            os.write(ours, b"rz")
+            assert select.select([stdin], [], [], 5)[0]
+            assert [key(), key(), key()] == ["r", "z", ""]  # type: ignore[misc]
+            assert not termios.tcgetattr(stdin)[3] & (termios.ICANON | termios.ECHO)
+            raise KeyboardInterrupt
+        assert termios.tcgetattr(stdin) == before
+    os.close(ours)
+
+
+def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "empty").touch()
+    with (tmp_path / "empty").open() as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        with pressed_keys() as key:
+            assert key is None

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrappers with a configuration inside, and the package of default parameters."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from commands.common import repository, wrapper
+from tactile_depth.configuration import Configuration
+from tactile_depth.sensor import synthetic
+from tactile_depth.tactile_depth import top_parameters, write_roms
+from tb.tb_two_pipelines import calibration
+
+CONFIGURATIONS: dict[str, dict[str, Any]] = {
+    "left": {"columns": 16, "rows": 8, "solver": "tridiagonal", "bits_per_channel": 2},
+    "right": {"columns": 16, "bits_per_channel": 3, "data_width": 20, "neumann": True},
+}
+
+
+def test_the_package_has_the_default_configuration() -> None:
+    assert wrapper.package() == wrapper.DEFAULTS.read_text(), "run `make registers`"
+
+
+def test_a_wrapper_has_every_port_and_parameter_of_the_top() -> None:
+    declared, names = wrapper.ports()
+    parameters = top_parameters(Configuration(**CONFIGURATIONS["left"]))
+    text = wrapper.wrapper("left", parameters)
+    assert declared in text
+    assert all(f".{name}" in text for name in names)
+    assert all(f".{name}({value})," in text for name, value in parameters.items())
+    assert {"clk", "s_axis_tdata", "m_axis_tuser", "contact", "m_event_tready", "s_axil_rready"} <= set(names)
+
+
+@pytest.mark.parametrize("simulator", ["verilator", "icarus"], indirect=True)
+def test_two_pipelines_with_two_calibrations_in_one_simulation(
+    run_tb: Callable[..., None], simulator: str, tmp_path: Path
+) -> None:
+    files = [repository.ROOT / "tb" / "two_pipelines.sv"]
+    configs = {side: Configuration(**choices) for side, choices in CONFIGURATIONS.items()}
+    for side, config in configs.items():
+        files.append(wrapper.write(tmp_path, side, top_parameters(config), tables=f"{side}/"))
+
+    def tables(folder: Path) -> None:
+        for side, config in configs.items():
+            (folder / side).mkdir(exist_ok=True)
+            write_roms(folder / side, calibration(side, config), config)
+
+    run_tb(
+        "two_pipelines",
+        test_module="tb.tb_two_pipelines",
+        roms=tables,
+        environment={"CONFIGURATIONS": json.dumps(CONFIGURATIONS)},
+        files=files,
+    )
+
+
+def command(*arguments: str) -> tuple[int, str]:
+    """Return the exit status of `make wrap`, and what it prints."""
+    result = subprocess.run(
+        [sys.executable, "-m", "commands", "wrap", *arguments],
+        cwd=repository.ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return result.returncode, result.stdout + result.stderr
+
+
+def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
+    choices = ("N=16", "SOLVER=tridiagonal")
+    assert command("NAME=finger", f"OUT={tmp_path}", "TABLES=finger/", *choices)[0] == 0
+    text = (tmp_path / "tactile_depth_finger.sv").read_text()
+    assert 'parameter TableFolder = "finger/"' in text
+    assert ".Tridiagonal(1)," in text
+    (tmp_path / "direct").mkdir()
+    write_roms(tmp_path / "direct", synthetic(4), Configuration(columns=16, solver="tridiagonal"))
+    written = {path.name: path.read_text() for path in tmp_path.glob("*.hex")}
+    assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "NAME=: accepted are small letters"),
+        (("NAME=Finger",), "NAME=Finger: accepted are small letters"),
+        (("NAME=finger", "TABLES=finger"), "with a / at its end"),
+        (("NAME=finger", "LANES=2"), "LANES"),
+    ],
+)
+def test_bad_input_ends_with_one_line(arguments: tuple[str, ...], message: str) -> None:
+    status, text = command(*arguments)
+    assert status == 2
+    assert message in text
+    assert len(text.splitlines()) == 1
