@@ -188,7 +188,8 @@ class Pipeline:
         settings = Settings(self._threshold, self._threshold, minimum_area=1, debounce=1)
         records = tuple(self._events.whole_frame(frame, settings, time=0) for frame in codes)
         codes, depth_mm = self._upright(codes), self._upright(stream) * self.depth_lsb_mm
-        dark = dark_pixels(frames, self._gains, self.config) if self.config.flat_field else np.zeros(codes.shape, bool)
+        gains = self._tables.gains
+        dark = np.zeros(codes.shape, bool) if gains is None else dark_pixels(frames, gains, self.config)
         result = Result(
             codes,
             depth_mm,
