@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make registers`: writes all files that registers/tactile_depth.rdl describes.
+"""`make registers`: writes all files that registers/tactile_depth.rdl describes, and the list of sources for FuseSoC.
 
 Four files are committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by
 peakrdl-cheader, register_map_pkg.sv, because no exporter writes a package that Icarus 11 reads, and the JSON that
@@ -10,6 +10,7 @@ build/: it has thousands of lines, most of them its library.
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,10 +25,11 @@ from systemrdl.compiler import RDLCompiler
 from systemrdl.node import FieldNode, RegNode, RootNode
 
 from commands.common import variables, wrapper
-from commands.common.repository import ROOT
+from commands.common.repository import ROOT, sources
 
 SOURCE = ROOT / "registers" / "tactile_depth.rdl"
 PACKAGE_MAP = ROOT / "models" / "tactile_depth" / "registers" / "register_map.json"
+FUSESOC = ROOT / "tactile_depth.core"
 LAYER = ROOT / "build" / "registers"
 NAME = SOURCE.stem
 LAYER_NAME = f"{NAME}_registers"  # `tactile_depth` is the package of models
@@ -190,8 +192,14 @@ def address_width(registers: list[dict[str, Any]]) -> int:
     return max(10, max(register["offset"] for register in registers).bit_length())
 
 
+def fusesoc_core() -> str:
+    """Return the text of tactile_depth.core with every file of hdl/, packages first."""
+    files = "".join(f"      - {path.relative_to(ROOT)}\n" for path in sources())
+    return re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
+
+
 def generated(root: RootNode) -> dict[Path, str]:
-    """Return the text of each committed file that is written from the map."""
+    """Return the text of each committed file that is written from the map or from what is in hdl/."""
     top = root.top
     registers = [register_of(node) for node in top.registers(unroll=True)]
     described = {"written_by": WRITTEN_BY, "address_width": address_width(registers), "registers": registers}
@@ -209,6 +217,7 @@ def generated(root: RootNode) -> dict[Path, str]:
         PACKAGE_MAP: json.dumps(described, indent=1) + "\n",
         ROOT / "hdl" / "registers" / "register_map_pkg.sv": package(registers),
         wrapper.DEFAULTS: wrapper.package(),
+        FUSESOC: fusesoc_core(),
     }
 
 

@@ -38,7 +38,7 @@ module banked_table #(
 
   logic bank, named, used;  // in use; named for the frame that comes; in use in this cycle
   logic [1:0][Width-1:0] words;
-  assign used = en & change ? named : bank;
+  assign used = (en & change) ? named : bank;
   assign table_in_use = bank;
   assign read_word = words[bank];
   assign free_word = words[~bank];

@@ -81,7 +81,7 @@ module frame_guard
         column <= last_column ? '0 : column + ColumnWidth'(1);
         if (last_column) row <= frame_end ? '0 : row + RowWidth'(1);
       end
-      silence <= s_valid | origin | filling ? '0 : silence + 32'd1;
+      silence <= (s_valid | origin | filling) ? '0 : silence + 32'd1;
       filling <= (filling | fault_in_frame) & ~(emit & frame_end);
       if (emit & frame_end) hunting <= filling | row_long;
       else if (start_missing) hunting <= 1'b1;

@@ -54,7 +54,7 @@ module spectral_divide #(
 
   always_ff @(posedge clk) begin
     if (en) begin
-      address <= t <= p ? tri_p + AddressWidth'(t) : tri_t + AddressWidth'(p);
+      address <= (t <= p) ? tri_p + AddressWidth'(t) : tri_t + AddressWidth'(p);
       tri_t_q <= tri_t + AddressWidth'(t) + AddressWidth'(1);
       p_q <= burst_ends ? p + PositionWidth'(1) : p;
       tri_p_q <= burst_ends ? tri_p + AddressWidth'(p) + AddressWidth'(1) : tri_p;

@@ -95,7 +95,8 @@ class RegisterBench:
         """
         dut = self.dut
         self.inputs = {**self.idle, **inputs}
-        offset, data, strobe = write or (self.random.choice(UNMAPPED), self.random.getrandbits(32), WHOLE)
+        # Without a write the address and the data of any other may stand there.
+        offset, data, strobe = write or (self.random.choice(tuple(OFFSET)), self.random.getrandbits(32), WHOLE)
         offset = REGISTERS[offset].offset if isinstance(offset, str) else offset
         mask = strobed_bits(strobe)
         name, ones = OFFSET.get(offset, ""), data & mask
