@@ -41,10 +41,10 @@ module contact_unit
 
   input  wire                         depth_valid,
   input  wire depth_position_t        depth_position,
-  input  wire  [Lanes*DataWidth-1:0]  depth_data,
+  input  wire  [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
   input  wire  [31:0]                 depth_time,
 
-  output logic [Lanes*DepthBits-1:0]  m_axis_tdata,
+  output logic [Lanes*DepthBits-1:0]  m_axis_tdata,  // the same, each sign-extended to whole bytes
   output logic                        m_axis_tvalid,
   input  wire                         m_axis_tready,
   output logic                        m_axis_tlast,

@@ -43,16 +43,16 @@ module depth_unit
 
   input  wire                         pixel_frame_end,
   input  wire                         pixel_bad,
-  input  wire  [31:0]                 frame_time,   // of the frame that pixel_frame_end ends
+  input  wire  [31:0]                 frame_time,  // of the frame that pixel_frame_end ends
 
   input  wire                         burst_start,
   input  wire                         solved_frame_start,
-  input  wire  [Lanes*DataWidth-1:0]  solved_data,
+  input  wire  [Lanes*DataWidth-1:0]  solved_data,  // depth codes, signed
 
   output logic                        depth_valid,
   output depth_position_t             depth_position,
-  output logic [Lanes*DataWidth-1:0]  depth_data,
-  output logic [31:0]                 depth_time    // of the frame to which depth_data belongs
+  output logic [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
+  output logic [31:0]                 depth_time   // of the frame to which depth_data belongs
 );
 
   logic bank, tag_due, tag_bad, tag_bank, tags_held;

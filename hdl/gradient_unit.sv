@@ -51,14 +51,14 @@ module gradient_unit
   output logic [2:0]                      saturations,  // values clipped in this clock
 
   input  wire                             pixel_valid,
-  input  wire  [23:0]                     pixel_data,
+  input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0
   input  wire position_t                  pixel_position,
   input  wire                             pixel_bad,
 
   output logic                            slope_valid,
   output position_t                       slope_position,
-  output logic signed [GradientWidth-1:0] slope_gx,
-  output logic signed [GradientWidth-1:0] slope_gy
+  output logic signed [GradientWidth-1:0] slope_gx,  // slope code
+  output logic signed [GradientWidth-1:0] slope_gy   // slope code
 );
 
   // Constants of a package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.

@@ -48,11 +48,11 @@ module poisson_unit
   input  wire                             en,
   input  wire                             slope_valid,
   input  wire position_t                  slope_position,
-  input  wire  signed [GradientWidth-1:0] slope_gx,
-  input  wire  signed [GradientWidth-1:0] slope_gy,
+  input  wire  signed [GradientWidth-1:0] slope_gx,    // slope code
+  input  wire  signed [GradientWidth-1:0] slope_gy,    // slope code
   output logic                            burst_start,
   output logic                            depth_frame_start,
-  output logic [Lanes*DataWidth-1:0]      depth_data,
+  output logic [Lanes*DataWidth-1:0]      depth_data,  // depth codes, signed
   output logic [ClippedWidth-1:0]         saturations  // values clipped in this clock
 );
 

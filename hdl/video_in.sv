@@ -31,7 +31,7 @@ module video_in
   output logic        busy,     // a pixel waits, or a frame has begun and not ended
 
   output logic        pixel_valid,
-  output logic [23:0] pixel_data,
+  output logic [23:0] pixel_data,  // R in 23:16, B in 15:8, G in 7:0
   output position_t   pixel_position,
   output logic        pixel_frame_start,
   output logic        pixel_frame_end,

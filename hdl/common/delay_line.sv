@@ -13,7 +13,7 @@ module delay_line #(
   input  wire              clk,
   input  wire              rst,
   input  wire              en,
-  input  wire  [Width-1:0] in,
+  input  wire  [Width-1:0] in,  // a word of any format
   output logic [Width-1:0] out
 );
 

@@ -12,11 +12,11 @@ module dot_product #(
 ) (
   input  wire                             clk,
   input  wire                             en,
-  input  wire  signed [AWidth-1:0]        a0,
-  input  wire  signed [BWidth-1:0]        b0,
+  input  wire  signed [AWidth-1:0]        a0,  // F fraction bits, as a1
+  input  wire  signed [BWidth-1:0]        b0,  // G fraction bits, as b1
   input  wire  signed [AWidth-1:0]        a1,
   input  wire  signed [BWidth-1:0]        b1,
-  output logic signed [AWidth+BWidth:0]   sum
+  output logic signed [AWidth+BWidth:0]   sum  // F + G fraction bits
 );
 
   logic signed [AWidth-1:0] a0_q, a1_q, a1_q2;

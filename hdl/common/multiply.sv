@@ -14,9 +14,9 @@ module multiply #(
 ) (
   input  wire                             clk,
   input  wire                             en,
-  input  wire  signed [AWidth-1:0]        a,
-  input  wire  signed [BWidth-1:0]        b,
-  output logic signed [AWidth+BWidth-1:0] product
+  input  wire  signed [AWidth-1:0]        a,       // signed code, F fraction bits
+  input  wire  signed [BWidth-1:0]        b,       // signed code, G fraction bits
+  output logic signed [AWidth+BWidth-1:0] product  // F + G fraction bits
 );
 
   always_ff @(posedge clk) if (en) product <= a * b;

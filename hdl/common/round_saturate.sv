@@ -13,8 +13,8 @@ module round_saturate #(
   parameter int Drop     = 17,
   parameter int OutWidth = 27
 ) (
-  input  wire  signed [InWidth-1:0]  in,
-  output logic signed [OutWidth-1:0] out,
+  input  wire  signed [InWidth-1:0]  in,      // F fraction bits
+  output logic signed [OutWidth-1:0] out,     // F - Drop fraction bits
   output logic                       clipped  // out is not the rounded value
 );
 

@@ -20,9 +20,9 @@ module centroid #(
   input  wire                  clk,
   input  wire                  rst,
   input  wire                  start,
-  input  wire  [SumWidth-1:0]  column_sum,
-  input  wire  [SumWidth-1:0]  row_sum,
-  input  wire  [AreaWidth-1:0] area,
+  input  wire  [SumWidth-1:0]  column_sum,  // pixels
+  input  wire  [SumWidth-1:0]  row_sum,     // pixels
+  input  wire  [AreaWidth-1:0] area,        // pixels
   output logic                 done,
   output logic [MeanWidth-1:0] column,      // 4 fraction bits, pixels
   output logic [MeanWidth-1:0] row          // 4 fraction bits, pixels

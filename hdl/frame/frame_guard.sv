@@ -24,19 +24,19 @@ module frame_guard
   input  wire         clk,
   input  wire         rst,
   input  wire         en,
-  input  wire  [31:0] timeout,          // cycles
+  input  wire  [31:0] timeout,   // cycles
   input  wire         s_valid,
   output logic        s_ready,
-  input  wire  [23:0] s_data,           // three codes of 8 bits
+  input  wire  [23:0] s_data,    // three codes of 8 bits
   input  wire         s_last,
   input  wire         s_user,
   output logic        out_valid,
-  output logic [23:0] out_data,
+  output logic [23:0] out_data,  // as s_data
   output position_t   out_position,
   output logic        out_frame_start,
   output logic        out_frame_end,
-  output logic        out_bad,          // with out_frame_end: the frame was malformed
-  output faults_t     faults            // each for one cycle
+  output logic        out_bad,   // with out_frame_end: the frame was malformed
+  output faults_t     faults     // each for one cycle
 );
 
   localparam int ColumnWidth = $clog2(Columns);

@@ -37,17 +37,17 @@ module quadratic_gradient
   input  wire                              table_write,
   input  wire                              table_read,
   input  wire  [IndexWidth-1:0]            table_index,
-  input  wire  signed [WordWidth-1:0]      table_word,
+  input  wire  signed [WordWidth-1:0]      table_word,  // C has G fraction bits
   output logic signed [WordWidth-1:0]      table_read_word,
   input  wire                              in_valid,
   input  wire position_t                   in_position,
-  input  wire  signed [DeviationWidth-1:0] in_red,
-  input  wire  signed [DeviationWidth-1:0] in_green,
-  input  wire  signed [DeviationWidth-1:0] in_blue,
+  input  wire  signed [DeviationWidth-1:0] in_red,      // deviation, F fraction bits
+  input  wire  signed [DeviationWidth-1:0] in_green,    // the same
+  input  wire  signed [DeviationWidth-1:0] in_blue,     // the same
   output logic                             out_valid,
   output position_t                        out_position,
-  output logic signed [Width-1:0]          out_gx,
-  output logic signed [Width-1:0]          out_gy,
+  output logic signed [Width-1:0]          out_gx,      // slope code, F + G - Drop fraction bits
+  output logic signed [Width-1:0]          out_gy,      // the same
   output logic [1:0]                       saturations  // values clipped in this cycle
 );
 

@@ -28,12 +28,12 @@ module back_substitution #(
   input  wire                      rst,
   input  wire                      en,
   input  wire  [Lanes-1:0]         in_start,
-  input  wire  [Lanes-1:0]         in_frame_start,   // with in_start: the first burst of a frame in this lane
-  input  wire  [Lanes*InWidth-1:0] in_data,
+  input  wire  [Lanes-1:0]         in_frame_start,  // with in_start: the first burst of a frame in this lane
+  input  wire  [Lanes*InWidth-1:0] in_data,         // d for each lane, F fraction bits
   output logic [Lanes-1:0]         out_start,
   output logic [Lanes-1:0]         out_frame_start,
-  output logic [Lanes*Width-1:0]   out_data,
-  output logic [ClippedWidth-1:0]  saturations  // values clipped in a cycle
+  output logic [Lanes*Width-1:0]   out_data,        // z for each lane, F + Lift fraction bits
+  output logic [ClippedWidth-1:0]  saturations      // values clipped in a cycle
 );
 
   localparam int PositionWidth = $clog2(Size);

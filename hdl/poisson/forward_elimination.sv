@@ -32,12 +32,12 @@ module forward_elimination #(
   input  wire                        rst,
   input  wire                        en,
   input  wire                        in_start,
-  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [Width-1:0]    in_data,
+  input  wire                        in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0]    in_data,         // mode f, F fraction bits
   output logic                       out_start,
   output logic                       out_frame_start,
-  output logic signed [OutWidth-1:0] out_data,
-  output logic [2:0]                 saturations  // values clipped in a cycle, a little ago
+  output logic signed [OutWidth-1:0] out_data,        // d, F - StoreDrop fraction bits
+  output logic [2:0]                 saturations      // values clipped in a cycle, a little ago
 );
 
   localparam int PositionWidth = $clog2(Size);

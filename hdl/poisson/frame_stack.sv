@@ -29,7 +29,7 @@ module frame_stack #(
   input  wire                    en,
   input  wire                    in_start,
   input  wire                    in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  [Width-1:0]       in_data,
+  input  wire  [Width-1:0]       in_data,          // a word of any format, unchanged in out_data
   output logic [Lanes-1:0]       out_start,
   output logic [Lanes-1:0]       out_frame_start,  // with out_start: the first burst of a frame in this lane
   output logic [Lanes*Width-1:0] out_data

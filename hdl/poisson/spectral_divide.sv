@@ -23,12 +23,12 @@ module spectral_divide #(
   input  wire                     rst,
   input  wire                     en,
   input  wire                     in_start,
-  input  wire                     in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [Width-1:0] in_data,
+  input  wire                     in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_data,         // mode of the divergence
   output logic                    out_start,
   output logic                    out_frame_start,
-  output logic signed [Width-1:0] out_data,
-  output logic                    saturations  // values clipped in this cycle
+  output logic signed [Width-1:0] out_data,        // mode of depth, in the format for which c was computed
+  output logic                    saturations      // values clipped in this cycle
 );
 
   localparam int PositionWidth = $clog2(Size);

@@ -35,11 +35,11 @@ module spectral_solver #(
   input  wire                         en,
   input  wire                         in_valid,
   input  wire                         in_frame_start,   // the first word of a frame
-  input  wire  signed [InWidth-1:0]   in_data,
+  input  wire  signed [InWidth-1:0]   in_data,          // divergence, the fraction bits of a slope
   output logic                        out_start,
   output logic                        out_frame_start,  // the first burst of a frame
-  output logic signed [DataWidth-1:0] out_data,
-  output logic [7:0]                  saturations  // values clipped in a cycle, a little ago
+  output logic signed [DataWidth-1:0] out_data,         // depth code
+  output logic [7:0]                  saturations       // values clipped in a cycle, a little ago
 );
 
   localparam int Alternate = Neumann != 0 ? 0 : 1;

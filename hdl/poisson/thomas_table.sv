@@ -27,7 +27,7 @@ module thomas_table #(
   input  wire                          en,
   input  wire  [PositionWidth-1:0]     position,
   input  wire  [RowWidth-1:0]          row,
-  output logic signed [CoeffWidth-1:0] coefficient,
+  output logic signed [CoeffWidth-1:0] coefficient,  // CoeffWidth - 1 - shift fraction bits
   output logic [LastShiftWidth-1:0]    shift
 );
 

@@ -25,7 +25,7 @@ module corner_turn #(
   input  wire                    en,
   input  wire  [Lanes-1:0]       in_start,
   input  wire                    in_frame_start,   // with in_start[0]: the first row of a frame
-  input  wire  [Lanes*Width-1:0] in_data,
+  input  wire  [Lanes*Width-1:0] in_data,          // a word for each lane, of any format, unchanged in out_data
   output logic                   out_start,
   output logic                   out_frame_start,  // the first row of a frame
   output logic [Lanes*Width-1:0] out_data

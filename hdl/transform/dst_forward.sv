@@ -28,12 +28,12 @@ module dst_forward #(
   input  wire                        rst,
   input  wire                        en,
   input  wire                        in_start,
-  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [InWidth-1:0]  in_data,
+  input  wire                        in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [InWidth-1:0]  in_data,         // sample, F fraction bits
   output logic                       out_start,
   output logic                       out_frame_start,
-  output logic signed [OutWidth-1:0] out_data,
-  output logic [7:0]                 saturations  // values clipped, all stages together, each some cycles ago
+  output logic signed [OutWidth-1:0] out_data,        // mode, F - InputDrop - OutputDrop fraction bits
+  output logic [7:0]                 saturations      // values clipped, all stages together, each some cycles ago
 );
 
   // Samples of odd index are the second half of the burst.

@@ -27,12 +27,12 @@ module dst_inverse #(
   input  wire                        rst,
   input  wire                        en,
   input  wire                        in_start,
-  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [InWidth-1:0]  in_data,
+  input  wire                        in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [InWidth-1:0]  in_data,         // mode, F fraction bits
   output logic                       out_start,
   output logic                       out_frame_start,
-  output logic signed [OutWidth-1:0] out_data,
-  output logic [7:0]                 saturations  // values clipped, all stages together, each some cycles ago
+  output logic signed [OutWidth-1:0] out_data,        // sample, F - InputDrop - OutputDrop fraction bits
+  output logic [7:0]                 saturations      // values clipped, all stages together, each some cycles ago
 );
 
   logic pair_start, pair_frame_start;

@@ -19,8 +19,8 @@ module mode_pairs #(
   input  wire                     rst,
   input  wire                     en,
   input  wire                     in_start,
-  input  wire                     in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [Width-1:0] in_mode,
+  input  wire                     in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_mode,         // F fraction bits, as both words out
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_mode,

@@ -19,7 +19,7 @@ module row_reorder #(
   input  wire              en,
   input  wire              in_valid,
   input  wire              in_frame_start,   // the first word of a frame
-  input  wire  [Width-1:0] in_data,
+  input  wire  [Width-1:0] in_data,          // a word of any format, unchanged in out_data
   output logic             out_start,
   output logic             out_frame_start,  // the first burst of a frame
   output logic [Width-1:0] out_data

@@ -22,14 +22,14 @@ module sdf_butterfly #(
   input  wire                     rst,
   input  wire                     en,
   input  wire                     in_start,
-  input  wire                     in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [Width-1:0] in_re,
+  input  wire                     in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_re,           // F fraction bits, as in_im, out_re and out_im
   input  wire  signed [Width-1:0] in_im,
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
   output logic signed [Width-1:0] out_im,
-  output logic [1:0]              saturations  // values clipped in this cycle
+  output logic [1:0]              saturations      // values clipped in this cycle
 );
 
   localparam int PositionWidth = $clog2(Size);

@@ -25,8 +25,8 @@ module transpose #(
   input  wire              rst,
   input  wire              en,
   input  wire              in_start,
-  input  wire              in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  [Width-1:0] in_data,
+  input  wire              in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  [Width-1:0] in_data,         // a word of any format, unchanged in out_data
   output logic             out_start,
   output logic             out_frame_start,
   output logic [Width-1:0] out_data

@@ -23,14 +23,14 @@ module twiddle_multiply #(
   input  wire                        rst,
   input  wire                        en,
   input  wire                        in_start,
-  input  wire                        in_frame_start,   // with in_start: the first burst of a frame
-  input  wire  signed [InWidth-1:0]  in_re,
+  input  wire                        in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [InWidth-1:0]  in_re,           // F fraction bits, as in_im
   input  wire  signed [InWidth-1:0]  in_im,
   output logic                       out_start,
   output logic                       out_frame_start,
-  output logic signed [OutWidth-1:0] out_re,
+  output logic signed [OutWidth-1:0] out_re,          // F + CoeffWidth - 1 - Drop fraction bits, as out_im
   output logic signed [OutWidth-1:0] out_im,
-  output logic [1:0]                 saturations  // values clipped in this cycle
+  output logic [1:0]                 saturations      // values clipped in this cycle
 );
 
   localparam int SumWidth = InWidth + CoeffWidth + 1;
