@@ -37,7 +37,7 @@ module burst_timing #(
   if (Latency > Size) begin : g_next
     always_comb begin
       if (started) begin
-        next_burst_behind: cover (out_start && !out_frame_start && start_q[Size-1] && en);
+        next_burst_behind: cover (out_start && !out_frame_start && start_q[Latency-Size-1] && en);
         next_frame: cover (out_frame_start && start_q[Size-1:0] == '0);
       end
     end

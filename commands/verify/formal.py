@@ -109,6 +109,8 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {structure.core}",
         "memory_collect",
+        # gain_map delays colours and position in one memory: as registers, each bit is on its own.
+        "memory_map t:$mem_v2 */*u_map.u_delay.*words %i",
         "opt_clean",
         "simplemap",
         "opt_clean",

@@ -107,7 +107,8 @@ def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: boo
     """
     read = read_commands(core, structure, "" if flat else "--keep-hierarchy")
     units = " ".join(f"{unit}$*" for unit in repository.UNITS)
-    dissolve = f"setattr -mod -set keep_hierarchy 1 *\nsetattr -mod -unset keep_hierarchy {units}\nflatten\n"
+    keep = "setattr -mod -{} keep_hierarchy{} *\n".format
+    dissolve = f"{keep('set', ' 1')}setattr -mod -unset keep_hierarchy {units}\nflatten\n{keep('unset', '')}"
     return (
         f"{read}\nprep {'-flatten ' if flat else ''}-top {core}\n"
         f"{'' if flat else dissolve}opt -full\nopt_clean -purge\n"

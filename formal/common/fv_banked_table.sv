@@ -58,7 +58,7 @@ module fv_banked_table #(
       shown <= read && read_address == watched && known[used];
       expected <= word[used];
     end
-    free_shown <= free_read && free_read_address == watched && known[~used];
+    free_shown <= !rst && free_read && free_read_address == watched && known[~used];
     free_expected <= word[~used];
     if (rst) shown <= 1'b0;
   end

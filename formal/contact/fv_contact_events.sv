@@ -18,7 +18,7 @@ module fv_contact_events
   input logic                    rst,
   input logic                    in_valid,
   input logic                    restart,
-  input logic signed [Width-1:0] in_data,
+  input logic [Width-1:0]        in_data,
   input logic [31:0]             in_time,
   input logic signed [31:0]      on_threshold,
   input logic signed [31:0]      off_threshold,

@@ -6,8 +6,9 @@
 // table_bank counts at once. table_in_use says which bank is in use. Nothing is written while a change-over is due:
 // while table_bank, or the bank named last, is not table_in_use. No word is read in the cycle that writes it.
 // Latency: read_word is valid from 1 cycle after a read with en to the end of the next cycle with en. free_word is
-// valid 1 cycle after free_read, in that cycle alone; after a read in the cycle of a change it is of the bank that was
-// left. File gives both banks at power-up. Bit-accurate model: models/tactile_depth/common/banked_table.py.
+// valid 1 cycle after a free_read outside a reset, in that cycle alone; after a read in the cycle of a change it is of
+// the bank that was left. File gives both banks at power-up. Bit-accurate model:
+// models/tactile_depth/common/banked_table.py.
 
 `default_nettype none
 

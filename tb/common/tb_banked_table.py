@@ -49,10 +49,10 @@ class Bench:
     async def clock(self, reset: bool = False) -> None:
         chance, dut, banks = self.chance, self.dut, self.banks
         en = chance.random() >= self.pause
-        if banks.wanted == banks.in_use and self.begun is None and chance.random() < 0.1:
+        if banks.wanted == banks.in_use and chance.random() < 0.1:  # also while a frame that has begun is on its way
             banks.wanted ^= 1
         settled = banks.wanted == banks.in_use and not reset
-        start = self.begun is None and chance.random() < 0.2
+        start = chance.random() < (0.2 if self.begun is None else 0.1)
         change = self.begun is not None and (self.begun >= 2 or chance.random() < 0.5)
         address, free_address, write_address = (chance.randrange(self.depth) for _ in range(3))
         write = settled and chance.random() < 0.5
