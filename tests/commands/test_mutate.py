@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from commands.common import repository
-from commands.verify import mutate
-from commands.verify.equivalence import HOLDS, Gates, Graph, confined
+from commands.verify import mutants, mutate
+from commands.verify.equivalence import HOLDS, Gates, Graph, confined, graph
 from commands.verify.mutants import SELECTOR
+from commands.verify.structures import structure
 
 SMALL = "burst_counter"
 
@@ -46,6 +47,14 @@ def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     assert result.different > 0
     assert not result.passed
     assert {survivor["verdict"] for survivor in result.survivors} <= {"equivalent", "different"}
+
+
+def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) -> None:
+    """The cores inside are a part of the graph."""
+    core, built = "axil_registers", structure("axil_registers", 0)
+    mutants.make(core, built, 20, 1, tmp_path, flat=mutate.CORES[core].flat)
+    outputs = graph(core, tmp_path, core, built.parameters).outputs
+    assert any("s_axil_rdata" in name for name in outputs)
 
 
 def contrary(mutant: Any) -> Any:
