@@ -240,8 +240,9 @@ async def settings_in_every_bit(dut: Any) -> None:
     """A minimum area in each of its bits, and each bit of the debounce, reach the decision of their own frame."""
     bench = Bench(dut)
     await bench.start()
-    for bit in range(32):
-        await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, 1 << bit % 8))
+    for debounce in (1, 0):  # 1: each bit of the area decides alone
+        for bit in range(32):
+            await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, debounce or 1 << bit % 8))
     await bench.frame(bench.full(1), Settings(0, 0, bench.pixels, 1))
     for count in (8, 7):  # the count of frames so far is less than a debounce with one bit, and the next is not
         for bit in range(count):
