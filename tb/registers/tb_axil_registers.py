@@ -36,6 +36,7 @@ from tb.registers.register_file import (
 from tb.stream import REGRESS
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
+SATURATION_BITS = structs.members("events_t")["saturations"][1]  # of the values clipped in a clock
 # The ends of the map, all of its offsets, and the words between them.
 ADDRESSES = tuple(range(0, max(OFFSET.values()) + 8, BYTES)) + tuple(range(256, 1 << ADDRESS_WIDTH, 64))
 
@@ -358,7 +359,7 @@ async def each_address_reads_its_own(dut: Any) -> None:
             await pulse(dut, first_depth_latency=rng.getrandbits(32), first_depth_latency_valid=1)
             for event in (*EVENT_COUNTERS, "record_valid"):
                 for _ in range(rng.randrange(9)):
-                    await pulse(dut, event, saturations=rng.getrandbits(8), settle=0)
+                    await pulse(dut, event, saturations=rng.getrandbits(SATURATION_BITS), settle=0)
             dut.levels.value = rng.getrandbits(3)
             dut.record.value = rng.getrandbits(32 * len(RECORD))
             for table in CAPTURES:
@@ -431,7 +432,7 @@ async def random_traffic(dut: Any, pressure: float) -> None:
         traffic = [cocotb.start_soon(writes()), cocotb.start_soon(reads())]
         for _ in range(RANDOM_CLOCKS):
             members: dict[str, int] = {event: int(rng.random() < 0.05) for event in EVENTS}
-            members["saturations"] = rng.getrandbits(8) if rng.random() < 0.05 else 0
+            members["saturations"] = rng.getrandbits(SATURATION_BITS) if rng.random() < 0.05 else 0
             dut.events.value = structs.pack("events_t", members)
             dut.first_depth_latency.value = rng.getrandbits(32)
             dut.first_depth_latency_valid.value = rng.random() < 0.05
