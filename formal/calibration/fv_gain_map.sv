@@ -53,6 +53,15 @@ module fv_gain_map #(
   logic [3:0] row, column, position;
   raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
 
+  // Pixels on their way: the one that came n enabled clocks ago is in field n - 1.
+  localparam int ToSum = 7;
+  localparam int Share = 2 * Block;
+  localparam int SumWidth = Width + BlockLog2 + 1;
+  logic [8*ToSum-1:0] places_q;  // {row, column}
+
+  logic bank, used, named, starts_q;
+  assign used = starts_q ? named : bank;
+
   logic started = 1'b0;
   logic [1:0] read_left;  // clocks until what was read stands
   always_comb begin
@@ -74,7 +83,7 @@ module fv_gain_map #(
     $readmemh("gain_0.hex", words_0);
     $readmemh("gain_0.hex", words_1);
   end
-  logic bank, bus_writes;
+  logic bus_writes;
   logic [Width-1:0] written;
   logic [NodeWidth-1:0] node_written;
   assign bus_writes = table_write && table_index[1:0] == 2'(Channel);
@@ -86,9 +95,6 @@ module fv_gain_map #(
       else words_1[node_written] <= written;
     end
   end
-
-  logic used, named, starts_q;
-  assign used = starts_q ? named : bank;
 
   logic [Latency-1:0] valid, data;
   logic held, read_known, changed;
@@ -128,7 +134,7 @@ module fv_gain_map #(
       bank_in_use: assert (table_in_use == bank);
       valid_travels: assert (out_valid == valid[Latency-1]);
       if (out_valid) data_travels: assert (out_data == data[Latency-1]);
-      inside: assert (active == (valid != '0));
+      one_inside: assert (active == (valid != '0));
       if (held) holds: assert ({out_valid, out_data} == out_side_q && out_gains[Channel*Width+:Width] == out_q);
       if (read_known && read_left == 0) entry: assert (table_read_gain == read_gain);
       new_frame_with_new_gains: cover (changed && out_valid && places_q[8*ToSum-1-:8] == '0 && out_gains[Channel*Width]);
@@ -136,11 +142,6 @@ module fv_gain_map #(
     end
   end
 
-  // Pixels on their way: the one that came n enabled clocks ago is in field n - 1.
-  localparam int ToSum = 7;
-  localparam int Share = 2 * Block;
-  localparam int SumWidth = Width + BlockLog2 + 1;
-  logic [8*ToSum-1:0] places_q;  // {row, column}
   function automatic logic [7:0] clamped(input logic [3:0] at_pixel, input int nodes);
     int at;
     at = 2 * 32'(at_pixel) + 1 - Block;
