@@ -7,8 +7,8 @@
 //
 // In brackets: with AutoZero. A tag waits for each frame that is in the solver: whether the frame was malformed,
 // its bank of the zero offset, and its time. A malformed frame does not leave. Stream in: bursts of the solver, Lanes
-// depth codes in a beat. Stream out: those of whole frames under `en`, in the same order. Latency: 0 cycles;
-// with AutoZero 10. Models: models/tactile_depth/frame/, models/tactile_depth/calibration/auto_zero.py.
+// depth codes in a beat. Stream out: those of whole frames under `en`, in the same order. Latency: 0 cycles; with
+// AutoZero that of auto_zero. Models: models/tactile_depth/frame/, models/tactile_depth/calibration/auto_zero.py.
 
 `default_nettype none
 
@@ -37,7 +37,7 @@ module depth_unit
   output logic [3:0]                  table_in_use,
   input  wire capture_command_t       capture_command,
   output capture_status_t             capture_status,
-  output logic                        saturation,   // a depth was clipped
+  output logic [$clog2(Lanes):0]      saturations,  // depths clipped in a cycle
   output logic                        out_of_step,  // a frame does not leave the solver when it is due
   output logic                        busy,         // a frame is in the solver, or here
 
@@ -77,11 +77,14 @@ module depth_unit
   if (AutoZero != 0) begin : g_auto_zero
     localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)));
     logic selected, in_use, zero_active, floor_write, capture_busy, capture_done;
-    logic [NodeWidth-1:0] floor_write_node;
-    logic signed [DataWidth-1:0] floor_written, floor_word;
+    localparam int Side = Lanes >> BlockLog2 > 1 ? Lanes >> BlockLog2 : 1;  // nodes that are captured at once
+    logic [NodeWidth-$clog2(Side)-1:0] floor_write_node;
+    logic [Side*DataWidth-1:0] floor_written;
+    logic signed [DataWidth-1:0] floor_word;
     assign selected = table_command.select == 2'(TableSelectFloor);
     auto_zero #(
-      .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth)
+      .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth),
+      .Lanes(Lanes)
     ) u_auto_zero (
       .clk, .rst, .en, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
       .table_write(table_command.write & selected), .table_read(table_command.read & selected),
@@ -89,10 +92,11 @@ module depth_unit
       .table_read_floor(floor_word),
       .capture_write(floor_write), .capture_write_node(floor_write_node), .capture_floor(floor_written),
       .in_valid(whole_valid), .in_position(whole_position), .in_data(whole_data),
-      .out_valid(depth_valid), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturation
+      .out_valid(depth_valid), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations
     );
     floor_capture #(
-      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(FloorLog2)
+      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(FloorLog2),
+      .Lanes(Lanes)
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
       .busy(capture_busy), .done(capture_done),
@@ -110,7 +114,7 @@ module depth_unit
     assign depth_position = whole_position;
     assign depth_data = whole_data;
     assign depth_time = tag_time;
-    assign {capture_status, table_answer, table_in_use, saturation} = '0;
+    assign {capture_status, table_answer, table_in_use, saturations} = '0;
     assign busy = tags_held | active;
     logic unused_capture;
     assign unused_capture = ^{capture_command, tag_bank};
@@ -122,9 +126,6 @@ module depth_unit
   // A module that does not exist stops every tool where a parameter is refused.
   if (AutoZero < 0 || AutoZero > 1) begin : g_refused_0
     AutoZero_is_0_or_1 u_refused ();
-  end
-  if (AutoZero != 0 && Lanes > 1) begin : g_refused_2
-    AutoZero_takes_one_depth_per_clock_Lanes_must_be_1 u_refused ();
   end
   if (FrameLatency < 1) begin : g_refused_1
     FrameLatency_must_be_at_least_1 u_refused ();

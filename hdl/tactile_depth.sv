@@ -134,6 +134,7 @@ module tactile_depth
   logic burst_start, solved_frame_start;
   logic [Lanes*DataWidth-1:0] solved_data;
   logic [7+$clog2(Lanes):0] solver_saturations;
+  logic [$clog2(Lanes):0] depth_saturations;
   poisson_unit #(
     .TableFolder(TableFolder), .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size),
     .GradientWidth(GradientWidth), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
@@ -147,7 +148,7 @@ module tactile_depth
     .burst_start, .depth_frame_start(solved_frame_start), .depth_data(solved_data), .saturations(solver_saturations)
   );
 
-  logic depth_saturation, out_of_step, depth_busy, depth_valid;
+  logic out_of_step, depth_busy, depth_valid;
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   logic [31:0] depth_time;
@@ -156,7 +157,7 @@ module tactile_depth
     .FrameLatency(FrameLatency), .AutoZero(AutoZero), .BlockLog2(BlockLog2), .FloorLog2(FloorLog2)
   ) u_depth (
     .clk, .rst, .en, .table_command, .table_answer(floor_answer), .table_bank, .table_in_use(floor_in_use),
-    .capture_command(floor_command), .capture_status(floor_status), .saturation(depth_saturation), .out_of_step,
+    .capture_command(floor_command), .capture_status(floor_status), .saturations(depth_saturations), .out_of_step,
     .busy(depth_busy), .pixel_frame_end, .pixel_bad, .frame_time, .burst_start, .solved_frame_start, .solved_data,
     .depth_valid, .depth_position, .depth_data, .depth_time
   );
@@ -177,7 +178,7 @@ module tactile_depth
   events_t events;
   assign events = {
     faults, en & out_of_step, en & pixel_frame_end & ~pixel_bad, frame_leaves, dark, depth_dropped, record_lost,
-    record_valid, 13'(solver_saturations) + 13'(slope_saturations) + 13'(depth_saturation)
+    record_valid, 13'(solver_saturations) + 13'(slope_saturations) + 13'(depth_saturations)
   };
   axil_registers #(
     .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth),

@@ -9,12 +9,18 @@ import numpy as np
 from tb.stream import StreamDriver, depth_position, send_apart
 
 
-def depth_words(frame: Any) -> list[Any]:
-    """Depths (rows, columns) as tuples: frame_start, row_end, frame_end, data."""
-    rows, columns = frame.shape
+def packed(words: Any, width: int) -> list[int]:
+    """Words (beats, lanes) as a number for each beat, the first lane in the lowest bits."""
+    mask = (1 << width) - 1
+    return [sum((word & mask) << width * lane for lane, word in enumerate(beat)) for beat in words.tolist()]
+
+
+def depth_words(frame: Any, width: int, lanes: int = 1) -> list[Any]:
+    """Depths (rows, columns) as beats: frame_start, row_end, frame_end, data of all lanes."""
+    rows, columns = frame.shape[0], frame.shape[1] // lanes
     end = rows * columns - 1
-    data = frame.reshape(-1).tolist()
-    return [(at == 0, at % columns == columns - 1, at == end, depth) for at, depth in enumerate(data)]
+    data = packed(frame.reshape(-1, lanes), width)
+    return [(at == 0, at % columns == columns - 1, at == end, depths) for at, depths in enumerate(data)]
 
 
 def random_depths(shape: Any, width: int, chance: random.Random) -> Any:

@@ -64,6 +64,7 @@ class Gains:
     name = "gain"  # of a word, in the pins of the bus
     capture_pin = "capture_gains"
     width, per_node = GAIN_WIDTH, ENTRIES_PER_NODE
+    side = 1  # nodes that the capture writes at once
 
     def __init__(self, dut: Any, config: Configuration) -> None:
         self.dut, self.config = dut, config
@@ -122,7 +123,7 @@ class Gains:
         """All nodes of the bank that is not in use, as reference_capture writes them; each is read a little later."""
         await self.changed()
         mask = (1 << self.width) - 1
-        nodes = gains.reshape(-1, self.channels).tolist()
+        nodes = gains.reshape(-1, self.side * self.channels).tolist()
         words = [sum((word & mask) << self.width * c for c, word in enumerate(node)) for node in nodes]
         for clock in range(len(words) + 3):
             writes, reads = clock < len(words), 0 <= clock - 2 < len(words)

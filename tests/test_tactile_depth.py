@@ -25,6 +25,14 @@ STRUCTURES: dict[str, tuple[dict[str, Any], dict[str, str]]] = {  # choices of t
     "tridiagonal-21x16-neumann": (TRIDIAGONAL | {"rows": 21, "data_width": 27, "neumann": True}, FORMATS),
     "tridiagonal-9x32-4-lanes": (TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2}, FORMATS),
     "tridiagonal-8x16-2-lanes": (TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True}, FORMATS),
+    "tridiagonal-9x32-4-lanes-sensor": (
+        TRIDIAGONAL | FLAT_QUADRATIC | {"columns": 32, "rows": 9, "lanes": 4, "neumann": True, "auto_zero": True},
+        FORMATS,
+    ),
+    "tridiagonal-21x16-2-lanes-zero": (
+        TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "auto_zero": True},
+        FORMATS,
+    ),
     "tridiagonal-8x16-quadratic": (TRIDIAGONAL | FLAT_QUADRATIC, FORMATS),
     "16-flat-neumann": ({"columns": 16, "flat_field": True, "neumann": True, "auto_zero": True}, FORMATS),
     "tridiagonal-8x16-zero": (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "auto_zero": True}, FORMATS),
@@ -61,7 +69,7 @@ def run(
 @pytest.mark.structures(
     "name",
     verilator=[("tridiagonal-8x16-quadratic",), ("tridiagonal-8x16",), ("16-24",)],
-    icarus=[("tridiagonal-8x16-zero",), ("tridiagonal-9x32-4-lanes",)],
+    icarus=[("tridiagonal-8x16-zero",), ("tridiagonal-9x32-4-lanes-sensor",)],
     regress=[
         ("32-12",),
         ("tridiagonal-8x16-quadratic",),
@@ -71,10 +79,12 @@ def run(
         ("16-27-neumann",),
         ("tridiagonal-21x16-neumann",),
         ("tridiagonal-8x16-2-lanes",),
+        ("tridiagonal-9x32-4-lanes",),
+        ("tridiagonal-21x16-2-lanes-zero",),
     ],
     regress_verilator=[
         ("tridiagonal-8x16-2-lanes",),
-        ("tridiagonal-9x32-4-lanes",),
+        ("tridiagonal-9x32-4-lanes-sensor",),
         ("tridiagonal-8x16-zero",),
         ("16-flat-neumann",),
         ("16-27-neumann",),

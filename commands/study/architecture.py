@@ -83,7 +83,7 @@ def cycles(config: Configuration) -> list[tuple[object, ...]]:
     rows += [
         ("poisson_unit", "dst_inverse, of the first row out", inverse),
         ("poisson_unit", "row_reorder, waits for the whole row", size - 1 + latency.ROW_REORDER),
-        ("depth_unit", "auto_zero", latency.AUTO_ZERO if config.auto_zero else 0),
+        ("depth_unit", "auto_zero", latency.zero_offset_latency(config)),
         ("contact_unit", "depth_gate", latency.AXIS_SKID),
     ]
     total = sum(row[2] for row in rows)

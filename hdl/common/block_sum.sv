@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// block_sum: sums of the words in blocks of 2^BlockLog2 by 2^BlockLog2, over one frame or several.
+// block_sum: sums of the words in blocks of 2^BlockLog2 rows by 2^ColumnLog2 words, over one frame or several.
 //
 //   sum of a block = all its words in the frames since a first one, modulo 2^SumWidth
 //
@@ -17,12 +17,13 @@ module block_sum #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
+  parameter int ColumnLog2 = BlockLog2,  // of the words in a row of a block
   parameter int Channels  = 1,
   parameter int Width     = 24,  // of a word
   parameter int Signed    = 1,   // 1: words are signed
   parameter int SumWidth  = 38,
   localparam int BlockRows = Rows / (1 << BlockLog2),
-  localparam int BlockColumns = Columns / (1 << BlockLog2),
+  localparam int BlockColumns = Columns / (1 << ColumnLog2),
   localparam int BlockWidth = $clog2(BlockRows * BlockColumns)
 ) (
   input  wire                          clk,
@@ -43,7 +44,8 @@ module block_sum #(
 
   localparam int ColumnWidth = $clog2(Columns);
   localparam int RowWidth = $clog2(Rows) + 1;
-  localparam int RowSumWidth = Width + BlockLog2;
+  localparam int RowSumWidth = Width + ColumnLog2;
+  localparam logic [ColumnWidth-1:0] InBlock = ColumnWidth'((1 << ColumnLog2) - 1);  // bits of the column
 
   logic valid_q, first_frame, last_frame;
   logic [Channels*Width-1:0] data_q;
@@ -56,10 +58,10 @@ module block_sum #(
   logic [2:0] completes_q;
   logic [1:0] begins_q;
   logic [BlockWidth-1:0] block, block_q, block_q2, block_q3;
-  assign row_ends = valid_q & column[BlockLog2-1:0] == '1 & row < RowWidth'($unsigned(BlockRows << BlockLog2));
+  assign row_ends = valid_q & (column & InBlock) == InBlock & row < RowWidth'($unsigned(BlockRows << BlockLog2));
   assign begins = first_frame & row[BlockLog2-1:0] == '0;
   assign completes = last_frame & row[BlockLog2-1:0] == '1;
-  assign block = BlockWidth'({row[RowWidth-1:BlockLog2], column[ColumnWidth-1:BlockLog2]});
+  assign block = BlockWidth'({row[RowWidth-1:BlockLog2], column[ColumnWidth-1:ColumnLog2]});
 
   assign read_en = row_ends_q[0] & ~begins_q[0];
   assign read_block = block_q;
@@ -92,7 +94,8 @@ module block_sum #(
     assign write_sums[c*SumWidth+:SumWidth] = sum;
     always_ff @(posedge clk) begin
       if (valid_q) begin
-        row_sum <= (column[BlockLog2-1:0] == '0 ? '0 : row_sum) + {{BlockLog2{Signed != 0 & word[Width-1]}}, word};
+        row_sum <= ((column & InBlock) == '0 ? '0 : row_sum)
+            + (Signed != 0 ? RowSumWidth'($signed(word)) : RowSumWidth'(word));
       end
       row_sum_q <= row_sum;
       sum <= (begins_q[1] ? '0 : read_sums[c*SumWidth+:SumWidth])
@@ -102,7 +105,7 @@ module block_sum #(
 
   // A module that does not exist stops every tool where a parameter is refused.
   if (BlockLog2 < 1) begin : g_refused_0
-    BlockLog2_must_be_at_least_1_an_addition_takes_two_clocks u_refused ();
+    BlockLog2_must_be_at_least_1 u_refused ();
   end
   if (Columns != 1 << ColumnWidth) begin : g_refused_1
     Columns_must_be_a_power_of_two u_refused ();
@@ -111,7 +114,10 @@ module block_sum #(
     two_blocks_a_row_and_one_a_column_are_needed u_refused ();
   end
   if (SumWidth <= RowSumWidth) begin : g_refused_3
-    SumWidth_must_be_more_than_Width_plus_BlockLog2 u_refused ();
+    SumWidth_must_be_more_than_Width_plus_ColumnLog2 u_refused ();
+  end
+  if (Columns < 4) begin : g_refused_4
+    four_words_a_row_are_needed_an_addition_takes_two_clocks u_refused ();
   end
 
 endmodule

@@ -210,8 +210,6 @@ class Configuration:
         if self.lanes & (self.lanes - 1):
             lower = 1 << (self.lanes.bit_length() - 1)
             raise InputError(f"lanes={self.lanes} is not a power of two: try lanes={lower} or lanes={2 * lower}")
-        if self.auto_zero and self.lanes > 1:
-            raise InputError(f"lanes={self.lanes} with auto_zero, which takes one depth value per clock: set lanes=1")
 
     # Widths.
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from tactile_depth.calibration import floor_map
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.transform.sdf_fft import twiddle_stages
@@ -21,7 +22,6 @@ DIVERGENCE = 2
 GRADIENT_LOOKUP = 4
 GAIN_MAP = 9
 FLAT_FIELD = GAIN_MAP + 3
-AUTO_ZERO = GAIN_MAP + 1
 QUADRATIC_GRADIENT = 11
 FRAME_GUARD = 1
 AXIS_SKID = 1
@@ -75,6 +75,11 @@ def tridiagonal_solver_latency(size: int, lanes: int = 1) -> int:
     return down + up + (ROW_REORDER if lanes == 1 else CORNER_TURN)
 
 
+def auto_zero_latency(lanes: int, block_log2: int) -> int:
+    """Return the latency of auto_zero: gain_map, or floor_map with several lanes, and the subtraction."""
+    return (GAIN_MAP if lanes == 1 else floor_map.latency(lanes, block_log2)) + 1
+
+
 def pixel_format_latency(camera: CameraConfiguration) -> int:
     """Return the latency of pixel_format; YUYV: of the second pixel of a pair, one more than of its first."""
     return 4 if camera.pixel_format == "yuyv" else 1
@@ -106,8 +111,12 @@ def frame_latency(config: Configuration) -> int:
 
 def last_pixel_to_first_depth(config: Configuration) -> int:
     """Return the cycles of the pipeline from the last pixel of a frame to its first depth, for any gaps."""
-    zero = AUTO_ZERO if config.auto_zero else 0
-    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero + AXIS_SKID
+    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero_offset_latency(config) + AXIS_SKID
+
+
+def zero_offset_latency(config: Configuration) -> int:
+    """Return the cycles that the zero offset takes."""
+    return auto_zero_latency(config.lanes, config.reference_block_log2) if config.auto_zero else 0
 
 
 def last_pixel_to_last_depth(config: Configuration) -> int:

@@ -83,9 +83,13 @@ def write_gains(folder: Path, gains: np.ndarray, width: int = GAIN_WIDTH) -> Non
         write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
 
 
-def write_floor(folder: Path, floor: np.ndarray, width: int) -> None:
-    """Write depth codes (node rows, node columns) as auto_zero.sv reads them: offset binary, one word per node."""
-    write_words(folder / "floor_0.hex", floor.ravel() + (1 << width - 1), width)
+def write_floor(folder: Path, floor: np.ndarray, width: int, side: int = 1) -> None:
+    """Write depth codes (node rows, node columns) as auto_zero.sv reads them: offset binary, one word per node.
+
+    With `side` neighbouring nodes in a word of the memory there are as many files, each with every side-th node.
+    """
+    for file in range(side):
+        write_words(folder / f"floor_{file}.hex", floor.ravel()[file::side] + (1 << width - 1), width)
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_depth.calibration import floor_map
 from tactile_depth.calibration.auto_zero import auto_zero, no_floor
 from tactile_depth.calibration.flat_field import (
     PixelGains,
@@ -214,7 +215,8 @@ def write_roms(
         require_nodes("floor", floor, config.reference_nodes)
     write_solver(folder, config)
     if config.auto_zero:
-        write_floor(folder, no_floor(config) if floor is None else floor, config.depth.width)
+        side = floor_map.side(config.lanes, config.reference_block_log2)
+        write_floor(folder, no_floor(config) if floor is None else floor, config.depth.width, side)
     if config.flat_field:
         write_gains(folder, reference_gains(calibration, config) if gains is None else gains)
     if config.gradient_model == "quadratic":

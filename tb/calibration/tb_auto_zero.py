@@ -9,13 +9,14 @@ import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
+from tactile_depth.calibration import floor_map
 from tactile_depth.calibration.auto_zero import auto_zero, interpolated_floor
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.latency import AUTO_ZERO
-from tb.depth_frames import DepthDriver, depth_words, random_depths
+from tactile_depth.latency import auto_zero_latency
+from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.gains import Gains, Grid
-from tb.stream import Bench, depth_position, places, sample
+from tb.stream import Bench, depth_position, parameters, places, sample
 
 WORDS = 2048  # that a test sends, at least
 
@@ -35,6 +36,8 @@ class Floors(Gains):
 
     def __init__(self, dut: Any, config: Configuration) -> None:
         self.width = config.depth.width
+        (lanes,) = parameters(dut, "Lanes")
+        self.side = floor_map.side(lanes, config.reference_block_log2)
         super().__init__(dut, config)
 
     def at_power_up(self) -> Any:
@@ -59,20 +62,23 @@ class Zero:
         self.large = self.config.rows * self.config.columns > WORDS  # then a few frames must do
         self.bench = Bench(dut, pause)
         self.chance = self.bench.random
+        (self.lanes,) = parameters(dut, "Lanes")
+        self.latency = auto_zero_latency(self.lanes, self.config.reference_block_log2)
         self.floors = Floors(dut, self.config)
         self.driver = DepthDriver(dut, self.bench, gap)
         self.monitor = Monitor()
-        self.counted = 0  # of `saturation`
+        self.counted = 0  # of `saturations`
         self.forget()
 
     def forget(self) -> None:
         """Forget the words sent, those inside, and those due."""
         self.sent: list[Any] = []
         self.taken = 0
-        self.expected: list[Any] = []
+        self.expected: list[Any] = []  # of each beat: data, values clipped
         self.used: list[Any] = []
-        self.inside: deque[int | None] = deque([None] * AUTO_ZERO)
-        self.clipped = self.begun = False
+        self.inside: deque[int | None] = deque([None] * self.latency)
+        self.begun = False
+        self.clipped = 0
 
     async def start(self, written: bool = True) -> None:
         await self.bench.start()
@@ -80,7 +86,7 @@ class Zero:
         cocotb.start_soon(self.watch())
 
     async def watch(self) -> None:
-        """Clock by clock: a word leaves AUTO_ZERO enabled clocks after it came, and is counted as it comes out."""
+        """Clock by clock: a beat leaves `latency` enabled clocks after it came, and is counted as it comes out."""
         dut = self.dut
         while True:
             await RisingEdge(dut.clk)
@@ -88,26 +94,26 @@ class Zero:
                 continue
             active = self.begun or any(index is not None and self.sent[index][2] for index in self.inside)
             assert bool(dut.active.value) == active, f"active is {dut.active.value}"
-            assert bool(dut.saturation.value) == self.clipped, f"saturation is {dut.saturation.value}"
+            assert int(dut.saturations.value) == self.clipped, f"saturations is {dut.saturations.value}"
             self.counted += self.clipped
-            self.clipped = False
+            self.clipped = 0
             if not dut.en.value:
                 continue
             leaves = self.inside.pop()
             assert bool(dut.out_valid.value) == (leaves is not None), f"out_valid is {dut.out_valid.value}"
             if leaves is not None:
-                position, got = int(dut.out_position.value), dut.out_data.value.to_signed()
-                assert position == depth_position(*self.sent[leaves][:3]), f"word {leaves}: position {position:03b}"
-                assert got == self.expected[leaves][0], f"word {leaves}: {got}, not {self.expected[leaves][0]}"
+                position, got = int(dut.out_position.value), int(dut.out_data.value)
+                assert position == depth_position(*self.sent[leaves][:3]), f"beat {leaves}: position {position:03b}"
+                assert got == self.expected[leaves][0], f"beat {leaves}: {got:#x}, not {self.expected[leaves][0]:#x}"
             comes = None
             if dut.in_valid.value:
                 comes, self.taken = self.taken, self.taken + 1
                 *marks, data = self.sent[comes]
-                pins = int(dut.in_position.value), dut.in_data.value.to_signed()
+                pins = int(dut.in_position.value), int(dut.in_data.value)
                 assert pins == (depth_position(*marks), data), "the driver sent something else"
                 self.begun = not marks[2]
             self.inside.appendleft(comes)
-            self.clipped = self.inside[-1] is not None and self.expected[self.inside[-1]][1]
+            self.clipped = 0 if self.inside[-1] is None else self.expected[self.inside[-1]][1]
 
     def depths(self, floor: np.ndarray | None = None) -> Any:
         """A frame; with a floor some are at its level, or just within the range and just outside."""
@@ -123,12 +129,12 @@ class Zero:
         for _ in range(frames):
             floor = self.floors.begin_frame()[..., 0].copy()
             frame = self.depths(floor) if depths is None else depths
-            words = depth_words(frame)[:count]
+            words = depth_words(frame, self.width, self.lanes)[:count]
             self.sent += words
             self.used.append(floor.tobytes())
-            zeroed = auto_zero(frame, floor, self.config, self.monitor).reshape(-1)
-            clipped = (frame - interpolated_floor(floor, self.config)).reshape(-1) != zeroed
-            self.expected += zip(zeroed.tolist(), clipped.tolist(), strict=True)
+            zeroed = auto_zero(frame, floor, self.config, self.monitor)
+            clipped = (frame - interpolated_floor(floor, self.config) != zeroed).reshape(-1, self.lanes).sum(axis=1)
+            self.expected += zip(packed(zeroed.reshape(-1, self.lanes), self.width), clipped.tolist(), strict=True)
             await self.driver.words(words)
 
     async def reset(self, en: Any) -> None:
@@ -139,7 +145,7 @@ class Zero:
 
     async def check(self) -> None:
         """When all has left."""
-        await self.bench.clocks(AUTO_ZERO + 3)
+        await self.bench.clocks(self.latency + 3)
         assert self.taken == len(self.sent) == len(self.expected)
         assert not any(index is not None for index in self.inside)
 
@@ -211,8 +217,9 @@ async def resets(dut: Any) -> None:
     """In mid-frame: no word of before leaves or is counted; floors stay; a change-over that is due is made."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()
-    size = device.config.rows * device.config.columns
-    counts = (1, 2, 3, 4, 8, 9, 10, 11, 12, 2 * device.config.columns + 3, size)
+    row = device.config.columns // device.lanes
+    size = device.config.rows * row
+    counts = (1, 2, 3, 4, *range(device.latency - 2, device.latency + 3), 2 * row + 3, size)
     for turn, count in enumerate(counts[-2:] if device.large else counts):
         await device.floors.write(device.floors.random(device.chance))
         await device.send(count=count)
@@ -220,6 +227,6 @@ async def resets(dut: Any) -> None:
             device.floors.change()
         await device.reset(en=turn % 2)
         if count % 3:
-            await device.bench.clocks(AUTO_ZERO + 2)
+            await device.bench.clocks(device.latency + 2)
         await device.send()
         await device.check()

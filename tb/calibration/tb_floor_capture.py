@@ -2,15 +2,17 @@
 """floor_capture against its model in every clock: what it writes and when, requests at any time, resets."""
 
 import itertools
+from collections import deque
 from typing import Any
 
 import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.calibration.floor_capture import CLOCKS, captured_floor
+from tactile_depth.calibration.floor_capture import captured_floor, cycles, levels
+from tactile_depth.calibration.floor_map import side
 from tb.calibration.capture_bench import request, request_after
-from tb.depth_frames import DepthDriver, depth_words, random_depths
+from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.gains import Grid
 from tb.stream import REGRESS, Bench, parameters, sample
 
@@ -23,15 +25,22 @@ class Capture:
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut = dut
         self.config = Grid.of(dut)
-        (self.largest,) = parameters(dut, "MaxLog2")
+        self.largest, self.lanes = parameters(dut, "MaxLog2", "Lanes")
+        block_log2 = self.config.reference_block_log2
+        self.side, self.levels = side(self.lanes, block_log2), levels(self.lanes, block_log2)
+        self.clocks = cycles(self.lanes, block_log2)
         self.shape = (self.config.rows, self.config.columns)
-        self.size = self.config.rows * self.config.columns
+        self.row = self.config.columns // self.lanes  # beats of a row
+        self.size = self.config.rows * self.row
         self.width = self.config.depth.width
         self.bench = Bench(dut, pause)
         self.chance = self.bench.random
         self.driver = DepthDriver(dut, self.bench, gap)
         self.frame: Any = None  # that is being sent
-        self.place = 0  # of the next word in its frame
+        self.place = 0  # of the next beat in its frame
+        self.under_way: deque[Any] = deque(
+            [None] * self.levels
+        )  # frames of the beats that are being added up, None: no beat
         self.busy = self.inside = False
         # frames since the request, and how many it wants
         self.taken: list[Any] = []
@@ -62,6 +71,7 @@ class Capture:
                 assert not dut.map_write.value, "a write in reset"
                 self.stop()
                 self.busy, self.place = False, 0
+                self.under_way = deque([None] * self.levels)
                 continue
             done = clock == self.due
             assert bool(dut.done.value) == done, f"done is {dut.done.value}, {self.due and self.due - clock} clocks off"
@@ -69,43 +79,46 @@ class Capture:
             write = self.writes.pop(clock, None)
             assert bool(dut.map_write.value) == (write is not None), f"map_write is {dut.map_write.value}"
             if write is not None:
-                assert (int(dut.map_write_node.value), dut.map_write_floor.value.to_signed()) == write
+                assert (int(dut.map_write_node.value), int(dut.map_write_floor.value)) == write
             if done:
                 self.stop()
                 self.busy = False
                 self.captures += 1
-            if dut.en.value and dut.in_valid.value:
-                self.take(clock)
+            self.under_way.append(self.frame if dut.en.value and dut.in_valid.value else None)
+            frame = self.under_way.popleft()
+            if frame is not None:
+                self.take(clock, frame)
             if dut.request.value:
                 self.stop()
                 self.busy, self.taken = True, []
 
-    def take(self, clock: Any) -> None:
-        """A word."""
-        row, column = divmod(self.place, self.shape[1])
+    def take(self, clock: Any, frame: Any) -> None:
+        """A beat, `levels` clocks after it came."""
+        row, beat = divmod(self.place, self.row)
         if self.place == 0:
             self.inside = self.busy and self.floor is None
             if self.inside:
                 if not self.taken:
                     self.count = 1 << min(int(self.dut.log2_frames.value), self.largest)
-                self.taken.append(self.frame)
+                self.taken.append(frame)
                 if len(self.taken) == self.count:
                     self.floor = captured_floor(np.array(self.taken), self.config)
         self.place = (self.place + 1) % self.size
         log2, (rows, columns) = self.config.reference_block_log2, self.config.reference_nodes
         last = (1 << log2) - 1
-        node_row, node_column = row >> log2, column >> log2
-        if not self.inside or self.floor is None or node_row >= rows or row & last != last or column & last != last:
+        node_row, end = row >> log2, (beat + 1) * self.lanes  # the column behind the beat
+        if not self.inside or self.floor is None or node_row >= rows or row & last != last or end & last:
             return
-        node = node_row * columns + node_column
-        self.writes[clock + CLOCKS - 1] = (node, int(self.floor[node_row, node_column]))
-        if node == rows * columns - 1:
-            self.due = clock + CLOCKS
+        behind = node_row * columns + (end >> log2)  # the last node of the beat
+        (word,) = packed(self.floor.reshape(-1)[None, behind - self.side : behind], self.width)
+        self.writes[clock + self.clocks - self.levels - 1] = (behind // self.side - 1, word)
+        if behind == rows * columns:
+            self.due = clock + self.clocks - self.levels
 
     async def send(self, depths: Any = None, count: int | None = None) -> None:
         """A frame, or its first words."""
         self.frame = random_depths(self.shape, self.width, self.chance) if depths is None else depths
-        await self.driver.words(depth_words(self.frame)[:count])
+        await self.driver.words(depth_words(self.frame, self.width, self.lanes)[:count])
 
     request = request
 
@@ -114,7 +127,7 @@ class Capture:
         before = self.captures
         while self.captures == before:
             await self.send(depths)
-            for _ in range(self.chance.choice((0, CLOCKS + 2))):
+            for _ in range(self.chance.choice((0, self.clocks + 2))):
                 await RisingEdge(self.dut.clk)
 
 
@@ -172,10 +185,10 @@ async def requests_at_any_time(dut: Any, pause: float) -> None:
     device = Capture(dut, 0.0, pause)
     await device.start()
     size = device.size
-    waits = [*range(8), *range(size - 2, size + CLOCKS + 4), 2 * size]
-    rows = size - size % (device.shape[1] << device.config.reference_block_log2)  # words before a cut row of blocks
-    waits += range(rows - 3, rows + CLOCKS + 3)
-    waits += [device.chance.randrange(size + CLOCKS) for _ in range(20)]
+    waits = [*range(8), *range(size - 2, size + device.clocks + 4), 2 * size]
+    rows = size - size % (device.row << device.config.reference_block_log2)  # beats before a cut row of blocks
+    waits += range(rows - 3, rows + device.clocks + 3)
+    waits += [device.chance.randrange(size + device.clocks) for _ in range(20)]
     if size > WORDS:
         waits = device.chance.sample(waits, 1)
     elif not REGRESS:
@@ -188,11 +201,11 @@ async def resets(dut: Any) -> None:
     """A reset ends a capture; nothing is written in it or after it; the next request is served."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()
-    size, columns = device.shape[0] * device.shape[1], device.shape[1]
-    block = columns << device.config.reference_block_log2  # words of a row of blocks
+    size, columns = device.size, device.row
+    block = columns << device.config.reference_block_log2  # beats of a row of blocks
     counts = [1, 2, 3, 4, 5, 6, *range(block - columns, block + 8), size - 1, size]
     for turn, count in enumerate(counts if size <= WORDS else []):
-        for wait in range(CLOCKS + 2) if count == size else (0, 3):
+        for wait in range(device.clocks + 2) if count == size else (0, 3):
             await device.request(0)
             await device.send(count=count)
             for _ in range(wait):

@@ -13,7 +13,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.common.block_sum import CYCLES_TO_SUM, block_sum
 from tb.stream import CLOCK_NS, MANY, parameters
 
-NAMES = ("Rows", "Columns", "BlockLog2", "Channels", "Width", "Signed", "SumWidth")
+NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
 
 
 class Device:
@@ -21,10 +21,9 @@ class Device:
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
-        self.rows, self.columns, self.log2, self.channels, self.width, self.signed, self.sum_width = parameters(
-            dut, *NAMES
-        )
-        self.blocks = (self.rows >> self.log2, self.columns >> self.log2)
+        self.rows, self.columns, self.log2, self.column_log2, *more = parameters(dut, *NAMES)
+        self.channels, self.width, self.signed, self.sum_width = more
+        self.blocks = (self.rows >> self.log2, self.columns >> self.column_log2)
         self.chance = random.Random(cocotb.RANDOM_SEED)
         self.generator = np.random.default_rng(cocotb.RANDOM_SEED)
         self.memory: dict[int, int] = {}
@@ -88,10 +87,10 @@ class Device:
     async def frame(self, first: bool, last: bool, count: int | None = None) -> None:
         """Send a frame, or its first words; sums add up."""
         words = self.frame_words()
-        totals = block_sum(words[None, ...], self.log2)[0]
+        totals = block_sum(words[None, ...], self.log2, self.column_log2)[0]
         before = np.zeros_like(self.sums) if first else self.sums
         rows, columns = self.blocks
-        size = 1 << self.log2
+        size, wide = 1 << self.log2, 1 << self.column_log2
         for place, word in enumerate(words.reshape(-1, self.channels)[:count]):
             while self.chance.random() < self.gap:
                 await self.idle()
@@ -99,9 +98,9 @@ class Device:
             self.drive(True, self.packed(word, self.width), int(place == 0), *marks)
             await self.edge()
             row, column = divmod(place, self.columns)
-            if column % size == size - 1 and row < rows * size:
-                so_far = words[row // size * size : row + 1, column - size + 1 : column + 1].sum(axis=(0, 1))
-                at = row // size, column // size
+            if column % wide == wide - 1 and row < rows * size:
+                so_far = words[row // size * size : row + 1, column - wide + 1 : column + 1].sum(axis=(0, 1))
+                at = row // size, column // wide
                 total = self.packed(before[at] + so_far, self.sum_width)
                 complete = last and row % size == size - 1
                 self.due[self.clock + CYCLES_TO_SUM] = at[0] * columns + at[1], total, complete

@@ -9,6 +9,7 @@ import pytest
 
 from tactile_depth.calibration.auto_zero import auto_zero, exact_zero, interpolated_floor, no_floor
 from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.calibration.floor_map import side
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.rom_files import write_floor
@@ -16,18 +17,28 @@ from tb.stream import places
 
 
 @pytest.mark.structures(
-    "columns rows block_log2 width",
-    verilator=[(16, 15, 2, 4)],
-    icarus=[(16, 8, 1, 24), (4, 2, 1, 5)],
-    regress=[(16, 16, 1, 12), (16, 15, 2, 4), (32, 21, 1, 16), (128, 8, 3, 32), (64, 64, 2, 24)],
-    regress_verilator=[(16, 8, 1, 24)],
+    "columns rows block_log2 width lanes",
+    verilator=[(16, 15, 2, 4, 1), (32, 15, 2, 8, 4)],
+    icarus=[(16, 8, 1, 24, 1), (4, 2, 1, 5, 1), (16, 11, 2, 6, 2)],
+    regress=[
+        (16, 16, 1, 12, 1),
+        (16, 15, 2, 4, 1),
+        (32, 21, 1, 16, 1),
+        (128, 8, 3, 32, 1),
+        (64, 64, 2, 24, 1),
+        (16, 16, 1, 12, 4),
+        (128, 21, 3, 24, 8),
+        (256, 8, 3, 32, 32),
+        (64, 19, 5, 16, 4),
+    ],
+    regress_verilator=[(16, 8, 1, 24, 1)],
 )
-def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int) -> None:
+def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, lanes: int) -> None:
     floor = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
     run_tb(
         "auto_zero",
-        {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width},
-        roms=lambda folder: write_floor(folder, floor, width),
+        {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "Lanes": lanes},
+        roms=lambda folder: write_floor(folder, floor, width, side(lanes, block_log2)),
     )
 
 

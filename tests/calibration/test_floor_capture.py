@@ -13,20 +13,22 @@ from tb.stream import REGRESS
 
 
 @pytest.mark.structures(
-    "columns rows block_log2 width largest",
-    verilator=[(16, 8, 1, 24, LARGEST_LOG2 if REGRESS else 5)],
-    icarus=[(4, 5, 1, 4, 2), (4, 2, 1, 6, 1)],
+    "case",  # columns, rows, block_log2, width, largest, lanes
+    verilator=[((16, 8, 1, 24, LARGEST_LOG2 if REGRESS else 5, 1),), ((32, 13, 2, 20, 3, 4),)],
+    icarus=[((4, 5, 1, 4, 2, 1),), ((4, 2, 1, 6, 1, 1),), ((16, 11, 2, 5, 2, 2),), ((16, 5, 1, 4, 1, 4),)],
     regress=[
-        (32, 21, 1, 12, 1),
-        (16, 16, 2, 24, 3),
-        (128, 20, 3, 16, 1),
-        (16, 9, 1, 32, 0),
-        (16, 8, 1, 24, LARGEST_LOG2),
+        ((32, 21, 1, 12, 1, 1),),
+        ((16, 16, 2, 24, 3, 1),),
+        ((128, 20, 3, 16, 1, 1),),
+        ((16, 9, 1, 32, 0, 1),),
+        ((16, 8, 1, 24, LARGEST_LOG2, 1),),
+        ((128, 20, 3, 24, 2, 8),),
+        ((256, 9, 3, 24, 1, 32),),
     ],
 )
-def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, largest: int) -> None:
-    parameters = {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "MaxLog2": largest}
-    run_tb("floor_capture", parameters)
+def test_rtl(run_tb: Callable[..., None], case: tuple[int, ...]) -> None:
+    names = ("Columns", "Rows", "BlockLog2", "Width", "MaxLog2", "Lanes")
+    run_tb("floor_capture", dict(zip(names, case, strict=True)))
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])

@@ -13,13 +13,13 @@ from tactile_depth.common.block_sum import block_sum
 
 
 @pytest.mark.structures(
-    "case",  # rows, columns, block_log2, channels, width, signed, sum_width
-    verilator=[((21, 16, 2, 1, 24, 1, 38),)],
-    icarus=[((5, 8, 1, 3, 8, 0, 11),), ((5, 4, 1, 1, 4, 1, 8),)],
-    regress=[((8, 16, 1, 3, 8, 0, 24),), ((16, 16, 3, 1, 12, 1, 24),)],
+    "case",  # rows, columns, block_log2, column_log2, channels, width, signed, sum_width
+    verilator=[((21, 16, 2, 2, 1, 24, 1, 38),)],
+    icarus=[((5, 8, 1, 1, 3, 8, 0, 11),), ((5, 4, 1, 1, 1, 4, 1, 8),), ((7, 4, 1, 0, 2, 5, 1, 10),)],
+    regress=[((8, 16, 1, 1, 3, 8, 0, 24),), ((16, 16, 3, 3, 1, 12, 1, 24),), ((21, 16, 3, 1, 1, 24, 1, 38),)],
 )
 def test_rtl(run_tb: Callable[..., None], case: tuple[int, ...]) -> None:
-    names = ("Rows", "Columns", "BlockLog2", "Channels", "Width", "Signed", "SumWidth")
+    names = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
     run_tb("block_sum", dict(zip(names, case, strict=True)))
 
 

@@ -24,6 +24,7 @@ def auto_zero_parameters(config: Configuration) -> dict[str, int]:
         "Columns": config.columns,
         "BlockLog2": config.reference_block_log2,
         "Width": config.depth.width,
+        "Lanes": config.lanes,
     }
 
 

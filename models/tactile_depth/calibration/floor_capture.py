@@ -12,13 +12,21 @@ from tactile_depth.configuration import Configuration
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; it equals that of reference_capture."""
-CLOCKS = CYCLES_TO_SUM + 2
-"""Cycles from the last word of the last row of blocks to `done`."""
 
 
 def floor_capture_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/calibration/floor_capture.sv."""
     return {**auto_zero_parameters(config), "MaxLog2": LARGEST_LOG2}
+
+
+def levels(lanes: int, block_log2: int) -> int:
+    """Return the levels in which the depths of a beat, or of a block, are added up; each takes a cycle."""
+    return min(lanes.bit_length() - 1, block_log2)
+
+
+def cycles(lanes: int, block_log2: int) -> int:
+    """Return the cycles from the last beat of the last row of blocks to `done`."""
+    return levels(lanes, block_log2) + CYCLES_TO_SUM + 2
 
 
 def captured_floor(codes: np.ndarray, config: Configuration) -> np.ndarray:

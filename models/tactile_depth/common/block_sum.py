@@ -9,8 +9,8 @@ CYCLES_TO_SUM = 4
 """Cycles from the last word of a block's row to the write of its sum."""
 
 
-def block_sum(frames: np.ndarray, block_log2: int) -> np.ndarray:
-    """Return the sum of each whole block of 2**block_log2 by 2**block_log2 words.
+def block_sum(frames: np.ndarray, block_log2: int, column_log2: int | None = None) -> np.ndarray:
+    """Return the sum of each whole block of 2**block_log2 rows by 2**column_log2 words, by default as many.
 
     Parameters
     ----------
@@ -22,5 +22,6 @@ def block_sum(frames: np.ndarray, block_log2: int) -> np.ndarray:
     """
     count, rows, columns, *channels = frames.shape
     block = 1 << block_log2
-    whole = frames[:, : rows // block * block, : columns // block * block]
-    return whole.reshape(count, rows // block, block, columns // block, block, *channels).sum(axis=(2, 4))
+    wide = block if column_log2 is None else 1 << column_log2
+    whole = frames[:, : rows // block * block, : columns // wide * wide]
+    return whole.reshape(count, rows // block, block, columns // wide, wide, *channels).sum(axis=(2, 4))
