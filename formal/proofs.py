@@ -11,6 +11,7 @@ from formal.entries import FULL_WIDTH, ONE_ORDER, ROUNDING, WORD_FREE, Proof, St
 from formal.tables import (
     camera_list,
     factor_rom,
+    floor_lanes_rom,
     floor_rom,
     gain_rom,
     gradient_rom,
@@ -19,9 +20,10 @@ from formal.tables import (
     thomas_roms,
     transform_roms,
 )
+from tactile_depth.calibration import floor_map
 from tactile_depth.common import divide
 from tactile_depth.contact import centroid, contact_events
-from tactile_depth.latency import dst_forward_latency, dst_inverse_latency, sdf_fft_latency
+from tactile_depth.latency import auto_zero_latency, dst_forward_latency, dst_inverse_latency, sdf_fft_latency
 
 PROOFS: tuple[Proof, ...] = (
     *(
@@ -152,10 +154,10 @@ PROOFS: tuple[Proof, ...] = (
             "block_sum",
             "a block's sum written 4 clocks behind its rows; an arbitrary word is added once to its block, to no other",
             "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
-            {"Signed": signed},
+            {"Signed": signed, "ColumnLog2": column_log2},
             depth=40,
         )
-        for signed in (0, 1)
+        for signed, column_log2 in ((0, 1), (1, 1), (1, 0))
     ),
     Proof(
         "divide",
@@ -166,6 +168,15 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof("multiply", "the exact product of every enabled clock's operands", "no control but en; no width enters"),
     Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
+    *(
+        Proof(
+            "ramp",
+            "an arbitrary word is the first and so many steps, log2(Count) enabled clocks later",
+            "sums are exact at any width; no tree, and one of two levels",
+            {"Count": count},
+        )
+        for count in (1, 4)
+    ),
     Proof(
         "gradient_lookup",
         "slopes of the pixel's own index in the bank its frame began with, latency 4; reads of the other bank",
@@ -240,14 +251,38 @@ PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
+            "floor_map",
+            claim,
+            "a beat of a half, a whole block, two; a cut row of blocks; weights and sums are exact at any width",
+            {
+                "Along": along,
+                "Rows": (2 << block_log2) + 1,
+                "Columns": columns,
+                "BlockLog2": block_log2,
+                "Lanes": lanes,
+                "Latency": floor_map.latency(lanes, block_log2),
+            },
+            depth=50,
+            roms=floor_lanes_rom(2 * (columns >> block_log2), floor_map.side(lanes, block_log2)),
+            free=("sums",) if along else (),
+        )
+        for along, claim in (
+            (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; its latency"),
+            (1, "along a row: words interpolated between any such sums, rounded to even; its latency"),
+        )
+        for columns, block_log2, lanes in ((8, 2, 2), (4, 1, 2), (8, 1, 4))
+    ),
+    *(
+        Proof(
             "floor_capture",
             "2^k frames behind a request, each node written once, 5 clocks behind its block, done after 6; memory as "
-            "ram.sv asks",
-            "two rows of blocks and a cut one, and a single whole one; rows, columns and frames are only counted",
-            {"Sums": 0, "Rows": rows},
+            "ram.sv asks; of several lanes all a clock later, depths of a block in a beat added up",
+            "two rows of blocks and a cut one, and a single whole one; rows, columns and frames are only counted; a "
+            "beat of a block, and of two",
+            {"Sums": 0, "Rows": rows, "Columns": 4 * lanes, "Lanes": lanes},
             depth=60,
         )
-        for rows in (5, 2)
+        for rows, lanes in ((5, 1), (2, 1), (3, 2), (3, 4))
     ),
     Proof(
         "floor_capture",
@@ -256,14 +291,18 @@ PROOFS: tuple[Proof, ...] = (
         {"Sums": 1, "Rows": 3},
         depth=60,
     ),
-    Proof(
-        "auto_zero",
-        "an arbitrary depth less whatever floor gain_map has, saturated, counted if clipped, with its marks; latency "
-        "10; active while a frame is inside; floors read back",
-        f"subtraction is exact at any width; {ROUNDING}; gain_map is proven by itself",
-        depth=45,
-        roms=floor_rom,
-        free=("floor_word",),
+    *(
+        Proof(
+            "auto_zero",
+            "the depths of an arbitrary beat less whatever floors gain_map or floor_map has, saturated, counted if "
+            "clipped, with their marks; its latency; active while a frame is inside; floors read back",
+            f"subtraction is exact at any width; {ROUNDING}; gain_map and floor_map are proven by themselves",
+            {"Lanes": lanes, "Latency": auto_zero_latency(lanes, 1)},
+            depth=45,
+            roms=floor_rom,
+            free=("floor_words",),
+        )
+        for lanes in (1, 2)
     ),
     *(
         Proof(

@@ -36,6 +36,17 @@ def floor_rom(folder: Path) -> None:
     write_floor(folder, np.array([-1, 1]), 2)
 
 
+def floor_lanes_rom(nodes: int, side: int) -> Callable[[Path], None]:
+    """Nodes of one bit, `side` of them in a word of the memory; nodes.hex: all of them in order."""
+
+    def write(folder: Path) -> None:
+        floor = np.array([(node % 3 & 1) - 1 for node in range(nodes)])
+        write_floor(folder, floor, 1, side)
+        write_words(folder / "nodes.hex", floor + 1, 1)
+
+    return write
+
+
 def camera_list(folder: Path) -> None:
     """Five entries, every kind; the first and the third are not compared."""
     kinds = (Kind.PINS, Kind.CHECK, Kind.PLAIN_WRITE, Kind.WRITE, Kind.WRITE)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_auto_zero: whatever gain_map has for it, an arbitrary depth leaves less that floor, saturated, with its own marks,
-// 10 enabled clocks after it came; while en is low all of them hold. A clipped depth is counted once, nothing else is.
-// A frame is inside from the clock behind its first word until its last has left, whatever follows it. gain_map is told
-// where frames begin; a floor that was written, by the bus or the capture, reads back.
+// fv_auto_zero: whatever gain_map, or floor_map, has for them, the depths of an arbitrary beat leave less those floors,
+// saturated, with their own marks, Latency enabled clocks after they came; while en is low all of them hold. A clipped
+// depth is counted once, nothing else is. A frame is inside from the clock behind its first beat until its last has
+// left, whatever follows it. The map is told where frames begin; a floor that was written, by the bus or the capture,
+// reads back.
 //
 // Assumed: frames in raster order, whole but for a reset; nothing is written or read while a change-over is due (what
 // is then read: fv_gain_map); bus and capture one at a time.
@@ -11,6 +12,8 @@ module fv_auto_zero #(
   parameter int Rows    = 3,
   parameter int Columns = 4,
   parameter int Width   = 2,
+  parameter int Lanes   = 1,
+  parameter int Latency = 10,
   localparam int Nodes = (Rows / 2) * (Columns / 2),
   localparam int NodeWidth = $clog2(Nodes)
 ) (
@@ -24,29 +27,33 @@ module fv_auto_zero #(
   input logic signed [Width-1:0] table_floor,
   input logic                    capture_write,
   input logic [NodeWidth-1:0]    capture_write_node,
-  input logic signed [Width-1:0] capture_floor,
+  input logic [Width-1:0]        capture_floor,
   input logic                    in_valid,
   input logic [2:0]              in_position,
-  input logic signed [Width-1:0] in_data,
-  input logic                    choose  // the depth that is followed
+  input logic [Lanes*Width-1:0]  in_data,
+  input logic                    choose  // the beat that is followed
 );
 
-  localparam int ToFloor = 9;
-  localparam int ToOut = 10;
+  localparam int ToFloor = Latency - 1;
+  localparam int ToOut = Latency;
   localparam int Highest = (1 << (Width - 1)) - 1;
   localparam int Lowest = -Highest - 1;
 
-  logic table_in_use, out_valid, active, saturation;
+  logic table_in_use, out_valid, active;
+  logic [$clog2(Lanes):0] saturations;
   logic [2:0] out_position;  // frame_start, row_end, frame_end
-  logic signed [Width-1:0] table_read_floor, out_data;
-  auto_zero #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width)) dut (
+  logic signed [Width-1:0] table_read_floor;
+  logic [Lanes*Width-1:0] out_data;
+  auto_zero #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .Lanes(Lanes)) dut (
     .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_floor,
     .table_read_floor, .capture_write, .capture_write_node, .capture_floor,
-    .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturation
+    .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturations
   );
 
   logic [3:0] row, column, position;
-  raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
+  raster_counter #(.Rows(Rows), .Columns(Columns / Lanes)) u_raster (
+    .clk, .rst, .en, .in_valid, .row, .column, .position
+  );
   logic started = 1'b0;
   logic [1:0] read_left;  // clocks until what was read stands
   logic named;            // bank of the frame that came last
@@ -61,18 +68,23 @@ module fv_auto_zero #(
     assume (2'(table_write) + 2'(capture_write) + 2'(table_read) < 2'd2);
   end
 
-  // The depth that is followed, and the words on their way.
+  // The beat that is followed, and the words on their way.
   logic [ToOut-1:0] valid;
   logic [3:0] age;  // enabled clocks since it came
-  logic follows, subtracts, counted, moved, held, clips, clips_q, left;
+  logic follows, subtracts, counted, moved, held, left;
+  logic [$clog2(Lanes):0] clips, clips_q;  // of the beat
   logic [2:0] position_followed;
-  logic signed [Width-1:0] depth, expected;
-  logic [Width+3:0] out_q;
-  int difference;
+  logic [Lanes*Width-1:0] depths, limited, expected;
+  logic [Lanes*Width+3:0] out_q;
   assign subtracts = en && follows && age == 4'(ToFloor);
   always_comb begin
-    difference = 32'(depth) - (32'(dut.floor_word) + Lowest);
-    clips = difference < Lowest || difference > Highest;
+    clips = '0;
+    for (int lane = 0; lane < Lanes; lane++) begin
+      int difference;
+      difference = 32'($signed(depths[lane*Width+:Width])) - (32'(dut.floor_words[lane*Width+:Width]) + Lowest);
+      clips += ($clog2(Lanes) + 1)'(difference < Lowest || difference > Highest);
+      limited[lane*Width+:Width] = Width'(difference < Lowest ? Lowest : difference > Highest ? Highest : difference);
+    end
   end
   always_ff @(posedge clk) begin
     started <= 1'b1;
@@ -90,10 +102,10 @@ module fv_auto_zero #(
         follows <= 1'b1;
         age <= 4'd1;
         position_followed <= in_position;
-        depth <= in_data;
+        depths <= in_data;
       end
     end
-    if (subtracts) expected <= Width'(!clips ? difference : difference < 0 ? Lowest : Highest);
+    if (subtracts) expected <= limited;
     if (rst) begin
       valid <= '0;
       follows <= 1'b0;
@@ -110,7 +122,7 @@ module fv_auto_zero #(
   logic read_known;
   logic [Width-1:0] written, read_word;
   logic [NodeWidth-1:0] node_written;
-  assign written = Width'(32'(capture_write ? capture_floor : table_floor) - Lowest);
+  assign written = Width'(32'(capture_write ? $signed(capture_floor) : table_floor) - Lowest);
   assign node_written = capture_write ? capture_write_node : table_index;
   always_ff @(posedge clk) begin
     if (started && (capture_write || table_write)) begin
@@ -137,26 +149,33 @@ module fv_auto_zero #(
         subtracted: assert (out_data == expected);
       end
       if (held) holds: assert ({out_valid, out_position, out_data} == out_q);
-      if (counted) clipped_counted: assert (saturation == clips_q);
-      if (!moved) once: assert (!saturation);
+      if (counted) clipped_counted: assert (saturations == clips_q);
+      if (!moved) once: assert (saturations == '0);
       frame_inside: assert (active == (row != '0 || column != '0 || valid != '0));
-      if (in_valid) frame_begins: assert (dut.u_map.in_frame_start == (row == '0 && column == '0));  // as it assumes
       if (read_known && read_left == 0) entry: assert (32'(table_read_floor) == 32'(read_word) + Lowest);
 
-      clipped_below: cover (counted && saturation && out_data < 0 && out_position[1]);
-      clipped_above: cover (counted && saturation && out_data > 0 && out_position[2]);
-      unclipped: cover (follows && age == 4'(ToOut) && held && depth == -1 && out_data == 1);
+      clipped_below: cover (counted && saturations != '0 && out_data[Width-1] && out_position[1]);
+      clipped_above: cover (counted && saturations != '0 && !out_data[Width-1] && out_position[2]);
+      unclipped: cover (follows && age == 4'(ToOut) && held && &depths && 32'(out_data[Width-1:0]) == 1);
       next_inside: cover (out_valid && out_position[0] && valid[ToOut-2:0] == '1 && en);
       empties: cover (left && !active);
       negative_read: cover (read_known && read_left == 0 && table_read_floor < 0 && table_in_use);
     end
   end
 
-  bind fv_auto_zero.dut.u_map.g_table[0].u_gains.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
-  bind fv_auto_zero.dut.u_map.g_table[0].u_gains.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  // The map is told where frames begin, as it assumes.
+  logic map_start;
+  always_comb if (started && in_valid) frame_begins: assert (map_start == (row == '0 && column == '0));
+  if (Lanes > 1) begin : g_lanes
+    assign map_start = dut.g_lanes.u_map.in_frame_start;
+  end else begin : g_lane
+    assign map_start = dut.g_one.u_map.in_frame_start;
+    bind fv_auto_zero.dut.g_one.u_map.g_table[0].u_gains.g_bank[0].u_ram ram_check #(
+      .Depth(Depth), .Defined(0)
+    ) u_check_0 (.clk, .write_en, .write_address, .read_en, .read_address);
+    bind fv_auto_zero.dut.g_one.u_map.g_table[0].u_gains.g_bank[1].u_ram ram_check #(
+      .Depth(Depth), .Defined(0)
+    ) u_check_1 (.clk, .write_en, .write_address, .read_en, .read_address);
+  end
 
 endmodule

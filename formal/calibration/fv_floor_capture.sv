@@ -4,7 +4,8 @@
 // word of its block, nothing else is, nothing while idle; no sum is read before it was written, or in the clock that
 // writes it. In a second part (Sums 1): an arbitrary depth of a capture, the only one that is not zero, is added once
 // to its node and to no other, and the floor of a node is its sum's mean, ties to even; what does nothing but add does
-// so to all.
+// so to all. With several lanes the first part is so for beats one clock after they came, and the depths of a beat that
+// belong to one block are added up: then what is proven of one lane is so for their sum.
 //
 // Assumed: frames in raster order, whole but for a reset.
 
@@ -14,8 +15,10 @@ module fv_floor_capture #(
   parameter int Width   = 4,
   parameter int MaxLog2 = 1,
   parameter int Sums    = 0,
+  parameter int Lanes   = 1,
+  localparam int Side = Lanes > 2 ? Lanes / 2 : 1,
   localparam int SumWidth = Width + 2 + MaxLog2,
-  localparam int Nodes = (Rows / 2) * (Columns / 2),
+  localparam int Nodes = (Rows / 2) * (Columns / 2) / Side,  // that many words of the memory
   localparam int NodeWidth = $clog2(Nodes)
 ) (
   input logic                    clk,
@@ -26,7 +29,7 @@ module fv_floor_capture #(
   input logic                    in_valid,
   input logic                    in_frame_start,
   input logic                    in_frame_end,
-  input logic signed [Width-1:0] in_data,
+  input logic [Lanes*Width-1:0]  in_data,
   input logic [NodeWidth-1:0]    chosen
 );
 
@@ -35,27 +38,52 @@ module fv_floor_capture #(
 
   logic busy, done, map_write;
   logic [NodeWidth-1:0] map_write_node;
-  logic signed [Width-1:0] map_write_floor;
-  floor_capture #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .MaxLog2(MaxLog2)) dut (
+  logic [Side*Width-1:0] map_write_floor;
+  floor_capture #(
+    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .MaxLog2(MaxLog2), .Lanes(Lanes)
+  ) dut (
     .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_frame_start, .in_frame_end, .in_data,
     .map_write, .map_write_node, .map_write_floor
   );
 
-  logic [3:0] row, column, position;
-  raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
+  logic [3:0] row_in, column_in, position, row, column;
+  raster_counter #(.Rows(Rows), .Columns(Columns / Lanes)) u_raster (
+    .clk, .rst, .en, .in_valid, .row(row_in), .column(column_in), .position
+  );
+
   logic started = 1'b0;
+  // With several lanes the two depths of a block in a beat are added up first.
+  logic take, frame_start;
+  if (Lanes > 1) begin : g_lanes
+    logic [Lanes*Width-1:0] data_q;
+    always_ff @(posedge clk) begin
+      take <= en && in_valid && !rst;
+      {frame_start, row, column, data_q} <= {in_frame_start, row_in, column_in, in_data};
+    end
+    for (genvar s = 0; s < Side; s++) begin : g_side
+      logic signed [Width-1:0] left, right;
+      assign {right, left} = data_q[2*s*Width+:2*Width];
+      always_comb begin
+        if (started && take) begin
+          added_up: assert (dut.u_sum.in_data[s*(Width+1)+:Width+1] == (Width + 1)'(left) + (Width + 1)'(right));
+        end
+      end
+    end
+  end else begin : g_lane
+    assign take = en && in_valid;
+    assign {frame_start, row, column} = {in_frame_start, row_in, column_in};
+  end
   typedef enum logic [1:0] {Idle, Armed, Summing, Closing} state_e;
   state_e state;
   logic [NodeWidth-1:0] watched, node;  // chosen in the first clock, then constant; of the word that comes
   logic [3:0] log2, log2_next;
   logic [MaxLog2:0] wanted;  // frames to be summed yet
-  logic take, first, block_ends, last;
+  logic first, block_ends, last;
   logic [2:0] to_done;
-  assign take = en && in_valid;
-  assign first = take && in_frame_start;
+  assign first = take && frame_start;
   assign log2_next = 32'(log2_frames) > MaxLog2 ? 4'(MaxLog2) : log2_frames;
-  assign node = NodeWidth'(32'(row) / 2 * (Columns / 2) + 32'(column) / 2);
-  assign block_ends = take && 32'(row) < Rows / 2 * 2 && row[0] && column[0];
+  assign node = NodeWidth'(32'(row) / 2 * (Columns / 2 / Side) + 32'(column) * Lanes / (2 * Side));
+  assign block_ends = take && 32'(row) < Rows / 2 * 2 && row[0] && (column[0] || Lanes > 1);
   assign last = block_ends && 32'(node) == Nodes - 1 && state == Summing && wanted == (MaxLog2 + 1)'(1);
 
   // Nodes on their way to the map.
@@ -112,17 +140,20 @@ module fv_floor_capture #(
     end
   end else begin : g_sums
     logic in_watched, counts, seen, fresh;
+    logic signed [Width-1:0] data, floor;
     logic signed [Width-1:0] depth;        // that of the watched node, in this capture; zero: it is not there
     logic signed [SumWidth-1:0] held_sum;  // of the watched node, as the memory holds it
     assign in_watched = 32'(row) < Rows / 2 * 2 && node == watched;
+    assign data = in_data;
+    assign floor = map_write_floor;
     assign fresh = first && state == Armed;
     assign counts = take && (state == Summing || fresh);
-    always_comb if (counts && seen && !fresh) assume (in_data == '0);
+    always_comb if (counts && seen && !fresh) assume (data == '0);
     always_ff @(posedge clk) begin
       if (dut.u_sums.write_en && dut.u_sums.write_address == watched) held_sum <= dut.u_sums.write_data;
       if (counts) begin
-        seen <= in_data != '0 || (seen && !fresh);
-        if (fresh || (in_watched && in_data != '0)) depth <= in_watched ? in_data : '0;
+        seen <= data != '0 || (seen && !fresh);
+        if (fresh || (in_watched && data != '0)) depth <= in_watched ? data : '0;
       end
     end
 
@@ -139,7 +170,7 @@ module fv_floor_capture #(
     always_comb begin
       if (started && map_write && map_write_node == watched) begin
         added_once: assert (held_sum == SumWidth'(depth));
-        mean: assert ((Width + 1)'(map_write_floor) == whole);
+        mean: assert ((Width + 1)'(floor) == whole);
         tie_down: cover (share == half && whole == '0 && log2 != '0);
         tie_up: cover (share == half && whole < 0);
         elsewhere: cover (seen && depth == '0);

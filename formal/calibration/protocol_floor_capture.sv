@@ -3,7 +3,8 @@
 
 module protocol_floor_capture #(
   parameter int Rows    = 128,
-  parameter int Columns = 128
+  parameter int Columns = 128,
+  parameter int Lanes   = 1
 ) (
   input  logic clk,
   input  logic rst,
@@ -24,7 +25,7 @@ module protocol_floor_capture #(
   logic live = 1'b0;
   logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst;
-  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset(rst), .en, .in_valid, .place);
+  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (.clk, .reset(rst), .en, .in_valid, .place);
   assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign given_in_frame_end = in_valid & ~rst ? &place[3:2] : in_frame_end;
   assign {counts_busy, counts_done} = {2{live & ~rst}};

@@ -12,7 +12,9 @@ module fv_block_sum #(
   parameter int Width    = 2,
   parameter int SumWidth = 5,
   parameter int Signed   = 1,
-  localparam int Blocks = (Rows / 2) * (Columns / 2),
+  parameter int ColumnLog2 = 1,
+  localparam int Wide = 1 << ColumnLog2,
+  localparam int Blocks = (Rows / 2) * (Columns / Wide),
   localparam int BlockWidth = $clog2(Blocks)
 ) (
   input logic                  clk,
@@ -33,7 +35,7 @@ module fv_block_sum #(
   logic [BlockWidth-1:0] read_block, write_block;
   logic [SumWidth-1:0] read_sums, write_sums;
   block_sum #(
-    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .Signed(Signed), .SumWidth(SumWidth)
+    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .ColumnLog2(ColumnLog2), .Width(Width), .Signed(Signed), .SumWidth(SumWidth)
   ) dut (
     .clk, .rst, .in_valid, .in_frame_start, .in_first_frame, .in_last_frame, .in_data, .read_en, .read_block, .read_sums,
     .write_en, .write_block, .write_sums, .write_complete
@@ -52,8 +54,8 @@ module fv_block_sum #(
   assign in_frame_start = row == '0 && column == '0;
   assign last = in_frame_start ? in_last_frame : last_q;
   assign fresh = in_valid && in_frame_start && in_first_frame;
-  assign block = BlockWidth'(32'(row) / 2 * (Columns / 2) + 32'(column) / 2);
-  assign row_ends = in_valid && 32'(row) < Rows / 2 * 2 && column[0];
+  assign block = BlockWidth'(32'(row) / 2 * (Columns / Wide) + 32'(column) / Wide);
+  assign row_ends = in_valid && 32'(row) < Rows / 2 * 2 && 32'(column) % Wide == Wide - 1;
   assign block_ends = row_ends && row[0] && last;
 
   logic [ToSum-1:0] ends_q, completes_q;

@@ -11,7 +11,7 @@ module fv_ramp #(
   input logic                 clk,
   input logic                 en,
   input logic [Width-1:0]     first,
-  input logic [StepWidth-1:0] step,
+  input logic signed [StepWidth-1:0] step,
   input logic [Levels:0]      chosen
 );
 
@@ -44,13 +44,14 @@ module fv_ramp #(
   end
 
   logic [Width-1:0] word, expected;
-  assign word = out[chosen*Width+:Width];
+  assign word = Width'(out >> 32'(chosen) * Width);
   assign expected = firsts[Levels*Width+:Width]
       + Width'(chosen) * Width'($signed(steps[Levels*StepWidth+:StepWidth]));
   always_comb begin
     if (known[Levels] && 32'(chosen) < Count) in_its_place: assert (word == expected);
     if (held) holds: assert (out == out_q);
-    falls: cover (known[Levels] && 32'(chosen) == Count - 1 && word < firsts[Levels*Width+:Width] && word != '0);
+    falls: cover (known[Levels] && 32'(chosen) == Count - 1 && word != '0 && (Count == 1
+        || word < firsts[Levels*Width+:Width]));
   end
 
 endmodule

@@ -69,7 +69,7 @@ module back_substitution #(
 
     logic [ToSum:0] active_q;
     logic [ToSum-1:0] start_q, frame_start_q;
-    logic [(ToSum+1)*PositionWidth-1:0] position_q;
+    logic [(ToSum+1)*StepWidth-1:0] position_q;  // in the row of words that are below
     logic signed [InWidth-1:0] data_q, data_q2, data_q3, data_q4, data_q5, data_q6;
     logic signed [Width-1:0] below, below_q2, below_q3, rounded;
     logic signed [ProductWidth-1:0] product;
@@ -87,7 +87,7 @@ module back_substitution #(
         start_q <= {start_q[ToSum-2:0], in_start[lane]};
         frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start[lane]};
         active_q <= {active_q[ToSum-1:0], active};
-        position_q <= {position_q[ToSum*PositionWidth-1:0], position};
+        position_q <= {position_q[ToSum*StepWidth-1:0], position[StepWidth-1:0]};
         first_q <= row == RowWidth'(Rows - 1);
         first_q2 <= first_q;
         first_q3 <= first_q2;
@@ -124,10 +124,10 @@ module back_substitution #(
     ) u_row_below (
       .clk,
       .write_en     (en & g_lane[Before].active_q[ToSum]),
-      .write_address(g_lane[Before].position_q[ToSum*PositionWidth+:StepWidth]),
+      .write_address(g_lane[Before].position_q[ToSum*StepWidth+:StepWidth]),
       .write_data   (out_data[Before*Width+:Width]),
       .read_en      (en & active_q[1]),
-      .read_address (position_q[PositionWidth+:StepWidth]),
+      .read_address (position_q[StepWidth+:StepWidth]),
       .read_data    (below)
     );
   end
