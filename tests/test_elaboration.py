@@ -32,7 +32,9 @@ INVALID = {
     "gradient_lookup": ["BitsPerChannel=0", *(["BitsPerChannel=9"] if REGRESS else [])],  # 4 GB of table
     "flat_field": ["Offset=1"],
     "gain_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
-    "auto_zero": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
+    "auto_zero": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "Lanes=128", "Lanes=3"],
+    "floor_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "Lanes=1", "Lanes=3", "Lanes=128"],
+    "ramp": ["Count=0", "Count=3", "StepWidth=33"],
     "floor_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=9"],
     "reference_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=11", "GainFraction=10"],
     "spectral_divide": ["Size=12", "Size=1"],
