@@ -44,7 +44,8 @@ TIMEOUT_S = 3600
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
 CONFIGURING = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "REFERENCE", "FLOOR"),
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
+    *("REFERENCE", "FLOOR"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
 RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
