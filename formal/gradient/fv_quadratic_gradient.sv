@@ -59,8 +59,11 @@ module fv_quadratic_gradient #(
   always_comb if (!started) assume (rst && !table_write && !table_bank);
 
   // The words as the register map describes them.
-  logic [WordWidth-1:0] words[2*Terms];  // {term, bank}
-  initial $readmemh({"quadratic_", 8'(48 + Polynomial), ".hex"}, words);
+  logic [WordWidth-1:0] words_0[Terms], words_1[Terms];  // of both banks
+  initial begin
+    $readmemh({"quadratic_", 8'(48 + Polynomial), ".hex"}, words_0);
+    $readmemh({"quadratic_", 8'(48 + Polynomial), ".hex"}, words_1);
+  end
   logic own;
   logic [2:0] term;
   assign own = 32'(table_index) >= Terms * Polynomial && 32'(table_index) < Terms * (Polynomial + 1);
@@ -75,9 +78,9 @@ module fv_quadratic_gradient #(
 
   // The polynomial at once, where it stands after the pixel that is taken.
   logic [WordWidth-1:0] value, step, row_value, row_step, row_rise, value_now, step_now;
-  assign value_now = begins ? words[{3'd0, used}] : begins_row ? row_value + row_rise : value + step;
-  assign step_now = begins ? words[{3'd1, used}]
-      : begins_row ? row_step + words[{3'd5, used}] : step + words[{3'd2, used}];
+  assign value_now = begins ? (used ? words_1[0] : words_0[0]) : begins_row ? row_value + row_rise : value + step;
+  assign step_now = begins ? (used ? words_1[1] : words_0[1])
+      : begins_row ? row_step + (used ? words_1[5] : words_0[5]) : step + (used ? words_1[2] : words_0[2]);
 
   logic [Latency-1:0] valid;
   logic [4*Latency-1:0] place;
@@ -96,7 +99,8 @@ module fv_quadratic_gradient #(
     of_colour <= rst ? table_bank : colour_used;
     reported <= rst ? table_bank : en && begun[2] ? named : reported;
     if (en) begun <= {begun[1:0], begins};
-    if (table_write && own) words[{term, ~in_use}] <= table_word;
+    if (table_write && own && in_use) words_0[term] <= table_word;
+    if (table_write && own && !in_use) words_1[term] <= table_word;
     if (table_write && own) overwritten <= 1'b1;
     if (en && in_valid) begin
       value <= value_now;
@@ -104,7 +108,7 @@ module fv_quadratic_gradient #(
       if (begins || begins_row) begin
         row_value <= value_now;
         row_step <= step_now;
-        row_rise <= begins ? words[{3'd3, used}] : row_rise + words[{3'd4, used}];
+        row_rise <= begins ? (used ? words_1[3] : words_0[3]) : row_rise + (used ? words_1[4] : words_0[4]);
       end
       column <= column == 4'(Columns - 1) ? '0 : column + 4'd1;
       if (column == 4'(Columns - 1)) row <= row == 4'(Rows - 1) ? '0 : row + 4'd1;
@@ -118,7 +122,7 @@ module fv_quadratic_gradient #(
     end
     asked <= table_read;
     asked_own <= own;
-    if (table_read) asked_word <= words[{term, ~colour_used}];
+    if (table_read) asked_word <= colour_used ? words_0[term] : words_1[term];
     if (asked) begin
       read_known <= asked_own;
       read_word <= asked_word;
