@@ -297,7 +297,7 @@ PROOFS: tuple[Proof, ...] = (
             "the depths of an arbitrary beat less whatever floors gain_map or floor_map has, saturated, counted if "
             "clipped, with their marks; its latency; active while a frame is inside; floors read back",
             f"subtraction is exact at any width; {ROUNDING}; gain_map and floor_map are proven by themselves",
-            {"Lanes": lanes, "Latency": auto_zero_latency(lanes, 1)},
+            {"Rows": 2, "Lanes": lanes, "Latency": auto_zero_latency(lanes, 1)},
             depth=45,
             roms=floor_rom,
             free=("floor_words",),
