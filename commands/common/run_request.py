@@ -16,7 +16,7 @@ from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
-from tactile_depth.camera_configuration import FORMATS, PHASES, CameraChoice
+from tactile_depth.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
 from tactile_depth.certificate import deepest
 from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
 from tactile_depth.errors import InputError
@@ -231,6 +231,20 @@ def described(config: Configuration) -> dict[str, Any]:
         "flat_field": config.flat_field,
         "auto_zero": config.auto_zero,
     }
+
+
+def described_camera(camera: CameraConfiguration | None) -> dict[str, Any]:
+    """Return a camera as the reports of commands state it; nothing without one."""
+    if camera is None:
+        return {}
+    described = {
+        "pixel_format": camera.pixel_format,
+        "bayer": camera.phase if camera.format.bayer else None,
+        "picture": list(camera.picture),
+        "window": list(camera.crop),
+        "pixels_per_grid_pixel": float(camera.ratio),
+    }
+    return {"camera": described}
 
 
 def threshold_code(config: Configuration) -> int:

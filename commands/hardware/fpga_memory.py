@@ -63,6 +63,6 @@ def memories(design: Path) -> list[Memory]:
 
 
 def path_of(module: str) -> str:
-    """Return the path in a name <core>$tactile_depth.<path>, without generate blocks other than those of a loop."""
-    _, _, path = module.partition(f"${TOP}.")
+    """Return the path in a name <core>$<top>.<path>, without generate blocks other than those of a loop."""
+    _, _, path = module.partition("$")[2].partition(".")
     return ".".join(part for part in path.split(".") if not re.fullmatch(r"g_\w+", part))

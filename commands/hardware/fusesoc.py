@@ -34,7 +34,7 @@ def generate(description: Path, folder: Path) -> None:
     for key in values:
         if key not in synth.CONFIGURING:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
-    config, calibration = synth.configured(run_request.parse([f"{key}={value}" for key, value in values.items()]))
+    config, calibration, _ = synth.configured(run_request.parse([f"{key}={value}" for key, value in values.items()]))
     write_roms(folder, calibration, config)
     parameters = top_parameters(config, calibration.pixel_pitch_mm)
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]

@@ -5,9 +5,10 @@ TARGET=xczu7ev, the variables of `make sim` that choose a configuration, and OUT
 both solvers. Exit status: 0 when the design fits, 1 when not, 2 on bad input.
 
 Every design is mapped twice at the same time. The cores of the top and of the solver keep their boundaries, so that
-each has its figures and the design is their sum. The mapping to UltraScale+ ends at multipliers and memories: DSP48E2,
-block RAM, UltraRAM. LUTs and registers come from a mapping to 7-series logic, the only one for which Yosys packs
-registers and adders into multipliers; its DSP gets the 27 x 18 bits of a DSP48E2.
+each has its figures and the design is their sum. With CAMERA, BAYER and WINDOW the camera front end comes along, in a
+row of its own. The mapping to UltraScale+ ends at multipliers and memories: DSP48E2, block RAM, UltraRAM. LUTs and
+registers come from a mapping to 7-series logic, the only one for which Yosys packs registers and adders into
+multipliers; its DSP gets the 27 x 18 bits of a DSP48E2.
 """
 
 from __future__ import annotations
@@ -33,6 +34,8 @@ from commands.common.signals import threads
 from commands.hardware import synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
 from tactile_depth import files
+from tactile_depth.camera.camera_front_end import camera_front_end_parameters
+from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import REST_SCENE
@@ -43,6 +46,7 @@ OUT = repository.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
+FRONT_END, FRONT_END_PATH = "camera_front_end", "u_camera"
 CONFIGURING = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
     *("REFERENCE", "FLOOR"),
@@ -74,7 +78,7 @@ MEMORY_LUTS = {
 REGISTERS = ("FDRE", "FDSE", "FDCE", "FDPE")
 NO_LUTS = ("CARRY4", "MUXF7", "MUXF8", "DSP48E1", "RAMB36E1", "RAMB18E1")
 
-SYNTH = f"synth_xilinx -top {TOP} -flatten -noiopad -noclkbuf"
+SYNTH = "synth_xilinx -flatten -noiopad -noclkbuf"
 DEVICE = [f"{SYNTH} -family xcup -uram -run begin:map_ffram"]
 LOGIC = [
     "setattr -unset ram_style m:*",  # it knows no UltraRAM; those are boxes here
@@ -117,7 +121,7 @@ class Core:
 class Design:
     """Resources of a configuration on a target."""
 
-    configuration: dict[str, Any]  # grid, solver, boundary, widths, gradient model, flat field
+    configuration: dict[str, Any]  # grid, solver, boundary, widths, gradient model, flat field, camera
     totals: dict[str, float]  # of RESOURCES, memories by the plain rule
     details: dict[str, float]  # kinds of LUTs, memories as Yosys maps them, all memory in UltraRAMs
     cores: list[Core]
@@ -128,7 +132,7 @@ class Design:
 
 def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Request]:
     """Return target, its name, grids and request; the grids are empty without GRIDS. Raises InputError."""
-    values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, "OUT"))
+    values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, *run_request.CAMERA, "OUT"))
     name = values.pop("TARGET", next(iter(TARGETS)))
     if name not in TARGETS:
         raise InputError(f"TARGET={name} is unknown: accepted is {', '.join(TARGETS)}")
@@ -137,15 +141,16 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Req
         sizes = [int(size) for size in grids.split(",")] if grids else []
     except ValueError as error:
         raise InputError(f"GRIDS={grids}: accepted are whole numbers with commas, as 64,128,256") from error
-    return TARGETS[name], name, sizes, run_request.parse([f"{key}={value}" for key, value in values.items()])
+    accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
+    return TARGETS[name], name, sizes, run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
 
 
-def configured(request: run_request.Request) -> tuple[Configuration, Sensor]:
-    """Return the configuration of a request, and the calibration on its grid. Raises InputError."""
+def configured(request: run_request.Request) -> tuple[Configuration, Sensor, CameraConfiguration | None]:
+    """Return the configuration of a request, the calibration on its grid, and its camera. Raises InputError."""
     # A reference frame gives the width of the camera's pixels on the grid, so it is read as a frame too.
     source = run_request.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
-    _, calibration, config = synthesis.design(request, source)
-    return config, calibration
+    frames, calibration, config = synthesis.design(request, source)
+    return config, calibration, frames.camera
 
 
 def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[run_request.Request, str]]:
@@ -172,12 +177,17 @@ def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[ru
     return every
 
 
-def elaborate(config: Configuration, calibration: Sensor, folder: Path) -> tuple[list[str], list[str]]:
+def elaborate(
+    config: Configuration, calibration: Sensor, folder: Path, camera: CameraConfiguration | None = None
+) -> tuple[list[str], list[str]]:
     """Return the lines of Yosys that read a design, and all its modules, <core>$<path>.
 
-    Sources and ROMs are written to the folder; <folder>/design.json holds the memories. Raises RuntimeError.
+    Sources and ROMs are written to the folder; <folder>/design.json holds the memories. With a `camera` the design is
+    its front end alone. Raises RuntimeError.
     """
-    lines = synthesis.read(folder, config, calibration=calibration, options="--keep-hierarchy")
+    top, parameters = (TOP, None) if camera is None else (FRONT_END, camera_front_end_parameters(camera))
+    options = "--keep-hierarchy"
+    lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, options=options)
     script = folder / "elaborate.ys"
     script.write_text("\n".join([*lines, "memory_collect", "write_json design.json"]) + "\n")
     if fault := yosys.run(script, timeout_s=TIMEOUT_S):
@@ -252,18 +262,46 @@ def misfit(totals: Mapping[str, float], target: Target) -> str:
     return "; ".join(short)
 
 
-def synthesize(config: Configuration, calibration: Sensor, target: Target, folder: Path) -> Design:
+def counted(
+    device: Counter[str], logic: Counter[str], modules: Sequence[str], inside: Sequence[Memory]
+) -> dict[str, float]:
+    """Return the counts of a module that holds the memories `inside`: by the plain rule, and as they are mapped."""
+    counts = device_counts(device) | logic_counts(logic, modules)
+    plain = {name: sum(memory.plain()[name] for memory in inside) for name in ("UltraRAM", "BRAM36")}
+    return counts | {f"mapped {name}": counts[name] for name in plain} | plain
+
+
+def front_end(
+    config: Configuration, calibration: Sensor, camera: CameraConfiguration, folder: Path
+) -> tuple[Core, list[Memory]]:
+    """Return the resources of a camera front end, and its memories. Raises RuntimeError."""
+    lines, modules = elaborate(config, calibration, folder, camera)
+    arrays = memories(folder / "design.json")
+    device, logic = mapped(lines, [], [], folder, FRONT_END)
+    counts = counted(device[FRONT_END], logic[FRONT_END], modules, arrays)
+    named = [replace(memory, path=f"{FRONT_END_PATH}.{memory.path}") for memory in arrays]
+    return Core(FRONT_END, FRONT_END_PATH, counts), named
+
+
+def synthesize(
+    config: Configuration,
+    calibration: Sensor,
+    target: Target,
+    folder: Path,
+    camera: CameraConfiguration | None = None,
+) -> Design:
     """Return the resources of a design; when its memories do not fit, nothing is mapped. Raises RuntimeError."""
     began = time.monotonic()
     lines, modules = elaborate(config, calibration, folder)
     arrays = memories(folder / "design.json")
     cores = kept(modules)
+    described = run_request.described(config) | run_request.described_camera(camera)
     plain = {name: sum(memory.plain()[name] for memory in arrays) for name in ("UltraRAM", "BRAM36")}
     details = {"memory in UltraRAM": plain["UltraRAM"] + plain["BRAM36"] / BLOCKS_PER_ULTRA}
 
     def design(totals: dict[str, float], listed: list[Core]) -> Design:
         seconds = round(time.monotonic() - began, 1)
-        return Design(run_request.described(config), totals, details, listed, arrays, misfit(totals, target), seconds)
+        return Design(described, totals, details, listed, arrays, misfit(totals, target), seconds)
 
     if misfit(plain, target):
         return design(plain, [])
@@ -274,10 +312,14 @@ def synthesize(config: Configuration, calibration: Sensor, target: Target, folde
     for module in (*cores, TOP):
         path = path_of(module)
         inside = [memory for memory in arrays if memory.path.startswith(f"{path}.")] if path else []
-        counts = device_counts(device[module]) | logic_counts(logic[module], modules)
-        counts |= {f"mapped {name}": counts[name] for name in plain}
-        counts |= {name: sum(memory.plain()[name] for memory in inside) for name in plain}
+        counts = counted(device[module], logic[module], modules, inside)
         listed.append(Core(module.partition("$")[0], path, counts))
+    if camera is not None:
+        core, camera_arrays = front_end(config, calibration, camera, folder / FRONT_END)
+        listed.append(core)
+        arrays += camera_arrays
+        stores = sum(memory.plain()["UltraRAM"] + memory.plain()["BRAM36"] / BLOCKS_PER_ULTRA for memory in arrays)
+        details["memory in UltraRAM"] = stores
     totals = {name: sum(core.counts[name] for core in listed) for name in listed[0].counts}
     details |= {name: totals.pop(name) for name in list(totals) if name not in RESOURCES}
     return design(totals, sorted(listed, key=lambda core: -core.counts["LUT"]))
@@ -370,9 +412,9 @@ def run(arguments: list[str]) -> int:
                 grid = {"grid": [each.rows, each.columns], "solver": each.solver}
                 built.append(Design(grid, {}, {}, [], [], f"not built: {reason}", 0.0))
             else:
-                config, calibration = configured(each)
+                config, calibration, camera = configured(each)
                 folder = work / f"{config.solver}-{config.columns}"
-                built.append(synthesize(config, calibration, target, folder))
+                built.append(synthesize(config, calibration, target, folder, camera))
                 if not grids:
                     keep_sources(folder, config, out)
             document["designs"].append(asdict(built[-1]))

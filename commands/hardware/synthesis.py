@@ -28,7 +28,8 @@ def design(request: run_request.Request, source: str | None = None) -> tuple[Fra
     calibration = run_request.load_sensor(request)
     run_request.check_grid(request)
     size = (request.rows, request.columns)
-    frames = load_frames(source or request.frames, size, request.reference, request.seed, request.press)
+    named = source or request.frames
+    frames = load_frames(named, size, request.reference, request.seed, request.press, request.camera)
     calibration = calibration.on_grid(frames)
     return frames, calibration, run_request.configure(request, calibration)
 

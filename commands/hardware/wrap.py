@@ -32,7 +32,9 @@ def main() -> None:
         tables = values.pop("TABLES", "./")
         if not tables.endswith("/") or '"' in tables:
             raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
-        config, calibration = synth.configured(run_request.parse([f"{key}={value}" for key, value in values.items()]))
+        config, calibration, _ = synth.configured(
+            run_request.parse([f"{key}={value}" for key, value in values.items()])
+        )
         with files.workspace(out) as work:
             path = wrapper.write(work, name, top_parameters(config, calibration.pixel_pitch_mm), tables)
             write_roms(work, calibration, config)

@@ -250,16 +250,8 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
     calibration = load_sensor(request).on_grid(as_rgb)
     reference_px = exact_depth(as_rgb.pixels, untouched(plain, as_rgb), calibration, config)
     percent = errors(codes * config.depth_lsb_px, reference_px)
-    x, y, width, height = camera.crop
-    described = {
-        "pixel_format": camera.pixel_format,
-        "bayer": camera.phase if camera.format.bayer else None,
-        "picture": list(camera.picture),
-        "window": [x, y, width, height],
-        "pixels_per_grid_pixel": float(camera.ratio),
-    }
     lost = {f"camera_{key}": values * request.repeat for key, values in percent.items()}
-    return {"camera": described, **lost}
+    return {**run_request.described_camera(camera), **lost}
 
 
 def take_dumps(request: Request, config: Configuration, frames: Frames, work: Path, result: Path) -> list[str]:

@@ -14,6 +14,7 @@ import pytest
 from commands.common import repository
 from commands.hardware import synth
 from commands.hardware.fpga_memory import Memory, memories, path_of
+from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import cost
 from tactile_depth.sensor import synthetic
@@ -35,6 +36,16 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path) -> None:
     cores = {path_of(module) for module in synth.kept(modules)}
     assert {"u_video.u_guard", "u_contact.u_events", "u_registers", "u_poisson.u_solver.u_row_forward"} <= cores
     assert not cores & {"u_poisson", "u_poisson.u_solver"}
+
+
+def test_the_front_end_of_a_camera_is_a_row_of_its_own(tmp_path: Path) -> None:
+    """One multiplier for each channel's gain; the weights are not worth one. The memory is a line of totals."""
+    camera = CameraConfiguration((24, 48), (8, 16), "raw8")
+    core, arrays = synth.front_end(TINY, synthetic(TINY.bits_per_channel), camera, tmp_path)
+    assert (core.name, core.path) == ("camera_front_end", "u_camera")
+    assert [(memory.path, memory.depth) for memory in arrays] == [("u_camera.u_average.u_block_totals.u_line", 16)]
+    assert core.counts["LUT"] > core.counts["FF"] / 4 > 0
+    assert core.counts["DSP48E2"] >= 1
 
 
 def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_path: Any) -> None:
@@ -116,6 +127,8 @@ def test_a_grid_that_one_solver_has_is_built_with_that_solver() -> None:
         (["TARGET=xc7a35t"], "TARGET=xc7a35t is unknown: accepted is xczu7ev"),
         (["FRAMES=ball"], "FRAMES=ball: unknown variable: accepted are TARGET"),
         (["GRIDS=64;128"], "GRIDS=64;128: accepted are whole numbers"),
+        (["CAMERA=raw10", "N=256"], "is 1.88 pixels for each of the grid: 2 are needed"),
+        (["BAYER=grbg"], "BAYER=grbg goes with CAMERA"),
         (["GRIDS=64,7"], "GRIDS=7: "),
         (["N=1024", "SOLVER=spectral"], "1024"),
         (["OUT=README.md"], "OUT=README.md is a file"),
