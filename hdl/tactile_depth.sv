@@ -184,8 +184,8 @@ module tactile_depth
     .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth),
     .GradientWidth(GradientWidth), .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
     .FlatField(FlatField), .Quadratic(Quadratic), .AutoZero(AutoZero), .Lanes(Lanes), .BlockLog2(BlockLog2),
-    .PolynomialWords(PolynomialWords), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
-    .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
+    .GainWidth(GainWidth), .PolynomialWords(PolynomialWords), .DepthMantissa(DepthMantissa),
+    .DepthExponent(DepthExponent), .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
   ) u_registers (
     .clk, .rst, .cold_rst, .s_axil_awaddr, .s_axil_awprot, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata,
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,

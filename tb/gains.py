@@ -11,7 +11,7 @@ from cocotb.triggers import FallingEdge, RisingEdge
 
 from tactile_depth.calibration.flat_field import unit_gains
 from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
-from tactile_depth.configuration import GAIN_WIDTH, Configuration, Format
+from tactile_depth.configuration import Configuration, Format, gain_fraction
 from tb.stream import parameters, places
 
 READ_CLOCKS = 2  # from table_read to the gain
@@ -23,7 +23,7 @@ def first_gains(rows: int, columns: int, channels: int, width: int) -> Any:
     return places(rows * columns * channels, width).reshape(rows, columns, channels) & (1 << width) - 1
 
 
-def random_gains(config: Configuration, chance: random.Random, channels: int = 3, width: int = GAIN_WIDTH) -> Any:
+def random_gains(config: Configuration, chance: random.Random, channels: int, width: int) -> Any:
     """Return random gains of the nodes: anything, the limits alone, or like those of a sensor."""
     generator = np.random.default_rng(chance.getrandbits(32))
     shape = (*config.reference_nodes, channels)
@@ -56,6 +56,14 @@ class Grid:
     def reference_nodes(self) -> tuple[Any, ...]:
         return self.rows >> self.reference_block_log2, self.columns >> self.reference_block_log2
 
+    @property
+    def gain_width(self) -> int:
+        return self.depth.width
+
+    @property
+    def gain_fraction(self) -> int:
+        return gain_fraction(self.gain_width)
+
 
 class Gains:
     """Pins of the bus and of the capture; `banks` are the words (node rows, node columns, channels) that each bank
@@ -63,11 +71,12 @@ class Gains:
 
     name = "gain"  # of a word, in the pins of the bus
     capture_pin = "capture_gains"
-    width, per_node = GAIN_WIDTH, ENTRIES_PER_NODE
+    per_node = ENTRIES_PER_NODE
     side = 1  # nodes that the capture writes at once
 
     def __init__(self, dut: Any, config: Configuration) -> None:
         self.dut, self.config = dut, config
+        self.width = config.depth.width
         self.banks = [self.at_power_up(), self.at_power_up()]
         self.channels = self.banks[0].shape[-1]
         self.bank = 0  # what table_bank says
@@ -82,7 +91,7 @@ class Gains:
         return unit_gains(self.config)
 
     def random(self, chance: random.Random) -> Any:
-        return random_gains(self.config, chance)
+        return random_gains(self.config, chance, self.channels, self.width)
 
     def entries(self, words: Any) -> Any:
         """Return the words that the bus writes, by index."""

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from commands.common.repository import ROOT
+from tactile_depth.bounds import bounds
 from tactile_depth.common.round_saturate import Monitor
-from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format, bounds
+from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format
 from tactile_depth.errors import InputError
 from tactile_depth.gradient.divergence import divergence
 from tactile_depth.poisson import tridiagonal_solver

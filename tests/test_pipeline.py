@@ -308,6 +308,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
         ({"grid": (24, 32), "solver": "spectral"}, "rows=24"),
         ({"data_width": 33}, "data_width=33"),
         ({"coefficient_width": 9}, "coefficient_width=9"),
+        ({"gain_width": 15}, "gain_width=15"),
         ({"depth_range_mm": float("nan")}, "depth_range_mm=nan"),
         ({"threshold_mm": 0.0}, "threshold_mm=0.0"),
         ({"threshold_mm": 1e3}, "threshold_mm=1000.0"),

@@ -33,7 +33,7 @@ STRUCTURES: dict[str, tuple[dict[str, Any], dict[str, str]]] = {  # choices of t
         TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "auto_zero": True},
         FORMATS,
     ),
-    "tridiagonal-8x16-quadratic": (TRIDIAGONAL | FLAT_QUADRATIC, FORMATS),
+    "tridiagonal-8x16-quadratic": (TRIDIAGONAL | FLAT_QUADRATIC | {"gain_width": 17}, FORMATS),
     "16-flat-neumann": ({"columns": 16, "flat_field": True, "neumann": True, "auto_zero": True}, FORMATS),
     "tridiagonal-8x16-zero": (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "auto_zero": True}, FORMATS),
 }

@@ -40,6 +40,7 @@ ACCEPTED = (
         "SIM",
         "DATA_WIDTH",
         "COEFF_WIDTH",
+        "GAIN_WIDTH",
         "DEPTH_RANGE",
         "FRAMES",
         "PRESS",
@@ -63,6 +64,7 @@ class Request:
     simulator: str
     data_width: int
     coefficient_width: int
+    gain_width: int
     depth_range_mm: float | None  # infinite: as deep as any slopes can make it
     frames: str
     press: Press
@@ -113,6 +115,7 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
         simulator=choice("SIM", simulation.SIMULATORS),
         data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
+        gain_width=int(number("GAIN_WIDTH", Configuration.gain_width, -math.inf, math.inf)),
         depth_range_mm=math.inf
         if values.get("DEPTH_RANGE") == WORST
         else number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
@@ -227,6 +230,7 @@ def described(config: Configuration) -> dict[str, Any]:
         "lanes": config.lanes,
         "data_width": config.data_width,
         "coeff_width": config.coefficient_width,
+        "gain_width": config.gain_width,
         "gradient_model": config.gradient_model,
         "flat_field": config.flat_field,
         "auto_zero": config.auto_zero,
@@ -281,6 +285,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         neumann=neumann,
         data_width=request.data_width,
         coefficient_width=request.coefficient_width,
+        gain_width=request.gain_width,
         depth_range_px=depth_range_px,
         auto_zero=request.floor is not None,
     )

@@ -30,6 +30,7 @@ VARIABLES = {
     r"\bsolver=": "SOLVER=",
     r"\bdata_width=": "DATA_WIDTH=",
     r"\bcoefficient_width=": "COEFF_WIDTH=",
+    r"\bgain_width=": "GAIN_WIDTH=",
     r"\bgradient_model=": "GRADIENT=",
     r"\blanes=": "LANES=",
     r"\breference=": "REFERENCE=",

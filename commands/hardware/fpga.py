@@ -42,8 +42,8 @@ AT_A_TIME = 3  # seeds: as many as there are by default, so that two processors 
 PLACER = ("--placer", "static")
 TIMEOUT_S = 3600
 CHOICES = (
-    *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
-    *("FRAMES", "REFERENCE", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
+    *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
+    *("DEPTH_RANGE", "FRAMES", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
 )
 LARGEST_SEED = 2**31 - 1
 
@@ -234,7 +234,8 @@ def run(request: Request, command: str) -> int:
     check()
     design = request.design
     _, _, config = synthesis.design(design)  # refuses bad input before anything is made
-    colours = f"-{config.gradient_model}" if config.flat_field else ""
+    colours = f"-{config.gradient_model}-g{config.gain_width}" if config.flat_field else ""
+    colours += "-zero" if config.auto_zero else ""
     name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
     out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
     with synthesis.workspace(out, ["fpga.json"]) as work:

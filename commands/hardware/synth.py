@@ -48,8 +48,8 @@ UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl
 SOLVER = "u_poisson.u_solver"
 FRONT_END, FRONT_END_PATH = "camera_front_end", "u_camera"
 CONFIGURING = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE"),
-    *("REFERENCE", "FLOOR"),
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
+    *("DEPTH_RANGE", "REFERENCE", "FLOOR"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
 RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")

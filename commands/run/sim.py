@@ -204,6 +204,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
 def default_folder(request: Request, config: Configuration) -> Path:
     """Folder of results when OUT is not given: one for each configuration."""
     widths = f"d{config.data_width}-c{config.coefficient_width}"
+    widths += f"-g{config.gain_width}" if config.flat_field else ""
     colours = f"-{config.gradient_model}" if config.flat_field else ""
     colours += "-zero" if config.auto_zero else ""
     shape = f"{config.rows}x{config.columns}"

@@ -158,7 +158,7 @@ def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
         write_roms(folder, load("synthetic"), Configuration(solver=solver))
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
-    write_gains(folder, unit_gains(Configuration()))
+    write_gains(folder, unit_gains(Configuration()), Configuration().gain_width)
     write_floor(folder, no_floor(Configuration()), Configuration().depth.width)
     write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
     write_list(folder, [pins(False, True, 0)] * DEFAULT_ENTRIES)

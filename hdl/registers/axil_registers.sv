@@ -32,6 +32,7 @@ module axil_registers
   parameter int AutoZero         = DefaultAutoZero,
   parameter int Lanes            = DefaultLanes,
   parameter int BlockLog2        = DefaultBlockLog2,
+  parameter int GainWidth        = DefaultGainWidth,
   parameter int PolynomialWords  = DefaultPolynomialWords,
   parameter int DepthMantissa    = DefaultDepthMantissa,
   parameter int DepthExponent    = DefaultDepthExponent,
@@ -91,7 +92,7 @@ module axil_registers
     | ((Quadratic != 0 ? 0 : BitsPerChannel) << FormatBitsPerChannelLsb);
   localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
     | (Quadratic << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (AutoZero << DeviceZeroOffsetBit)
-    | (Lanes << DeviceLanesLsb);
+    | (Lanes << DeviceLanesLsb) | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
   localparam logic [31:0] DepthUnitWord =
     (DepthMantissa << DepthUnitMantissaLsb) | (DepthExponent << DepthUnitExponentLsb);
   localparam logic [31:0] SlopeUnitWord =

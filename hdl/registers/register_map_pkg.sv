@@ -110,6 +110,7 @@ package register_map_pkg;
   localparam int DeviceFlatFieldBit = 3;
   localparam int DeviceZeroOffsetBit = 4;
   localparam int DeviceLanesLsb = 8;
+  localparam int DeviceGainWidthLsb = 16;
   localparam int DepthUnitMantissaLsb = 0;
   localparam int DepthUnitExponentLsb = 24;
   localparam int SlopeUnitMantissaLsb = 0;

@@ -11,16 +11,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache, cached_property
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.bounds import Bounds, bounds, difference_bounds
 from tactile_depth.errors import InputError
-from tactile_depth.transform.dst_forward import dst_forward
-from tactile_depth.transform.dst_inverse import dst_inverse
-from tactile_depth.transform.orders import eigenvalues, makhoul
 from tactile_depth.transform.sdf_fft import twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
 
@@ -47,7 +43,14 @@ GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 # visible error in the gradients of real presses; a grid of 8 does.
 REFERENCE_NODES = 16
 SMALLEST_BLOCK = 2
-GAIN_WIDTH, GAIN_FRACTION = 24, 27  # unsigned gain word: a reference of 8 grey levels gives full scale
+PIXEL_WIDTH = 8
+GAIN_WIDTHS = (16, 24)  # of an unsigned gain word
+DARKEST_LOG2 = 3  # a reference of 8 grey levels gives the full scale of a gain
+
+
+def gain_fraction(gain_width: int) -> int:
+    """Return the fraction bits of a gain, 1 / reference, of so many bits."""
+    return gain_width + DARKEST_LOG2
 
 
 def most_lanes(columns: int) -> int:
@@ -111,6 +114,8 @@ class Configuration:
         Bits of each colour that index the gradient table.
     flat_field : bool
         Colours are taken relative to a reference frame.
+    gain_width : int
+        Bits of a gain of the flat field.
     gradient_model : str
         `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
     auto_zero : bool
@@ -132,6 +137,7 @@ class Configuration:
     gradient_model: str = "lut"
     auto_zero: bool = False
     lanes: int = 1
+    gain_width: int = 24
 
     def __post_init__(self) -> None:
         def within(name: str, value: int, accepted: tuple[int, int]) -> None:
@@ -164,6 +170,8 @@ class Configuration:
         self._check_lanes()
         within("data_width", self.data_width, DATA_WIDTHS)
         within("coefficient_width", self.coefficient_width, COEFFICIENT_WIDTHS)
+        within("gain_width", self.gain_width, GAIN_WIDTHS)
+        self._check_sums()
         if self.depth_range_px is None:
             object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
         if not SMALLEST_DEPTH_RANGE_PX <= self.depth_limit_px / DEPTH_HEADROOM < math.inf:
@@ -211,7 +219,22 @@ class Configuration:
             lower = 1 << (self.lanes.bit_length() - 1)
             raise InputError(f"lanes={self.lanes} is not a power of two: try lanes={lower} or lanes={2 * lower}")
 
+    def _check_sums(self) -> None:
+        """Refuse gains that a capture cannot sum blocks in."""
+        least = PIXEL_WIDTH + 2 * self.reference_block_log2
+        if self.flat_field and self.gain_width < least:
+            block = 1 << self.reference_block_log2
+            raise InputError(
+                f"gain_width={self.gain_width} with columns={self.columns}: a capture of the reference sums blocks of "
+                f"{block} x {block} pixels in words of that width: set gain_width={least} or more"
+            )
+
     # Widths.
+
+    @property
+    def gain_fraction(self) -> int:
+        """Fraction bits of a gain of the flat field."""
+        return gain_fraction(self.gain_width)
 
     @property
     def arithmetic_width(self) -> int:
@@ -398,99 +421,3 @@ class Configuration:
             "spectral_divide": (self._bounds.column_inverse * deep, self.column_inverse),
             "column_inverse.output": (self._bounds.depth_modes * deep, self.depth_modes),
         }
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """Largest magnitudes at the nodes of each core, for slopes up to 1 (first three) or depths up to 1 (others)."""
-
-    row_forward: float
-    row_modes: float
-    column_forward: float
-    column_inverse: float
-    depth_modes: float
-    row_inverse: float
-
-
-def _variation(response: np.ndarray) -> np.ndarray:
-    """Return the L1 norm over axis 0 of the response to slopes, from the response to the divergence."""
-    return np.abs(np.diff(response, axis=0, append=0)).sum(axis=0)
-
-
-def wide_arithmetic(neumann: bool) -> dict[str, Any]:
-    """Return the arguments of a nearly ideal transform of floats."""
-    return {
-        "alternate": not neumann,
-        "input_drop": 0,
-        "width": 62,
-        "coefficient_width": 50,
-        "output_drop": 0,
-        "output_width": 62,
-    }
-
-
-@cache
-def difference_bounds(rows: int, columns: int, neumann: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the largest f[i] - d[i-1] of each mode, for slopes up to 1 and for depths up to 1, float64 (columns,).
-
-    This difference is the sum over rows r <= i of f[r] times the product of |c| over the rows from r up to i. These
-    weights rise to 1 at r = i, so their variation is below 2. In terms of depth the difference is z[i] / c[i] + z[i+1],
-    and 1 / |c| is largest in the first row. The bounds hold for f alone too, the modes at the input.
-    """
-    eigenvalue = eigenvalues(columns, neumann)
-    modes = dst_forward(np.eye(columns)[:, makhoul(columns)], **wide_arithmetic(neumann))
-    length = np.abs(modes).sum(axis=0)
-    inner = np.diff(modes, axis=0, append=modes[-1:] if neumann else 0)  # Neumann: no slope across the edge
-    variation = np.abs(inner).sum(axis=0)
-    end = eigenvalue - (1 if neumann else 3)
-    weights = largest = np.ones(columns)
-    c = 1 / end
-    for _ in range(rows - 1):
-        weights = 1 + np.abs(c) * weights
-        largest = np.maximum(largest, weights)
-        c = 1 / (eigenvalue - 2 - c)
-    return 2 * length + variation * largest, (4 - eigenvalue) * length
-
-
-class _Responses(Monitor):
-    """Monitor that keeps the response of each node instead of its norm."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.responses: dict[str, np.ndarray] = {}
-
-    def linear(self, node: str, response: np.ndarray) -> None:
-        self.responses[node] = response.reshape(response.shape[0], -1)
-
-
-@cache
-def bounds(size: int, neumann: bool = False) -> Bounds:
-    """Return the largest L1 norms of the nodes of the spectral solver, from the models run on unit vectors."""
-    wide = wide_arithmetic(neumann)
-    unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
-    forward, inverse = _Responses(), _Responses()
-    modes = dst_forward(unit, monitor=forward, node="forward", **wide)
-    dst_inverse(modes, monitor=inverse, node="inverse", **wide)
-
-    def largest(nodes: _Responses, norm) -> float:  # type: ignore[no-untyped-def]
-        return max(float(norm(response).max()) for response in nodes.responses.values())
-
-    def l1(response: np.ndarray) -> np.ndarray:
-        return np.abs(response).sum(axis=0)
-
-    def row(response: np.ndarray) -> np.ndarray:  # gx along the row, gy of this row and of the row before
-        return _variation(response) + 2 * l1(response)
-
-    def column(response: np.ndarray) -> np.ndarray:  # outer product with every row mode
-        along, across = l1(response), _variation(response)
-        return np.maximum.reduce([v * along + u * across for u, v in zip(l1(modes), _variation(modes), strict=True)])
-
-    largest_mode = float(l1(modes).max())
-    return Bounds(
-        row_forward=largest(forward, row),
-        row_modes=float(row(modes).max()),
-        column_forward=largest(forward, column),
-        column_inverse=largest_mode * max(largest(inverse, l1), largest_mode),
-        depth_modes=largest_mode,
-        row_inverse=largest(inverse, l1),
-    )

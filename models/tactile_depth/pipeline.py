@@ -70,6 +70,8 @@ class Pipeline:
         Gradient model, `lut` or `quadratic`; "": the better model of the sensor.
     data_width, coefficient_width : int
         Bits of a stored word and of a coefficient.
+    gain_width : int
+        Bits of a gain of the flat field.
     depth_range_mm : float, optional
         Depth that the formats are sized for; by default a quarter of the shorter side.
     zero_offset : bool
@@ -106,6 +108,7 @@ class Pipeline:
         model: str = "",
         data_width: int = 24,
         coefficient_width: int = 18,
+        gain_width: int = Configuration.gain_width,
         depth_range_mm: float | None = None,
         zero_offset: bool = True,
         arithmetic: str = "chip",
@@ -115,7 +118,8 @@ class Pipeline:
             raise InputError(f"sensor is a {type(sensor).__name__}: accepted is a Sensor, as load(..) returns it")
         if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
             raise InputError(f"grid={grid!r}: accepted are (rows, columns), whole numbers")
-        for name, number in (("data_width", data_width), ("coefficient_width", coefficient_width)):
+        widths = {"data_width": data_width, "coefficient_width": coefficient_width, "gain_width": gain_width}
+        for name, number in widths.items():
             if not is_whole(number):
                 raise InputError(f"{name}={number!r}: accepted is a whole number")
         for name, value, accepted in (("arithmetic", arithmetic, ARITHMETICS), ("boundary", boundary, BOUNDARIES)):
@@ -133,8 +137,7 @@ class Pipeline:
         self.config = self.sensor.configuration(
             model,
             **shape,
-            data_width=data_width,
-            coefficient_width=coefficient_width,
+            **widths,
             depth_range_px=None if depth_range_mm is None else depth_range_mm / self.pixel_pitch_mm,
             auto_zero=zero_offset,
         )

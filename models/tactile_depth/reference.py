@@ -10,7 +10,7 @@ import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
 from tactile_depth.calibration.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
-from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH, Configuration
+from tactile_depth.configuration import DARKEST_LOG2, Configuration
 from tactile_depth.gradient.divergence import divergence
 from tactile_depth.sensor import Sensor
 from tactile_depth.transform.orders import read_only
@@ -61,7 +61,7 @@ def gains(no_contact: np.ndarray, config: Configuration) -> np.ndarray:
     rows, columns = config.reference_nodes
     frame = no_contact.reshape(-1, *no_contact.shape[-3:]).mean(axis=0)[: rows * block, : columns * block]
     means = frame.reshape(rows, block, columns, block, 3).mean(axis=(1, 3))
-    found = 1 / np.maximum(means, 2.0 ** (GAIN_FRACTION - GAIN_WIDTH))
+    found = 1 / np.maximum(means, 2.0**DARKEST_LOG2)
     for axis, pixels in ((0, config.rows), (1, config.columns)):
         nodes = found.shape[axis]
         at = np.clip((np.arange(pixels) + 0.5) / block - 0.5, 0, nodes - 1)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_depth.configuration import GAIN_WIDTH, Configuration
+from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals
 from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.transform.sdf_fft import stages
@@ -77,7 +77,7 @@ def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
     write_words(path, pack((codes[:, 1], codes[:, 0]), width), 2 * width)
 
 
-def write_gains(folder: Path, gains: np.ndarray, width: int = GAIN_WIDTH) -> None:
+def write_gains(folder: Path, gains: np.ndarray, width: int) -> None:
     """Write gains (.., 3) as the memories of gain_map.sv read them: one file per channel, one word per node."""
     for channel, words in enumerate(np.moveaxis(gains, -1, 0)):
         write_words(folder / f"gain_{channel}.hex", words.ravel(), width)

@@ -218,7 +218,7 @@ def write_roms(
         side = floor_map.side(config.lanes, config.reference_block_log2)
         write_floor(folder, no_floor(config) if floor is None else floor, config.depth.width, side)
     if config.flat_field:
-        write_gains(folder, reference_gains(calibration, config) if gains is None else gains)
+        write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain_width)
     if config.gradient_model == "quadratic":
         words = polynomial_words(calibration, config, calibration.pixel_pitch_mm)
         write_quadratic(folder, words, POLYNOMIAL.width)

@@ -35,7 +35,6 @@ class Floors(Gains):
     per_node = 1
 
     def __init__(self, dut: Any, config: Configuration) -> None:
-        self.width = config.depth.width
         (lanes,) = parameters(dut, "Lanes")
         self.side = floor_map.side(lanes, config.reference_block_log2)
         super().__init__(dut, config)

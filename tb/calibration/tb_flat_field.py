@@ -11,7 +11,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.calibration.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.latency import FLAT_FIELD
-from tb.gains import Gains, Grid, random_gains, reads_as_a_pause_ends
+from tb.gains import Gains, Grid, reads_as_a_pause_ends
 from tb.pixels import pack
 from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, parameters, raster, sample, send_apart
 
@@ -130,7 +130,7 @@ async def at_power_up(dut: Any) -> None:
 async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
     device = Field(dut, gap, pause)
     await device.start()
-    await device.gains.write(random_gains(device.config, device.bench.random))
+    await device.gains.write(device.gains.random(device.bench.random))
     device.gains.due = True
     going_on = [True]
     rewriter = cocotb.start_soon(device.gains.rewrite(device.bench.random, lambda: going_on[0]))
@@ -156,7 +156,7 @@ async def named_inside_a_frame(dut: Any) -> None:
     await device.start()
     size = len(device.places)
     for count in range(3, size, size if device.large else max(device.config.columns + 1, size // 5)):
-        await device.gains.write(random_gains(device.config, device.bench.random))
+        await device.gains.write(device.gains.random(device.bench.random))
         await device.send(named=count)
         await device.send()
     await device.check()
@@ -169,7 +169,8 @@ async def products_at_their_limits(dut: Any) -> None:
     await device.start()
     drop = parameters(dut, "Drop")[0]
     half = 1 << (drop - 1)
-    gains = (half, 3 * half, (1 << 23) - 1, 1 << 23, (1 << 22) + half // 2)
+    dead = 1 << device.gains.width - 1
+    gains = (half, 3 * half, dead - 1, dead, dead // 2 + half // 2)
     for gain in gains[2:3] if device.large else gains:
         await device.gains.write(np.full((*device.config.reference_nodes, 3), gain))
         device.gains.due = True
@@ -193,7 +194,7 @@ async def products_beside_ties(dut: Any) -> None:
     await device.start()
     (drop,) = parameters(dut, "Drop")
     for _ in range(2 if device.large else 2 * MANY):
-        gains = random_gains(device.config, device.bench.random)
+        gains = device.gains.random(device.bench.random)
         await device.gains.write(gains)
         device.gains.due = True
         await device.send(level=0, pixels=beside_ties(interpolated_gains(gains, device.config), drop))
@@ -209,7 +210,9 @@ async def resets(dut: Any) -> None:
     generator = np.random.default_rng(1)
     counts = (1, 2, 3, 4, 8, 10, 11, 12, 13, 14, 2 * device.config.columns + 3)
     for count in counts[-1:] if device.large else counts:
-        await device.gains.write(generator.integers(1 << 19, 1 << 24, device.gains.banks[0].shape))
+        await device.gains.write(
+            generator.integers(1 << device.gains.width - 5, 1 << device.gains.width, device.gains.banks[0].shape)
+        )
         words = [(generator.integers(0, 1 << 24), place) for place in device.places[:count]]
         device.dut.dark_level.value = 128
         await send_apart(device.bench, device.driver, words, 0.0)

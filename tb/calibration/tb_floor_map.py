@@ -25,7 +25,6 @@ class Nodes(Gains):
     per_node = 1
 
     def __init__(self, dut: Any, config: Configuration, lanes: int) -> None:
-        self.width = config.depth.width
         self.side = side(lanes, config.reference_block_log2)
         super().__init__(dut, config)
 

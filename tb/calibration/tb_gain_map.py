@@ -20,7 +20,6 @@ class Nodes(Gains):
     """Node memory of any width with one to three channels."""
 
     def __init__(self, dut: Any, config: Configuration) -> None:
-        self.width = config.depth.width
         (self.count,) = parameters(dut, "Channels")
         super().__init__(dut, config)
 

@@ -10,7 +10,7 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.calibration.reference_capture import reference_capture, reference_capture_clocks
-from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH
+from tactile_depth.configuration import DARKEST_LOG2
 from tb.calibration.capture_bench import request, request_after
 from tb.pixels import pack
 from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, sample, send_apart
@@ -69,7 +69,8 @@ class Capture:
                 self.captures += 1
                 self.busy = False
                 self.due = None
-                got = [[word >> GAIN_WIDTH * c & (1 << GAIN_WIDTH) - 1 for c in range(3)] for word in self.memory]
+                width = self.config.gain_width
+                got = [[word >> width * c & (1 << width) - 1 for c in range(3)] for word in self.memory]
                 np.testing.assert_array_equal(got, self.gains.reshape(-1, 3), "gains")
             if dut.en.value and dut.in_valid.value:
                 place = int(dut.in_position.value)
@@ -101,9 +102,10 @@ class Capture:
                 pass
             elif self.sums:
                 wanted, added, first = self.sums.pop(0)
-                before = [0 if first else self.memory[node] >> GAIN_WIDTH * c for c in range(3)]
-                sums = [held + more & (1 << GAIN_WIDTH) - 1 for held, more in zip(before, added, strict=True)]
-                word = sum(word << GAIN_WIDTH * c for c, word in enumerate(sums))
+                width = self.config.gain_width
+                before = [0 if first else self.memory[node] >> width * c for c in range(3)]
+                sums = [held + more & (1 << width) - 1 for held, more in zip(before, added, strict=True)]
+                word = sum(word << width * c for c, word in enumerate(sums))
                 assert (node, int(dut.map_write_gains.value)) == (wanted, word), "a sum"
             else:
                 assert self.due is not None, "a write of nothing"
@@ -126,7 +128,7 @@ class Capture:
             case 1:
                 return (self.generator.random(shape) < 0.1).astype(np.uint8)
             case 2:
-                darkest = 1 << GAIN_FRACTION - GAIN_WIDTH  # the mean at which a gain just saturates
+                darkest = 1 << DARKEST_LOG2  # the mean at which a gain just saturates
                 return (darkest + self.generator.choice([-1, 0, 0, 0, 0, 0, 0, 1], shape)).astype(np.uint8)
             case 3:
                 return np.broadcast_to(self.generator.integers(0, 256, 3, dtype=np.uint8), shape)
@@ -150,9 +152,9 @@ class Capture:
         rows, columns = self.config.reference_nodes
         whole = frame[: rows * block, : columns * block].astype(np.int64)
         sums = whole.reshape(rows, block, columns, block, 3).sum(axis=(1, 3)).reshape(-1, 3)
-        sums = sums + self.flipped & (1 << GAIN_WIDTH) - 1
-        dividend = 2 * len(self.taken) * block * block << GAIN_FRACTION
-        return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << GAIN_WIDTH) - 1)
+        sums = sums + self.flipped & (1 << self.config.gain_width) - 1
+        dividend = 2 * len(self.taken) * block * block << self.config.gain_fraction
+        return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << self.config.gain_width) - 1)
 
     async def send(self, bad: Any = False) -> None:
         """A frame."""
@@ -212,9 +214,9 @@ async def any_sum(dut: Any) -> None:
         await device.send()
         for _ in range(8):  # until its last sum is written
             await RisingEdge(dut.clk)
-        device.flipped = device.generator.integers(0, 1 << GAIN_WIDTH, (len(device.memory), 3))
+        device.flipped = device.generator.integers(0, 1 << device.config.gain_width, (len(device.memory), 3))
         for node, (red, green, blue) in enumerate(device.flipped.tolist()):
-            device.memory[node] = red | green << GAIN_WIDTH | blue << 2 * GAIN_WIDTH
+            device.memory[node] = red | green << device.config.gain_width | blue << 2 * device.config.gain_width
         await device.until_done()
     assert device.captures == count
 

@@ -8,7 +8,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles
 
-from tactile_depth.configuration import GAIN_FRACTION, Configuration
+from tactile_depth.configuration import Configuration
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS
 from tb.selection import Level, case, named, up_to
@@ -46,7 +46,7 @@ def random_entries(pipeline: Pipeline, name: str, rng: np.random.Generator) -> n
     if name == "coefficients":
         return one_word(np.rint(entries[:, 0] * rng.uniform(0.5, 1, len(entries))).astype(np.int64))
     if name == "reference":
-        return reference_entries((1 << GAIN_FRACTION) // rng.integers(90, 160, (*config.reference_nodes, 3)))
+        return reference_entries((1 << config.gain_fraction) // rng.integers(90, 160, (*config.reference_nodes, 3)))
     limit = 1 << config.data_width - 1
     return one_word(rng.integers(-limit // 8, limit // 8, len(entries)))
 

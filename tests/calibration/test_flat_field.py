@@ -14,24 +14,27 @@ from tactile_depth.calibration.flat_field import (
     interpolated_gains,
     unit_gains,
 )
-from tactile_depth.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration, Format
+from tactile_depth.configuration import DEVIATION, Configuration, Format
 from tactile_depth.rom_files import write_gains
 from tb.gains import Grid
 
 
 @pytest.mark.structures(
-    "columns rows block_log2 quadratic",
-    verilator=[(16, 11, 2, False)],
-    icarus=[(16, 8, 1, True)],
-    regress=[(16, 11, 2, True), (16, 11, 2, False), (32, 21, 1, False), (128, 8, 3, False), (64, 64, 2, True)],
-    regress_verilator=[(16, 8, 1, True)],
+    "columns rows block_log2 quadratic gain_width",
+    verilator=[(16, 11, 2, False, 24)],
+    icarus=[(16, 8, 1, True, 17)],
+    regress=[
+        *((16, 11, 2, True, 24), (16, 11, 2, False, 24), (32, 21, 1, False, 24), (128, 8, 3, False, 24)),
+        *((64, 64, 2, True, 24), (16, 8, 1, True, 16), (128, 8, 3, True, 17)),
+    ],
+    regress_verilator=[(16, 8, 1, True, 17)],
 )
-def test_rtl(run_tb: Any, columns: int, rows: int, block_log2: int, quadratic: Any) -> None:
-    config = Grid(rows, columns, block_log2, Format(GAIN_WIDTH, 0))
+def test_rtl(run_tb: Any, columns: int, rows: int, block_log2: int, quadratic: Any, gain_width: int) -> None:
+    config = Grid(rows, columns, block_log2, Format(gain_width, 0))
     run_tb(
         "flat_field",
         flat_field_parameters(config, quadratic),  # type: ignore[arg-type]
-        roms=lambda folder: write_gains(folder, unit_gains(config)),  # type: ignore[arg-type]
+        roms=lambda folder: write_gains(folder, unit_gains(config), gain_width),  # type: ignore[arg-type]
     )
 
 
@@ -43,7 +46,7 @@ def test_a_frame_like_the_reference_is_flat(level: int) -> None:
     """At every level: gains of under 16 grey levels make dark pixels, which are flat as well."""
     frames = np.full((1, 21, 32, 3), level, np.uint8)
     gains = captured_gains(frames, CONFIG)
-    assert np.all(np.abs(interpolated_gains(gains, CONFIG) * level - (1 << GAIN_FRACTION)) <= level)
+    assert np.all(np.abs(interpolated_gains(gains, CONFIG) * level - (1 << CONFIG.gain_fraction)) <= level)
     assert np.all(flat_codes(frames, gains, CONFIG) == 128)
     assert not np.any(deviations(frames, gains, CONFIG))
 

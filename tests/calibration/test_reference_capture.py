@@ -12,18 +12,18 @@ from tactile_depth.calibration.reference_capture import (
     reference_capture,
     reference_capture_parameters,
 )
-from tactile_depth.configuration import GAIN_WIDTH, Configuration
+from tactile_depth.configuration import Configuration
 
 
 @pytest.mark.structures(
-    "columns rows largest",
-    verilator=[(16, 8, 5)],  # columns, rows, log2 of the largest number of frames
-    icarus=[(16, 8, 2)],
-    regress=[(16, 16, 3), (32, 21, 3), (128, 8, 4), (16, 8, 8)],
-    regress_verilator=[(16, 8, 8)],
+    "columns rows largest gain_width",
+    verilator=[(16, 8, 5, 24)],  # columns, rows, log2 of the largest number of frames
+    icarus=[(16, 8, 2, 17)],
+    regress=[(16, 16, 3, 24), (32, 21, 3, 24), (128, 8, 4, 24), (128, 8, 3, 17), (16, 8, 8, 24)],
+    regress_verilator=[(16, 8, 8, 24)],
 )
-def test_rtl(run_tb: Any, columns: int, rows: int, largest: Any) -> None:
-    choices: dict[str, Any] = {"columns": columns, "rows": rows, "solver": "tridiagonal"}
+def test_rtl(run_tb: Any, columns: int, rows: int, largest: Any, gain_width: int) -> None:
+    choices: dict[str, Any] = {"columns": columns, "rows": rows, "solver": "tridiagonal", "gain_width": gain_width}
     run_tb(
         "reference_capture",
         reference_capture_parameters(Configuration(**choices)) | {"MaxLog2": largest},
@@ -31,13 +31,16 @@ def test_rtl(run_tb: Any, columns: int, rows: int, largest: Any) -> None:
     )
 
 
-@pytest.mark.parametrize(("columns", "largest"), [(16, 8), (128, 8), (256, 8), (512, 6), (1024, 4)])
-def test_the_largest_sum_fits_its_word(columns: int, largest: int) -> None:
-    config = Configuration(columns=columns, solver="tridiagonal")
+@pytest.mark.parametrize(
+    ("columns", "gain_width", "largest"),
+    [(16, 24, 8), (128, 24, 8), (256, 24, 8), (512, 24, 6), (1024, 24, 4), (128, 17, 3), (256, 17, 1), (256, 16, 0)],
+)
+def test_the_largest_sum_fits_its_word(columns: int, gain_width: int, largest: int) -> None:
+    config = Configuration(columns=columns, solver="tridiagonal", flat_field=True, gain_width=gain_width)
     assert largest_log2_frames(config) == largest
     pixels = 1 << 2 * config.reference_block_log2 + largest
-    assert 255 * pixels < 1 << GAIN_WIDTH
-    assert largest == 8 or 2 * 255 * pixels >= 1 << GAIN_WIDTH
+    assert 255 * pixels < 1 << gain_width
+    assert largest == 8 or 2 * 255 * pixels >= 1 << gain_width
 
 
 def test_a_broken_frame_starts_afresh() -> None:

@@ -224,10 +224,10 @@ def test_a_position_is_finite(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
     assert lines == [f"make sim: {word}: accepted is x,y in mm from the middle of the frame, as 2.5,-1"]
 
 
-NUMBERS = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "DEPTH_RANGE", "PRESS", "NOISE", "REPEAT", "SEED", "GAPS")
+NUMBERS = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "PRESS", "NOISE", "REPEAT")
 
 
-@pytest.mark.parametrize("name", [*NUMBERS, "STALLS", "WAVES"])
+@pytest.mark.parametrize("name", [*NUMBERS, "SEED", "GAPS", "STALLS", "WAVES"])
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e999"])
 def test_every_number_is_finite(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, value: Any

@@ -380,6 +380,8 @@ BAD_INPUT: dict[str, Any] = {
     "unit of slopes": lambda t: f"CALIBRATION={_calibration(t / 'c.npz', gradient=np.full((4, 4, 4, 2), 1e6))}",
     "data width": lambda t: "DATA_WIDTH=33",
     "coefficient width": lambda t: "COEFF_WIDTH=9",
+    "gain width": lambda t: "GAIN_WIDTH=25",
+    "gain width and block": lambda t: "GAIN_WIDTH=17 N=512 REFERENCE=flat",
     "width and format": lambda t: "DATA_WIDTH=12 N=512",
     "depth range": lambda t: "DEPTH_RANGE=0",
     "gaps": lambda t: "GAPS=1",

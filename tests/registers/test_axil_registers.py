@@ -31,6 +31,7 @@ EXTREMES = {
     "AutoZero": 1,
     "Lanes": 32,
     "BlockLog2": 0,
+    "GainWidth": 32,
     "DepthMantissa": (1 << 24) - 1,
     "DepthExponent": -128,
     "SlopeMantissa": 1 << 23,

@@ -25,7 +25,9 @@ from tactile_depth.tactile_depth import top_parameters
 CONFIGURATIONS = {
     "default": Configuration(),
     "odd-range": Configuration(columns=64, rows=48, solver="tridiagonal", neumann=True, depth_range_px=17.3, lanes=8),
-    "wide": Configuration(columns=32, data_width=32, flat_field=True, gradient_model="quadratic", auto_zero=True),
+    "wide": Configuration(
+        columns=32, data_width=32, flat_field=True, gradient_model="quadratic", auto_zero=True, gain_width=17
+    ),
 }
 NAMES = ("DEVICE", "DEPTH_UNIT", "SLOPE_UNIT", "PITCH")
 
@@ -72,6 +74,7 @@ def test_the_device_says_what_it_is_built_of(config: Configuration) -> None:
     assert fields["gradient_model"] == register.field("gradient_model").values[config.gradient_model]
     assert (fields["flat_field"], fields["zero_offset"]) == (config.flat_field, config.auto_zero)
     assert fields["lanes"] == config.lanes
+    assert fields["gain_width"] == (config.gain_width if config.flat_field else 0)
 
 
 def test_an_unknown_pitch_reads_0() -> None:

@@ -6,7 +6,7 @@ are interpolated between the centres of the blocks. Lighting is smooth, so the i
 A pixel takes one multiplication for each colour and no division. All words are integers:
 
     pixel       8 bits unsigned
-    gain        24 bits unsigned, 2**27 / reference; at the nodes, and at the pixels
+    gain        unsigned, 2**(W + 3) / reference in a word of W bits, by default 24; at the nodes, and at the pixels
     code        8 bits unsigned, 128 I / ref, for the table: 128 equals the reference, saturated at 255
     deviation   14 bits signed, 12 fraction bits, I / ref - 1, for the quadratic model, saturated at 2
 
@@ -28,7 +28,7 @@ import numpy as np
 
 from tactile_depth.common.block_sum import block_sum
 from tactile_depth.common.round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.configuration import DEVIATION, GAIN_FRACTION, GAIN_WIDTH, Configuration
+from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import Sensor
 
@@ -43,7 +43,7 @@ def unit_gains(config: Configuration) -> np.ndarray:
     -------
     int64 array (node rows, node columns, 3)
     """
-    return np.full((*config.reference_nodes, 3), (1 << GAIN_FRACTION) // FLAT_CODE, np.int64)
+    return np.full((*config.reference_nodes, 3), (1 << config.gain_fraction) // FLAT_CODE, np.int64)
 
 
 def flat_field_parameters(config: Configuration, quadratic: bool) -> dict[str, int]:
@@ -53,8 +53,8 @@ def flat_field_parameters(config: Configuration, quadratic: bool) -> dict[str, i
         "Rows": config.rows,
         "Columns": config.columns,
         "BlockLog2": config.reference_block_log2,
-        "GainWidth": GAIN_WIDTH,
-        "Drop": GAIN_FRACTION - fraction,
+        "GainWidth": config.gain_width,
+        "Drop": config.gain_fraction - fraction,
         "Offset": 1 << fraction if quadratic else 0,
         "OutWidth": DEVIATION.width if quadratic else CODE_WIDTH,
         "Flat": 0 if quadratic else FLAT_CODE,
@@ -71,7 +71,7 @@ def reference_gains(calibration: Sensor, config: Configuration) -> np.ndarray:
 def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     """Return the gains from frames without contact.
 
-    A gain is 2**27 over the mean of a block over all frames, rounded with ties up, and saturated.
+    A gain is 2**gain_fraction over the mean of a block over all frames, rounded with ties up, and saturated.
 
     Parameters
     ----------
@@ -85,9 +85,9 @@ def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     assert count.bit_count() == 1, "a power of two of frames"
     log2 = config.reference_block_log2
     total = block_sum(frames.astype(np.int64), log2).sum(axis=0)
-    dividend = np.int64(2 * count << (GAIN_FRACTION + 2 * log2))
+    dividend = np.int64(2 * count << (config.gain_fraction + 2 * log2))
     quotient = (dividend // np.maximum(total, 1) + 1) >> 1
-    return np.minimum(quotient, (1 << GAIN_WIDTH) - 1)
+    return np.minimum(quotient, (1 << config.gain_width) - 1)
 
 
 def interpolated_gains(gains: np.ndarray, config: Configuration) -> np.ndarray:
@@ -127,7 +127,7 @@ class PixelGains:
 def pixel_gains(gains: np.ndarray, config: Configuration) -> PixelGains:
     """Interpolate the gains of the nodes (node rows, node columns, 3), and find the dead pixels."""
     interpolated = interpolated_gains(gains, config)
-    return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (GAIN_WIDTH - 1) != 0)
+    return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain_width - 1) != 0)
 
 
 def dark_pixels(
@@ -145,7 +145,7 @@ def require_light(gains: np.ndarray, config: Configuration, name: str = "referen
     dark = dark_pixels(np.full((config.rows, config.columns, 3), 255, np.uint8), gains, config)
     if 2 * np.count_nonzero(dark) > dark.size:
         raise InputError(
-            f"{name}: under {1 << (GAIN_FRACTION - GAIN_WIDTH + 1)} grey levels in a colour at "
+            f"{name}: under {1 << (DARKEST_LOG2 + 1)} grey levels in a colour at "
             f"{100 * dark.mean():.0f} % of the pixels, from which nothing can be read: take it with the lights on and "
             "with a longer exposure"
         )
@@ -168,7 +168,7 @@ def flat_codes(
     """Return the codes 128 I / ref of frames: uint8 (..., rows, columns, 3) to uint8 of the same shape."""
     gains = _at_pixels(gains, config)
     ratio = frames * gains.gains
-    code = round_half_even(ratio, GAIN_FRACTION - (FLAT_CODE.bit_length() - 1))
+    code = round_half_even(ratio, config.gain_fraction - (FLAT_CODE.bit_length() - 1))
     dark = dark_pixels(frames, gains, config, dark_level)
     largest = (1 << CODE_WIDTH) - 1
     if monitor is not None:
@@ -188,8 +188,8 @@ def deviations(
     dark = dark_pixels(frames, gains, config, dark_level)
     lit = np.where(dark[..., None], 0, frames)  # saturation is not counted at dark pixels
     ratio = lit * gains.gains
-    ratio -= 1 << GAIN_FRACTION
-    code = round_saturate(ratio, GAIN_FRACTION - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
+    ratio -= 1 << config.gain_fraction
+    code = round_saturate(ratio, config.gain_fraction - DEVIATION.fraction, DEVIATION.width, monitor, "flat_field")
     return hold_dark(code, dark, 0)
 
 

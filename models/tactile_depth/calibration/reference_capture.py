@@ -9,9 +9,8 @@ import numpy as np
 
 from tactile_depth.calibration.flat_field import captured_gains
 from tactile_depth.common import divide
-from tactile_depth.configuration import GAIN_FRACTION, GAIN_WIDTH, Configuration
+from tactile_depth.configuration import PIXEL_WIDTH, Configuration
 
-PIXEL_WIDTH = 8
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; large blocks reduce it (`largest_log2_frames`)."""
 READ_CLOCKS = 4
@@ -20,7 +19,7 @@ READ_CLOCKS = 4
 
 def largest_log2_frames(config: Configuration) -> int:
     """Return the base-2 logarithm of the most frames in a capture: the sum of a block must fit the word of a gain."""
-    return min(LARGEST_LOG2, GAIN_WIDTH - PIXEL_WIDTH - 2 * config.reference_block_log2)
+    return min(LARGEST_LOG2, config.gain_width - PIXEL_WIDTH - 2 * config.reference_block_log2)
 
 
 def reference_capture_parameters(config: Configuration) -> dict[str, int]:
@@ -29,8 +28,8 @@ def reference_capture_parameters(config: Configuration) -> dict[str, int]:
         "Rows": config.rows,
         "Columns": config.columns,
         "BlockLog2": config.reference_block_log2,
-        "Width": GAIN_WIDTH,
-        "GainFraction": GAIN_FRACTION,
+        "Width": config.gain_width,
+        "GainFraction": config.gain_fraction,
         "MaxLog2": largest_log2_frames(config),
     }
 
@@ -38,7 +37,7 @@ def reference_capture_parameters(config: Configuration) -> dict[str, int]:
 def reference_capture_clocks(config: Configuration) -> int:
     """Return the cycles from the cycle that takes the last pixel of the last frame to `done`."""
     rows, columns = config.reference_nodes
-    a_gain = divide.cycles(GAIN_WIDTH + 1) + 1  # with one bit to round by; and a cycle to take it
+    a_gain = divide.cycles(config.gain_width + 1) + 1  # with one bit to round by; and a cycle to take it
     return rows * columns * (READ_CLOCKS + 3 * a_gain) + 2
 
 

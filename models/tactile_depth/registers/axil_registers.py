@@ -73,6 +73,7 @@ class Build:
                 flat_field=p["FlatField"],
                 zero_offset=p["AutoZero"],
                 lanes=p["Lanes"],
+                gain_width=p["GainWidth"] if p["FlatField"] else 0,
             ),
             "DEPTH_UNIT": depth.pack(mantissa=p["DepthMantissa"], exponent=p["DepthExponent"] & exponent),
             "SLOPE_UNIT": slope.pack(mantissa=p["SlopeMantissa"], exponent=p["SlopeExponent"] & exponent),
