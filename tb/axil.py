@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""AXI4-Lite, from the side of the client: transactions pin by pin, whole ones, and registers by their names."""
+"""Client of an AXI4-Lite port: single beats, whole transactions, and registers by name."""
 
 from collections.abc import Awaitable
 from typing import Any
@@ -14,7 +14,7 @@ OFFSET = {register.name: register.offset for register in MAP}
 
 
 async def present(dut: Any, channel: str, **values: Any) -> None:
-    """Offer one beat on channel aw, w or ar until it is taken; then something else stands there."""
+    """Offer one beat on channel aw, w or ar until it is taken; afterwards the pins hold other data."""
     for name, value in values.items():
         getattr(dut, f"s_axil_{name}").value = value
     valid, ready = (getattr(dut, f"s_axil_{channel}{wire}") for wire in ("valid", "ready"))
@@ -29,7 +29,7 @@ async def present(dut: Any, channel: str, **values: Any) -> None:
 
 
 async def take(dut: Any, channel: str, stall: int = 0) -> int:
-    """Take one response on channel b or r, not before it was there for `stall` clocks; its code."""
+    """Take one response on channel b or r after it has been valid for `stall` cycles; return its code."""
     valid, ready = (getattr(dut, f"s_axil_{channel}{wire}") for wire in ("valid", "ready"))
     while not valid.value:
         await RisingEdge(dut.clk)
@@ -45,18 +45,18 @@ async def take(dut: Any, channel: str, stall: int = 0) -> int:
 
 
 async def write_beats(dut: Any, address: int, data: int, strobe: int = 0xF) -> None:
-    """Address and data of a write, together, without its response."""
+    """Offer address and data of a write together; do not take its response."""
     await gather(present(dut, "aw", awaddr=address), present(dut, "w", wdata=data, wstrb=strobe))
 
 
 async def write(dut: Any, address: int, data: int, strobe: int = 0xF) -> int:
-    """Write pin by pin; the response."""
+    """Write beat by beat; return the response."""
     await write_beats(dut, address, data, strobe)
     return await take(dut, "b")
 
 
 async def read(dut: Any, address: int) -> tuple[int, int]:
-    """Read pin by pin; data and response."""
+    """Read beat by beat; return data and response."""
     await present(dut, "ar", araddr=address)
     while not dut.s_axil_rvalid.value:
         await RisingEdge(dut.clk)
@@ -71,12 +71,12 @@ async def value_of(dut: Any, name: str) -> int:
 
 
 def master_of(dut: Any) -> AXI4LiteMaster:
-    """A bus master, which takes every response at once: not to be mixed with the pin-by-pin functions."""
+    """Return a bus master. It takes every response at once, so do not mix it with the beat-by-beat functions."""
     return AXI4LiteMaster(dut, "s_axil", dut.clk)
 
 
 async def response_of(transaction: Awaitable) -> Response:
-    """Return the response that ends a master's transaction; errors raise."""
+    """Return the response that ends a transaction of a master, also when the master raises it as an error."""
     try:
         await transaction
     except AXIProtocolError as error:
@@ -85,7 +85,7 @@ async def response_of(transaction: Awaitable) -> Response:
 
 
 class Master:
-    """A bus master that takes every response at once: not to be mixed with the functions that move single pins."""
+    """Bus master that takes every response at once. Do not mix it with the beat-by-beat functions."""
 
     def __init__(self, dut: Any) -> None:
         self.master = master_of(dut)
@@ -104,7 +104,7 @@ class RegisterClient:
         self.master = master
 
     async def write(self, name: str, value: int) -> Response:
-        """Write a register, of a negative value the lower 32 bits; return the response."""
+        """Write a register and return the response. Of a negative value the lower 32 bits are written."""
         return Response(await self.master.write(OFFSET[name], value & WORD))
 
     async def read(self, name: str) -> int:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""AXI4-Stream: driver of each side, monitor that checks the rules, and video frames, whole and broken.
+"""AXI4-Stream: drivers of source and sink, a monitor that checks the rules, and whole and broken video frames.
 
 A word is a tuple in the order of the bus's fields: data, last, user unless said otherwise.
 """
@@ -18,8 +18,8 @@ from tactile_depth.frame.frame_guard import Word
 
 VIDEO = ("data", "last", "user")
 
-# Profiles: generators of one bool a clock. For a sink True is ready; for a source True is a word offered. Names of up
-# to 10 letters, so that cocotb calls tests by them.
+# Profiles: generators of one bool per cycle. For a sink True means ready, for a source True means that a word is
+# offered. Names have up to 10 letters, because cocotb puts only short ones into the names of tests.
 
 PROFILES: dict[str, Callable[[random.Random], Iterator[bool]]] = {
     "none": lambda rng: repeat(True),
@@ -31,7 +31,7 @@ PROFILES: dict[str, Callable[[random.Random], Iterator[bool]]] = {
 
 
 def profile(name: str, seed: int = 0) -> Iterator[bool]:
-    """A profile by its name; two that are random differ by `seed`, and from run to run by cocotb's."""
+    """Return a profile by its name. Random profiles depend on `seed` and on the seed of cocotb."""
     return PROFILES[name](random.Random(f"{cocotb.RANDOM_SEED} {seed}"))
 
 
@@ -40,7 +40,7 @@ def _signals(fields: Sequence[str], prefix: str) -> dict[str, str]:
 
 
 class AxisSource(BusDriver):  # type: ignore[misc]
-    """Sends words, each held until it is taken. In a transaction None is a clock without a word.
+    """Driver that offers words and holds each until it is taken. In a transaction None is a cycle without a word.
 
     `offers` is a profile: when it is False no new word is offered. Pins are "<name>_<prefix>valid" and so on.
     """
@@ -56,7 +56,7 @@ class AxisSource(BusDriver):  # type: ignore[misc]
         self.bus.valid.value = 0
 
     def abort(self) -> None:
-        """Withdraw what is offered and forget the rest of the transaction: for resets only."""
+        """Withdraw the offered word and drop the remaining words of the transaction. Use it in a reset only."""
         self.aborted = True
         self.clear()
         self.bus.valid.value = 0
@@ -86,7 +86,7 @@ class AxisSource(BusDriver):  # type: ignore[misc]
 
 
 class AxisSink(BusDriver):  # type: ignore[misc]
-    """Drives ready from a profile, whether there is something valid or not; `stall(profile)` changes it."""
+    """Driver of ready by a profile, independent of valid; `stall(profile)` changes the profile."""
 
     def __init__(self, dut: Any, name: str, prefix: str = "", accepts: Iterable[bool] | None = None) -> None:
         self._signals = {"ready": prefix + "ready"}
@@ -104,7 +104,7 @@ class AxisSink(BusDriver):  # type: ignore[misc]
 
 
 class AxisMonitor(BusMonitor):  # type: ignore[misc]
-    """Keeps what passes, and checks the rules: a word once valid stays the same until ready; none in reset.
+    """Monitor that keeps the words and checks the rules: a valid word stays the same until ready; none in reset.
 
     valid and ready are never unknown, nor is a field while valid is high (on Icarus X raises where it is
     read). Values are unsigned.
@@ -176,7 +176,7 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
 
 
 class BeatMonitor(AxisMonitor):
-    """AxisMonitor of video with several values in a beat, the first in the lowest bits: `words` has each by itself."""
+    """AxisMonitor of video with several values per beat, the first in the lowest bits; `words` holds single values."""
 
     def __init__(self, dut: Any, name: str, lanes: int, prefix: str = "") -> None:
         self.lanes = lanes
@@ -193,18 +193,18 @@ class BeatMonitor(AxisMonitor):
 
 
 def video(pixels: Iterable[int], columns: int) -> list[Word]:
-    """The words of a frame of pixels in raster order."""
+    """Return the words of a frame of pixels in raster order."""
     return [
         Word(int(pixel), int(position % columns == columns - 1), int(position == 0))
         for position, pixel in enumerate(pixels)
     ]
 
 
-# Each way to break a frame, and some that break nothing, with the faults it is flagged as when whole frames come
-# before and after it. `inner` says whether the position is anywhere but at the beginning of a row.
+# Each way to break a frame, and some that break nothing, with the faults that it raises between whole frames.
+# `inner` is False at the beginning of a row.
 BREAKS: dict[str, Callable[[bool], tuple[str, ...]]] = {
     "whole": lambda inner: (),
-    "waited": lambda inner: (),  # silent for as long as the time-out allows
+    "waited": lambda inner: (),  # silent for exactly as long as the time-out allows
     "row_short": lambda inner: ("row_short",),  # the row ends at the position, the next follows
     "end_extra": lambda inner: ("row_short",),  # tlast there, and the row goes on
     "row_long": lambda inner: ("row_long",),  # one pixel too many
@@ -214,15 +214,15 @@ BREAKS: dict[str, Callable[[bool], tuple[str, ...]]] = {
     "start_late": lambda inner: ("start_missing", "row_short" if inner else "start_early"),  # so many pixels late
     "start_early": lambda inner: ("start_early",),  # the frame ends there, the next one follows
     "start_extra": lambda inner: ("start_early", "row_short" if inner else "start_early"),  # and the frame goes on
-    "timed_out": lambda inner: ("timed_out",),  # silent for longer, then it goes on
-    "broken_off": lambda inner: ("timed_out",),  # silent for longer, then the next frame follows
+    "timed_out": lambda inner: ("timed_out",),  # silent for longer than the time-out, then the frame goes on
+    "broken_off": lambda inner: ("timed_out",),  # silent for longer than the time-out, then the next frame follows
 }
 SILENT = ("waited", "timed_out", "broken_off")
 WITHOUT_START = ("start_missing", "stray", "start_late")
 
 
 def positions(kind: str, rows: int, columns: int) -> list[int]:
-    """Pixels of a frame at which it can be broken in this way."""
+    """Return the positions at which a frame can be broken in this way."""
     pixels = range(rows * columns)
     if kind in ("whole", "start_missing"):
         return [0]
@@ -240,8 +240,10 @@ def faults_of(kind: str, position: int, columns: int) -> tuple[str, ...]:
 
 
 def broken(words: Sequence[Word], kind: str, position: int, columns: int, silent: int = 0) -> list[Word | None]:
-    """A frame with one break at a position, as a camera would go on from there, `silent` clocks silent if it is of
-    that kind."""
+    """Return a frame with one break at a position, continued as a camera would continue it.
+
+    A break that is a silence lasts `silent` cycles.
+    """
     before: list[Word | None] = list(words[:position])
     word, after = words[position], list(words[position + 1 :])
     without_start: list[Word | None] = [other._replace(user=0) for other in words[:position]]

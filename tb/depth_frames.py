@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of depth as auto_zero and floor_capture take them: words with the marks of frames and rows."""
+"""Frames of depth for auto_zero and floor_capture: words with the marks of frames and rows."""
 
 import random
 from typing import Any
@@ -10,13 +10,13 @@ from tb.stream import StreamDriver, depth_position, send_apart
 
 
 def packed(words: Any, width: int) -> list[int]:
-    """Words (beats, lanes) as a number for each beat, the first lane in the lowest bits."""
+    """Return one number for each beat of words (beats, lanes), with the first lane in the lowest bits."""
     mask = (1 << width) - 1
     return [sum((word & mask) << width * lane for lane, word in enumerate(beat)) for beat in words.tolist()]
 
 
 def depth_words(frame: Any, width: int, lanes: int = 1) -> list[Any]:
-    """Depths (rows, columns) as beats: frame_start, row_end, frame_end, data of all lanes."""
+    """Return depths (rows, columns) as beats: frame_start, row_end, frame_end, data of all lanes."""
     rows, columns = frame.shape[0], frame.shape[1] // lanes
     end = rows * columns - 1
     data = packed(frame.reshape(-1, lanes), width)
@@ -24,7 +24,7 @@ def depth_words(frame: Any, width: int, lanes: int = 1) -> list[Any]:
 
 
 def random_depths(shape: Any, width: int, chance: random.Random) -> Any:
-    """Anything, the limits alone, all of one, or small, by chance; the mean of small ones is often a tie."""
+    """Return random depths: full range, the limits, one value, or small ones, whose mean is often a tie."""
     generator = np.random.default_rng(chance.getrandbits(32))
     low, high = -(1 << width - 1), (1 << width - 1) - 1
     match chance.randrange(5):
@@ -38,7 +38,8 @@ def random_depths(shape: Any, width: int, chance: random.Random) -> Any:
 
 
 class DepthDriver(StreamDriver):
-    """Between words, marks and data are anything. The device has a position, or those marks that it needs."""
+    """Driver whose marks and data are random between words. The device has a position, or only the marks that it
+    needs."""
 
     def __init__(self, dut: Any, bench: Any, gap: float) -> None:
         self.bench, self.gap = bench, gap
@@ -52,7 +53,7 @@ class DepthDriver(StreamDriver):
             pin.value = self.bench.random.getrandbits(len(pin))
 
     async def words(self, words: Any) -> None:
-        """A frame, or part of one, of `depth_words`."""
+        """Send a frame of `depth_words`, or a part of one."""
         if "position" in self.fields:
             words = [(depth_position(*marks), data) for *marks, data in words]
         else:

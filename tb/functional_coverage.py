@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bins of the fault list, and the monitor that counts them in a run of tactile_depth.
 
-A bin is "cover point: value, value, ..". The monitor watches; it drives and compares nothing. It looks inside the
-device only for what pins do not tell (where the guard stands, filler, frames in flight). With HDL_COVERAGE=1 it leaves
-its counts in the run folder; commands/verify/coverage.py adds them up over all runs.
+A bin is "cover point: value, value, ..". The monitor drives and compares nothing. It reads signals inside the device
+only where pins do not show a state (position of the guard, filler, frames in flight). With HDL_COVERAGE=1 it writes its
+counts to the run folder; commands/verify/coverage.py adds the counts of all runs.
 """
 
 import json
@@ -110,16 +110,16 @@ class FunctionalCoverage:
 
     def forget(self) -> None:
         """Forget what came before a reset."""
-        self.frames: list[str] = []  # their outcomes: "good", or the fault
+        self.frames: list[str] = []  # outcomes of the frames: "good", or the fault
         self.since_start = self.pause = self.quiet = 0  # words since a start of frame, clocks without a word
-        self.offered = self.clipped = self.contact = self.answered = False  # in the clock before
+        self.offered = self.clipped = self.contact = self.answered = False  # in the previous cycle
         self.in_phases: list[str] = []
 
     def hit(self, point: str, *values: object) -> None:
         self.hits[label(point, self.config.solver, *values)] += 1
 
     def phases(self, held: bool, taken: bool) -> Iterator[str]:
-        """Yield the phases of the pipeline: it may take a frame while it puts one out."""
+        """Yield the phases of the pipeline, which may take a frame while it puts another one out."""
         filling, inside = self.dut.u_video.u_guard.filling.value, not self.dut.u_video.u_guard.origin.value
         if filling:
             yield "filling"
@@ -198,7 +198,7 @@ class FunctionalCoverage:
             if fault == "timed_out":
                 self.hit("silence inside a frame", "given up")
                 self.quiet = 0
-        # A whole frame is told a clock after its last pixel: with a fault of the next one's first.
+        # A whole frame is reported one cycle after its last pixel, so it may coincide with a fault of the next frame.
         whole = structs.unpack("events_t", int(dut.events.value))["frame_in"]
         ends = ["good"] * whole + ([fault] if fault else [])
         for end in ends:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bus and capture of gain_map, and of the cores around it: both banks as they should stand, change-overs."""
+"""Bus and capture of gain_map and of the cores that contain it: expected content of both banks, change-overs."""
 
 import random
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ from tactile_depth.configuration import Configuration, Format, gain_fraction
 from tb.stream import parameters, places
 
 READ_CLOCKS = 2  # from table_read to the gain
-PAUSED = 4  # clocks of a pause before its last
+PAUSED = 4  # cycles of a pause before its last one
 
 
 def first_gains(rows: int, columns: int, channels: int, width: int) -> Any:
-    """At power-up: every word another, (node rows, node columns, channels)."""
+    """Return the gains at power-up, (node rows, node columns, channels); every word differs."""
     return places(rows * columns * channels, width).reshape(rows, columns, channels) & (1 << width) - 1
 
 
 def random_gains(config: Configuration, chance: random.Random, channels: int, width: int) -> Any:
-    """Return random gains of the nodes: anything, the limits alone, or like those of a sensor."""
+    """Return random gains of the nodes: full range, the limits, or like those of a sensor."""
     generator = np.random.default_rng(chance.getrandbits(32))
     shape = (*config.reference_nodes, channels)
     largest = (1 << width) - 1
@@ -66,10 +66,10 @@ class Grid:
 
 
 class Gains:
-    """Pins of the bus and of the capture; `banks` are the words (node rows, node columns, channels) that each bank
-    should hold."""
+    """Pins of the bus and of the capture; `banks` holds the expected words, (node rows, node columns, channels), of
+    each bank."""
 
-    name = "gain"  # of a word, in the pins of the bus
+    name = "gain"  # name of a word in the pins of the bus
     capture_pin = "capture_gains"
     per_node = ENTRIES_PER_NODE
     side = 1  # nodes that the capture writes at once
@@ -79,8 +79,8 @@ class Gains:
         self.width = config.depth.width
         self.banks = [self.at_power_up(), self.at_power_up()]
         self.channels = self.banks[0].shape[-1]
-        self.bank = 0  # what table_bank says
-        self.due = False  # a change-over with the next frame
+        self.bank = 0  # value of table_bank
+        self.due = False  # True: the next frame changes the bank
         self.reads_captured = hasattr(dut, "capture_read")
         for pin in ("table_bank", "table_write", "table_read", "table_index", "capture_write"):
             getattr(dut, pin).value = 0
@@ -98,7 +98,7 @@ class Gains:
         return table_entries(words)
 
     async def settle(self, written: bool) -> None:
-        """Write the gains at power-up into both banks if an earlier test has `written` others, and always on Verilator.
+        """Write the gains of power-up into both banks if an earlier test has `written` others, and always on Verilator.
 
         Verilator starts with random pins, so its first edge may write a word. Icarus, which starts with X, and the top
         test the content at power-up.
@@ -113,13 +113,14 @@ class Gains:
                 await RisingEdge(self.dut.clk)
 
     def begin_frame(self) -> Any:
-        """Do what the head of the pipeline does at a frame's first pixel; return the gains of that frame."""
+        """Change the bank if it is due, as the head of the pipeline does at the first pixel; return the gains of that
+        frame."""
         if self.due:
             self.change()
         return self.banks[self.bank]
 
     def change(self) -> None:
-        """From the next frame on, or in reset, the other bank."""
+        """Select the other bank from the next frame on, or in reset."""
         self.due = False
         self.bank ^= 1
         self.dut.table_bank.value = self.bank
@@ -129,7 +130,7 @@ class Gains:
             await RisingEdge(self.dut.clk)
 
     async def capture(self, gains: np.ndarray) -> None:
-        """All nodes of the bank that is not in use, as reference_capture writes them; each is read a little later."""
+        """Write all nodes of the free bank as reference_capture writes them, and read each a few cycles later."""
         await self.changed()
         mask = (1 << self.width) - 1
         nodes = gains.reshape(-1, self.side * self.channels).tolist()
@@ -148,7 +149,7 @@ class Gains:
         self.banks[self.bank ^ 1] = gains.copy()
 
     async def write(self, gains: Any) -> None:
-        """All entries of the bank that is not in use, in order, one a clock; the unused ones too."""
+        """Write all entries of the free bank in order, one per cycle, the unused ones too."""
         await self.changed()
         for index, word in self.entries(gains).items():
             await self.write_entry(index, word)
@@ -158,7 +159,7 @@ class Gains:
         assert np.array_equal(self.banks[self.bank ^ 1], gains)
 
     async def rewrite(self, chance: Any, going_on: Any) -> None:
-        """The bank not in use, over and over; when it is complete it is asked for, and entries are read all along."""
+        """Rewrite the free bank repeatedly, commit it when it is complete, and read entries meanwhile."""
         size = self.per_node * self.banks[0][..., 0].size
         while going_on():
             if self.due or self.dut.table_in_use.value != self.bank:
@@ -179,13 +180,13 @@ class Gains:
         self.dut.table_write.value = 0
 
     async def read(self, index: int) -> None:
-        """An entry of the bank that is not in use, compared; a change-over may come in the very clock."""
+        """Read and compare an entry of the free bank; a change-over may come in the same cycle."""
         self.dut.table_read.value, self.dut.table_index.value = 1, index
         await RisingEdge(self.dut.clk)
         self.dut.table_read.value = 0
         self.dut.table_index.value = (index ^ 5) & (1 << len(self.dut.table_index)) - 1
         await RisingEdge(self.dut.clk)
-        free = 1 - int(self.dut.table_in_use.value)  # as the edge of the read left it
+        free = 1 - int(self.dut.table_in_use.value)  # as it was after the edge of the read
         for _ in range(READ_CLOCKS - 1):
             await RisingEdge(self.dut.clk)
         node, channel = divmod(index, self.per_node)
@@ -196,8 +197,9 @@ class Gains:
 
 
 async def reads_as_a_pause_ends(device: Any) -> None:
-    """The first pixel of a frame waits in a pause for the bank that it takes over; the last node is read meanwhile, or
-    as the pause ends. `device`: of a testbench, with its `gains` and `bench`."""
+    """Pause as the first pixel of a frame waits for its new bank, and read the last node in the pause or as it ends.
+
+    `device` is that of a testbench, with its `gains` and `bench`."""
     gains, bench, clk = device.gains, device.bench, device.dut.clk
     rows, columns, channels = gains.banks[0].shape
     for early in range(PAUSED + 1):
@@ -205,7 +207,7 @@ async def reads_as_a_pause_ends(device: Any) -> None:
         gains.due = True
         sending = cocotb.start_soon(device.send())
         await FallingEdge(clk)
-        bench.pause = 1.0  # from the next edge on, which takes the pixel
+        bench.pause = 1.0  # from the next edge on, at which the pixel is taken
         for _ in range(early + 1):
             await RisingEdge(clk)
         reading = cocotb.start_soon(gains.read(gains.per_node * (rows * columns - 1)))

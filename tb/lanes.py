@@ -161,7 +161,7 @@ async def check_lanes(
     source.forget_but(count * rows)
     sink.forget_but(count * rows)
     seen = np.array(source.words).reshape(frames.shape)
-    np.testing.assert_array_equal(seen, frames, "the driver sent something else")
+    np.testing.assert_array_equal(seen, frames, "the driver sent other words than the test gave it")
     clipped = Monitor()
     fields = lanes if isinstance(sink, BeatMonitor) else 1
     expected = model(seen, clipped).reshape(-1, fields)

@@ -338,7 +338,7 @@ async def check_bursts(
     await bench.clocks(1)
     source.forget_but(len(bursts))
     seen = np.array(source.words).reshape(bursts.shape)
-    np.testing.assert_array_equal(seen, bursts, "the driver sent something else")
+    np.testing.assert_array_equal(seen, bursts, "the driver sent other words than the test gave it")
     clipped = Monitor()
     expected = model(seen, clipped).reshape(-1, len(out_fields))
     await bench.clocks((latency or len(expected)) + 2 * size + settle)

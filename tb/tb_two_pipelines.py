@@ -51,7 +51,7 @@ async def codes(dut: Any) -> None:
         want, others = (
             tactile_depth(frame, calibration(name, config), config) for name in (side, *configs.keys() - {side})
         )
-        assert (want != others).any(), "a poor test: the calibrations give the same depth"
+        assert (want != others).any(), "the test is void: the calibrations give the same depth"
         width = 8 * ((config.data_width + 7) // 8)
         got = [(word.data ^ 1 << width - 1) - (1 << width - 1) for word in outputs[side].words]
         np.testing.assert_array_equal(got, want.ravel(), f"the depth map of {side}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""uart_receive against tactile_depth.boards.uart: bytes at rates that differ, gaps, breaks, noise, resets."""
+"""uart_receive against tactile_depth.boards.uart: bytes at several rates, gaps, breaks, noise, resets."""
 
 import os
 import random
@@ -18,7 +18,7 @@ TOLERANCE = 0.04  # of the rate
 
 
 def line_of(data: Any, clocks_a_bit: Any, gaps: Any) -> Any:
-    """Levels in each clock; `gaps` gives the clocks of silence after a byte."""
+    """Return the level of the line in each cycle; `gaps` gives the idle cycles after each byte."""
     levels, time = [1] * 8, 0.0
     for byte in data:
         start = len(levels)
@@ -31,7 +31,7 @@ def line_of(data: Any, clocks_a_bit: Any, gaps: Any) -> Any:
 
 
 async def play(dut: Any, levels: Any) -> Any:
-    """Play levels on the pin, the first of them in a reset; return the bytes received."""
+    """Drive the pin with levels, the first of them in a reset; return the bytes received."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     edge = RisingEdge(dut.clk)
     found: list[Any] = []
@@ -54,12 +54,12 @@ async def play(dut: Any, levels: Any) -> Any:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize((("off", "gap"), [(0, 0), (0, 40), (-TOLERANCE, 0), (TOLERANCE, 0)]))
 async def words(dut: Any, off: Any, gap: Any) -> None:
-    """Every byte, back to back too, from a sender that is slower or faster."""
+    """Receive every byte, also back to back, from a sender that is slower or faster."""
     (divider,) = parameters(dut, "Divider")
     rng = random.Random(cocotb.RANDOM_SEED)
     sent = [0, 255, *rng.sample(range(256), BYTES)]
     if off and divider < 1 / TOLERANCE:
-        return  # a bit of so few clocks cannot be off by that little
+        return  # a bit of so few cycles cannot represent so small a deviation
     levels = line_of(sent, divider * (1 + off), iter(lambda: rng.randint(0, gap), None))
     assert receive(levels + [1] * divider, divider) == sent
     assert await play(dut, levels) == sent
@@ -68,7 +68,7 @@ async def words(dut: Any, off: Any, gap: Any) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(longest=[1, 3, 12])
 async def noise(dut: Any, longest: Any) -> None:
-    """Levels of any length, in bits: glitches, breaks, bytes that begin anywhere."""
+    """Receive levels of random length: glitches, breaks, bytes that begin at any time."""
     (divider,) = parameters(dut, "Divider")
     rng = random.Random(cocotb.RANDOM_SEED)
     levels = [1] * 8

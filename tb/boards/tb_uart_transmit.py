@@ -18,7 +18,7 @@ BYTES = 40
 
 
 async def start(dut: Any, offers: str) -> Any:
-    """Clock, driver, reset; the levels that leave are kept from here on."""
+    """Start clock and driver, reset, and record the level of the line from then on."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value = 1
     source = AxisSource(dut, "in", ("data",), offers=profile(offers))
@@ -40,7 +40,7 @@ async def start(dut: Any, offers: str) -> Any:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(offers=["none", "long", "random"])
 async def words(dut: Any, offers: str) -> None:
-    """Every byte in order; a bit lasts as it should, and a stop bit no less."""
+    """Send every byte in order; each bit has its length, and no stop bit is shorter."""
     (divider,) = parameters(dut, "Divider")
     source, levels = await start(dut, offers)
     sent = [0, 255, *random.Random(cocotb.RANDOM_SEED).sample(range(256), BYTES)]
@@ -59,7 +59,7 @@ async def words(dut: Any, offers: str) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def reset(dut: Any) -> None:
-    """The line is high at once, and the next byte is whole."""
+    """Reset inside a byte: the line is high at once, and the next byte is complete."""
     (divider,) = parameters(dut, "Divider")
     source, levels = await start(dut, "none")
     cocotb.start_soon(source.send([(0,)] * 3))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The top of the ULX3S at its pins: bits of packets in, records and the contact light out, against the models.
+"""Top of the ULX3S at its pins: packets enter bit by bit; records and the contact light are compared with the models.
 
-Whatever a test sends, `Board.check` feeds the models with the same bytes: what is broken there is broken here, and the
-frame that follows is right.
+`Board.check` feeds the models with the bytes that the test sent, broken ones included. The frame that follows a broken
+one must be right.
 """
 
 import os
@@ -42,7 +42,7 @@ RESET_CLOCKS = 8
 
 
 class Board:
-    """The device, its line driven and watched."""
+    """Device with a driver and a monitor of its serial line."""
 
     def __init__(self, dut: Any) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
@@ -64,12 +64,12 @@ class Board:
             await ClockCycles(self.dut.clk_25mhz, RESET_CLOCKS)
             self.dut.btn.value = 0
         await ClockCycles(self.dut.clk_25mhz, 2 * RESET_CLOCKS)
-        assert int(self.dut.led.value) == 0x80, "locked, and nothing else"
+        assert int(self.dut.led.value) == 0x80, "only the light of the PLL is on"
         cocotb.start_soon(self.listen())
         cocotb.start_soon(self.note_starts())
 
     async def listen(self) -> None:
-        """Read the bytes that come back, each with the contact light as it then stands."""
+        """Receive the bytes that the board sends, each with the state of the contact light at that time."""
         while True:
             await FallingEdge(self.dut.ftdi_rxd)
             await self.bits(0.5)
@@ -84,7 +84,7 @@ class Board:
             self.lights.append(int(self.dut.led.value))
 
     async def note_starts(self) -> None:
-        """The pipeline's clock for each frame's first pixel, which stands in the record."""
+        """Note the pipeline's cycle count at the first pixel of each frame; the record holds it."""
         depth = self.dut.u_depth.u_pipeline
         while True:
             await RisingEdge(depth.s_axis_tvalid)  # tuser may be high from power-up on
@@ -97,7 +97,7 @@ class Board:
             self.starts.append(int(depth.u_video.now.value))
 
     async def send(self, data: Any) -> None:
-        """Bytes onto the line, back to back; None is a break."""
+        """Send bytes back to back; None is a break."""
         for byte in data:
             if byte is None:
                 self.dut.ftdi_txd.value = 0
@@ -111,14 +111,14 @@ class Board:
             self.line.append(byte)
 
     async def bits(self, count: Any) -> None:
-        """A number of bits' time."""
+        """Wait for the duration of a number of bits."""
         await Timer(round(count * self.bit_clocks * CLOCK_NS), unit="ns")
 
     def flat(self) -> Any:
         return np.full((self.rows, self.columns, 3), 135, np.uint8)
 
     def touched(self) -> Any:
-        """A ball, and noise that shows wherever a pixel is lost."""
+        """Return a frame of a ball with noise, so that the loss of any pixel changes the result."""
         ball = render("ball", self.rows, self.columns).frames[0]
         return (ball ^ self.rng.integers(0, 8, ball.shape, np.uint8)).astype(np.uint8)
 
@@ -153,7 +153,7 @@ class Board:
         return value - (value >> 31 << 32)
 
     async def check(self) -> int:
-        """Wait for what is on its way; then every record, and the light at its end."""
+        """Wait until everything has left; compare every record, and the light at the end of each."""
         depth_clocks = 2 * self.rows * self.columns + 8 * self.columns + 1000
         await ClockCycles(self.dut.clk_25mhz, depth_clocks + 120 * BITS * self.bit_clocks)
         expected = self.records()
@@ -167,7 +167,7 @@ class Board:
 
 @case(Level.FIRST, milliseconds=1)
 async def wakes(dut: Any) -> None:
-    """From any power-up: locked, dark otherwise, and silent."""
+    """Come up from any state of the registers: PLL locked, other lights off, nothing sent."""
     board = Board(dut)
     await board.start(button=False)
     await ClockCycles(dut.clk_25mhz, 1000)
@@ -178,7 +178,7 @@ async def wakes(dut: Any) -> None:
 
 @case(Level.FIRST, milliseconds=20)
 async def frames(dut: Any) -> None:
-    """Contact and none in turn, a record each, the light on and off."""
+    """Send frames with and without contact in turn: each has its record, and the light follows."""
     board = Board(dut)
     await board.start()
     for pixels in (board.touched(), board.flat(), board.touched()):
@@ -189,14 +189,14 @@ async def frames(dut: Any) -> None:
 
 @case(Level.LONG, milliseconds=40)
 async def broken_transfers(dut: Any) -> None:
-    """After each kind of broken transfer the next frame is right."""
+    """Send each kind of broken transfer; the next frame is right."""
     board = Board(dut)
     await board.start()
     rng = random.Random(cocotb.RANDOM_SEED)
     whole = frame_packet(board.touched())
     middle = len(whole) // 2
     broken = [
-        whole[:middle],  # and no more: the next packet's first End closes it
+        whole[:middle],  # without its end: the first End of the next packet closes it
         whole[:middle] + whole[middle + 1 :],  # a byte is missing
         whole[:-1] + whole[1:4] + whole[-1:],  # a pixel too many
         (*whole[:middle], None, *whole[middle:]),  # a break
@@ -215,7 +215,7 @@ async def broken_transfers(dut: Any) -> None:
 
 @case(milliseconds=20)
 async def registers(dut: Any) -> None:
-    """A threshold written over the line holds from the next frame on; a write of another length is none."""
+    """Write a threshold over the line: it applies from the next frame on. A write of another length has no effect."""
     board = Board(dut)
     await board.start()
     touched = board.touched()
@@ -237,7 +237,7 @@ async def registers(dut: Any) -> None:
 
 @case(milliseconds=20)
 async def button(dut: Any) -> None:
-    """Pressed inside a frame; the next one is the first again, with the threshold of before the writes."""
+    """Press the button inside a frame: the next frame counts as the first, with the threshold of a reset."""
     board = Board(dut)
     await board.start()
     await board.send(write_packet(REGISTERS["THRESHOLD"].offset, (1 << 31) - 1))

@@ -17,7 +17,7 @@ async def request(device: Any, log2: int | None = None) -> None:
 
 
 async def request_after(device: Any, waits: Any, size: int) -> None:
-    """Request a capture a second time, so many cycles after the first word of a frame, while frames keep coming.
+    """Request a capture again, a number of cycles after the first word of a frame, while frames keep coming.
 
     The device has the attributes dut, chance, busy, inside and captures, and the coroutine send.
     """

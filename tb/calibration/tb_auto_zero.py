@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""auto_zero against its model in every clock: depths and floors of all kinds, changed over while frames stream."""
+"""auto_zero against its model in every cycle: depths and floors of all kinds, changed over while frames stream."""
 
 import random
 from collections import deque
@@ -28,7 +28,7 @@ def first_floor(config: Configuration) -> Any:
 
 
 class Floors(Gains):
-    """One channel; entries are nodes."""
+    """Floor memory: one channel, one entry per node."""
 
     name = "floor"
     capture_pin = "capture_floor"
@@ -50,7 +50,7 @@ class Floors(Gains):
 
 
 class Zero:
-    """The device, and what the model says of every word sent."""
+    """Device, and the words that the model expects for every word sent."""
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
@@ -58,7 +58,7 @@ class Zero:
         self.shape = (self.config.rows, self.config.columns)
         self.width = self.config.depth.width
         self.frames = max(3, WORDS // (self.config.rows * self.config.columns))
-        self.large = self.config.rows * self.config.columns > WORDS  # then a few frames must do
+        self.large = self.config.rows * self.config.columns > WORDS  # so that a large grid gets a few frames only
         self.bench = Bench(dut, pause)
         self.chance = self.bench.random
         (self.lanes,) = parameters(dut, "Lanes")
@@ -70,7 +70,7 @@ class Zero:
         self.forget()
 
     def forget(self) -> None:
-        """Forget the words sent, those inside, and those due."""
+        """Forget the words sent and the words expected."""
         self.sent: list[Any] = []
         self.taken = 0
         self.expected: list[Any] = []  # of each beat: data, values clipped
@@ -85,7 +85,8 @@ class Zero:
         cocotb.start_soon(self.watch())
 
     async def watch(self) -> None:
-        """Clock by clock: a beat leaves `latency` enabled clocks after it came, and is counted as it comes out."""
+        """Check each cycle: a beat leaves `latency` enabled cycles after it entered, and its clips are counted as it
+        leaves."""
         dut = self.dut
         while True:
             await RisingEdge(dut.clk)
@@ -109,13 +110,13 @@ class Zero:
                 comes, self.taken = self.taken, self.taken + 1
                 *marks, data = self.sent[comes]
                 pins = int(dut.in_position.value), int(dut.in_data.value)
-                assert pins == (depth_position(*marks), data), "the driver sent something else"
+                assert pins == (depth_position(*marks), data), "the driver sent other words than the test gave it"
                 self.begun = not marks[2]
             self.inside.appendleft(comes)
             self.clipped = 0 if self.inside[-1] is None else self.expected[self.inside[-1]][1]
 
     def depths(self, floor: np.ndarray | None = None) -> Any:
-        """A frame; with a floor some are at its level, or just within the range and just outside."""
+        """Return a frame. With a floor some depths equal it, and some differences lie at the limits or just beyond."""
         if floor is None or self.chance.random() < 0.6:
             return random_depths(self.shape, self.width, self.chance)
         low, high = -(1 << self.width - 1), (1 << self.width - 1) - 1
@@ -124,7 +125,8 @@ class Zero:
         return np.clip(interpolated_floor(floor, self.config) + target, low, high)
 
     async def send(self, frames: int = 1, depths: np.ndarray | None = None, count: int | None = None) -> None:
-        """Frames back to back, or the first words of one; each has the floor that table_bank names as it begins."""
+        """Send frames back to back, or the first words of one. Each uses the floor of the bank that table_bank selects
+        as it begins."""
         for _ in range(frames):
             floor = self.floors.begin_frame()[..., 0].copy()
             frame = self.depths(floor) if depths is None else depths
@@ -138,12 +140,12 @@ class Zero:
 
     async def reset(self, en: Any) -> None:
         resetting = cocotb.start_soon(self.bench.reset(en))
-        await FallingEdge(self.dut.clk)  # behind what the clock before did
+        await FallingEdge(self.dut.clk)  # after the tasks of the previous cycle
         self.forget()
         await resetting
 
     async def check(self) -> None:
-        """When all has left."""
+        """Wait until everything has left, and compare."""
         await self.bench.clocks(self.latency + 3)
         assert self.taken == len(self.sent) == len(self.expected)
         assert not any(index is not None for index in self.inside)
@@ -151,7 +153,7 @@ class Zero:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def at_power_up(dut: Any) -> None:
-    """The floor of floor_0.hex, in both banks."""
+    """Subtract the floor of floor_0.hex, which both banks hold at power-up."""
     device = Zero(dut, 0.0, 0.0)
     await device.start(written=False)
     for _ in range(2):
@@ -164,7 +166,8 @@ async def at_power_up(dut: Any) -> None:
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
-    """The first frame after a change-over has the new floor from first word to last, the one before it the old."""
+    """Rewrite the floor while frames stream: the frame before a change-over has the old floor, the frame after it the
+    new."""
     device = Zero(dut, gap, pause)
     await device.start()
     await device.floors.write(device.floors.random(device.chance))
@@ -175,13 +178,13 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     going_on[0] = False
     await rewriter
     await device.check()
-    assert len(set(device.used)) > 1, "no change-over was seen: a poor test"
+    assert len(set(device.used)) > 1, "the test is void: no change-over was seen"
     assert device.counted == device.monitor.saturations.total() > 0
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def captured(dut: Any) -> None:
-    """All nodes, into both banks; the bus reads the same."""
+    """Capture all nodes into both banks; the bus reads the same values."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()
     for _ in range(2):
@@ -195,14 +198,14 @@ async def captured(dut: Any) -> None:
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 async def differences_at_their_limits(dut: Any) -> None:
-    """Floors and depths at both ends: what just fits, what is just clipped, and the largest difference there is."""
+    """Reach differences that just fit, differences that are just clipped, and the largest difference of all."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()
     low, high = -(1 << device.width - 1), (1 << device.width - 1) - 1
     for level in (low,) if device.large else (low, low + 1, -1, 0, 1, high - 1, high):
         await device.floors.write(np.full((*device.config.reference_nodes, 1), level))
         device.floors.due = True
-        await device.send()  # takes over the floor
+        await device.send()  # its first word changes the bank
         await device.floors.changed()
         for depth in (low + level, low + level - 1, high + level, high + level + 1, low, high):
             if low <= depth <= high:
@@ -213,7 +216,7 @@ async def differences_at_their_limits(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """In mid-frame: no word of before leaves or is counted; floors stay; a change-over that is due is made."""
+    """Reset inside a frame: no earlier word leaves or is counted, floors stay, and a due change-over takes place."""
     device = Zero(dut, 0.0, 0.0)
     await device.start()
     row = device.config.columns // device.lanes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""flat_field against its model: colours, dark pixels, what is counted; gains changed over while frames stream."""
+"""flat_field against its model: colours, dark pixels and their counts; gains changed over while frames stream."""
 
 import random
 from typing import Any
@@ -21,7 +21,8 @@ COLOURS = ["red", "green", "blue", "position"]
 
 
 def picture(rows: int, columns: int, chance: random.Random, level: int) -> Any:
-    """uint8 (rows, columns, 3): anything, with dark pixels alone, in runs, in whole rows, and pixels nearly dark."""
+    """Return random pixels, uint8 (rows, columns, 3), some of them dark or nearly dark: single ones, runs and whole
+    rows."""
     generator = np.random.default_rng(chance.getrandbits(32))
     pixels = generator.integers(0, 256, (rows, columns, 3))
     if not level:
@@ -37,7 +38,7 @@ def picture(rows: int, columns: int, chance: random.Random, level: int) -> Any:
 
 
 class Field:
-    """The device, and what the model says of every frame sent."""
+    """Device, and the words that the model expects for every frame sent."""
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
@@ -46,7 +47,7 @@ class Field:
         self.model = deviations if self.quadratic else flat_codes
         self.places = raster(self.config.rows, self.config.columns)
         self.frames = max(2, PIXELS // len(self.places))
-        self.large = len(self.places) > PIXELS  # then a few frames must do
+        self.large = len(self.places) > PIXELS  # so that a large grid gets a few frames only
         self.bench = Bench(dut, pause)
         self.gains = Gains(dut, self.config)
         self.driver = StreamDriver(dut, "in", "valid", PIXEL)
@@ -72,8 +73,9 @@ class Field:
                 self.darkened += int(self.dut.dark.value)
 
     async def send(self, frames: int = 1, level: int | None = None, pixels: Any = None, named: Any = None) -> None:
-        """Frames back to back, each with the gains and the dark level that stand when it begins; the other bank is
-        named behind so many words."""
+        """Send frames back to back, each with the gains and the dark level at its beginning.
+
+        The other bank is selected after `change` words."""
         chance = self.bench.random
         for _ in range(frames):
             given = chance.choice((0, 1, 16, 100, 255)) if level is None else level
@@ -95,7 +97,7 @@ class Field:
 
     async def check(self) -> None:
         await self.bench.clocks(FLAT_FIELD + 3)
-        assert self.source.words == self.sent, "the driver sent something else"
+        assert self.source.words == self.sent, "the driver sent other words than the test gave it"
         colours = np.concatenate([frame.reshape(-1, 3) for frame in self.expected]).astype(np.int64)
         want = np.column_stack((colours, [place for _, place in self.sent]))
         np.testing.assert_array_equal(np.array(self.sink.words), want)
@@ -113,7 +115,8 @@ class Field:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def at_power_up(dut: Any) -> None:
-    """The reference is 128 everywhere: codes are the pixels, deviations theirs from 128."""
+    """Use the gains at power-up, those of a reference of 128: codes equal the pixels, deviations are relative to
+    128."""
     device = Field(dut, 0.0, 0.0)
     await device.start(written=False)
     rows, columns = device.config.rows, device.config.columns
@@ -138,7 +141,7 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     going_on[0] = False
     await rewriter
     await device.check()
-    assert device.dark, "no dark pixel: a poor test"
+    assert device.dark, "the test is void: no dark pixel"
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -151,7 +154,7 @@ async def read_as_a_pause_ends(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def named_inside_a_frame(dut: Any) -> None:
-    """Another bank is that of the next frame, wherever in a frame it is named."""
+    """Select the other bank at any word of a frame: the next frame uses it."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
     size = len(device.places)
@@ -164,7 +167,8 @@ async def named_inside_a_frame(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def products_at_their_limits(dut: Any) -> None:
-    """Ties of the rounding, the largest pixel and the largest gain that is not dark, and just over both limits."""
+    """Reach ties of the rounding, the largest pixel with the largest gain that is not dark, and products just beyond
+    both limits."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
     drop = parameters(dut, "Drop")[0]
@@ -178,18 +182,19 @@ async def products_at_their_limits(dut: Any) -> None:
         await device.send(level=0, pixels=np.full((device.config.rows, device.config.columns, 3), 255, np.uint8))
         await device.gains.changed()
     await device.check()
-    assert device.bench.saturations, "nothing was clipped: a poor test"
+    assert device.bench.saturations, "the test is void: nothing was clipped"
 
 
 def beside_ties(gains: np.ndarray, drop: int) -> Any:
-    """The pixels uint8 (rows, columns, 3) whose products with the gains at their places lie nearest to a tie."""
+    """Return the pixels, uint8 (rows, columns, 3), whose products with the gains at their positions lie nearest to a
+    tie."""
     products = np.arange(256)[:, None, None, None] * gains
     return np.abs(products % (1 << drop) - (1 << drop - 1)).argmin(axis=0).astype(np.uint8)
 
 
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 async def products_beside_ties(dut: Any) -> None:
-    """Whichever way a product is rounded hangs on the lowest bits of its gain."""
+    """Send pixels beside ties, whose rounding depends on the lowest bits of the gain."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
     (drop,) = parameters(dut, "Drop")
@@ -204,7 +209,8 @@ async def products_beside_ties(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """In mid-frame, at each stage of the pixels before: none of them leaves or is counted; the next frame is right."""
+    """Reset inside a frame with pixels in each stage: none of them leaves or is counted, and the next frame is
+    right."""
     device = Field(dut, 0.0, 0.0)
     await device.start()
     generator = np.random.default_rng(1)

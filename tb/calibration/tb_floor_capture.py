@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""floor_capture against its model in every clock: what it writes and when, requests at any time, resets."""
+"""floor_capture against its model in every cycle: each write in its cycle, requests at any time, resets."""
 
 import itertools
 from collections import deque
@@ -20,7 +20,7 @@ WORDS = 2048  # that a test sends, about
 
 
 class Capture:
-    """The device, and what it should write."""
+    """Device, and the writes that are expected of it."""
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut = dut
@@ -36,17 +36,17 @@ class Capture:
         self.bench = Bench(dut, pause)
         self.chance = self.bench.random
         self.driver = DepthDriver(dut, self.bench, gap)
-        self.frame: Any = None  # that is being sent
+        self.frame: Any = None  # of the frame that is being sent
         self.place = 0  # of the next beat in its frame
         self.under_way: deque[Any] = deque(
             [None] * self.levels
-        )  # frames of the beats that are being added up, None: no beat
+        )  # frame of each beat on its way to the sum, None: no beat
         self.busy = self.inside = False
-        # frames since the request, and how many it wants
+        # frames since the request, and the number requested
         self.taken: list[Any] = []
         self.count = 0
-        self.floor: Any = None  # from the last of them on
-        # by clock: node and floor; the clock of done
+        self.floor: Any = None  # from the last requested frame on
+        # node and floor by cycle; cycle of done
         self.writes: dict[Any, Any] = {}
         self.due: Any = None
         self.captures = 0
@@ -63,7 +63,7 @@ class Capture:
         self.due = None
 
     async def run(self) -> None:
-        """Clock by clock, as the header has it."""
+        """Check each cycle against the rules in the header of the core."""
         dut = self.dut
         for clock in itertools.count():
             await RisingEdge(dut.clk)
@@ -93,7 +93,7 @@ class Capture:
                 self.busy, self.taken = True, []
 
     def take(self, clock: Any, frame: Any) -> None:
-        """A beat, `levels` clocks after it came."""
+        """Add a beat, `levels` cycles after it entered."""
         row, beat = divmod(self.place, self.row)
         if self.place == 0:
             self.inside = self.busy and self.floor is None
@@ -106,7 +106,7 @@ class Capture:
         self.place = (self.place + 1) % self.size
         log2, (rows, columns) = self.config.reference_block_log2, self.config.reference_nodes
         last = (1 << log2) - 1
-        node_row, end = row >> log2, (beat + 1) * self.lanes  # the column behind the beat
+        node_row, end = row >> log2, (beat + 1) * self.lanes  # the column after the beat
         if not self.inside or self.floor is None or node_row >= rows or row & last != last or end & last:
             return
         behind = node_row * columns + (end >> log2)  # the last node of the beat
@@ -116,14 +116,14 @@ class Capture:
             self.due = clock + self.clocks - self.levels
 
     async def send(self, depths: Any = None, count: int | None = None) -> None:
-        """A frame, or its first words."""
+        """Send a frame, or its first words."""
         self.frame = random_depths(self.shape, self.width, self.chance) if depths is None else depths
         await self.driver.words(depth_words(self.frame, self.width, self.lanes)[:count])
 
     request = request
 
     async def until_done(self, depths: Any = None) -> None:
-        """Frames go on until the capture is done, and end with a whole one; one that is not cut follows it."""
+        """Send frames until the capture is done and the current frame has ended; then send one that is not cut."""
         before = self.captures
         while self.captures == before:
             await self.send(depths)
@@ -170,7 +170,7 @@ async def most_frames(dut: Any, high: bool) -> None:
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 async def depths_of_all_kinds(dut: Any) -> None:
-    """Limits, ties of either sign, anything."""
+    """Capture depths at their limits, at ties of either sign, and random ones."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()
     for index in range(1 if device.size > WORDS else 30 if REGRESS else 12):
@@ -181,7 +181,8 @@ async def depths_of_all_kinds(dut: Any) -> None:
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.4])
 async def requests_at_any_time(dut: Any, pause: float) -> None:
-    """While idle, armed, summing, writing; in the clock of a frame's first and last word and in that of done."""
+    """Request a capture while idle, armed, summing and writing, and in the cycles of a frame's first word, its last
+    word and done."""
     device = Capture(dut, 0.0, pause)
     await device.start()
     size = device.size
@@ -198,7 +199,7 @@ async def requests_at_any_time(dut: Any, pause: float) -> None:
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """A reset ends a capture; nothing is written in it or after it; the next request is served."""
+    """Reset during a capture: it ends, nothing is written from then on, and the next request is served."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()
     size, columns = device.size, device.row

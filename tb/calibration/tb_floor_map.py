@@ -18,7 +18,7 @@ BEATS = 1024  # that a test sends, at least
 
 
 class Nodes(Gains):
-    """One channel; entries are nodes."""
+    """Node memory: one channel, one entry per node."""
 
     name = "floor"
     capture_pin = "capture_floors"
@@ -39,7 +39,7 @@ class Nodes(Gains):
 
 
 class Map:
-    """The device, and the words that each frame sent should get."""
+    """Device, and the words that each frame should get."""
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
@@ -65,7 +65,7 @@ class Map:
         self.expected.append(interpolated_floor(nodes[..., 0], self.config))
 
     async def send(self, frames: int = 1) -> None:
-        """Frames back to back, each with the bank that stands when it begins."""
+        """Send frames back to back, each with the bank at its beginning."""
         for _ in range(frames):
             while self.bench.random.random() < self.gap:
                 await self.bench.clocks(1)
@@ -79,7 +79,7 @@ class Map:
     async def check(self) -> None:
         await self.bench.clocks(self.latency + 2)
         sent = [beat for _ in self.expected for beat in self.beats]
-        assert self.source.words == sent, "the driver sent something else"
+        assert self.source.words == sent, "the driver sent other words than the test gave it"
         words = packed(np.concatenate([words.reshape(-1, self.lanes) for words in self.expected]), self.gains.width)
         want = [(word, beat) for word, (beat,) in zip(words, sent, strict=True)]
         for index, (got, wanted) in enumerate(zip(self.sink.words, want, strict=True)):
@@ -90,7 +90,7 @@ class Map:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def at_power_up(dut: Any) -> None:
-    """Both banks hold the words of the files."""
+    """Read both banks at power-up: they hold the words of the files."""
     device = Map(dut, 0.0, 0.0)
     await device.start(written=False)
     await device.send()
@@ -102,7 +102,8 @@ async def at_power_up(dut: Any) -> None:
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
-    """The first frame after a change-over has the new words from first beat to last, the one before it the old."""
+    """Rewrite nodes while frames stream: the frame before a change-over has the old words, the frame after it the
+    new."""
     device = Map(dut, gap, pause)
     await device.start()
     await device.gains.write(device.gains.random(device.bench.random))
@@ -113,7 +114,7 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     going_on[0] = False
     await rewriter
     await device.check()
-    assert len({words.tobytes() for words in device.expected}) > 1, "no change-over was seen: a poor test"
+    assert len({words.tobytes() for words in device.expected}) > 1, "the test is void: no change-over was seen"
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -127,7 +128,7 @@ async def read_as_a_pause_ends(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.3])
 async def named_inside_a_frame(dut: Any, pause: float) -> None:
-    """Another bank is that of the next frame, wherever in a frame it is named."""
+    """Select the other bank at any beat of a frame: the next frame uses it."""
     device = Map(dut, 0.0, pause)
     await device.start()
     for count in range(4, len(device.beats), max(device.row + 1, len(device.beats) // 8)):
@@ -142,7 +143,7 @@ async def named_inside_a_frame(dut: Any, pause: float) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def captured(dut: Any) -> None:
-    """All nodes, several at once, into both banks; the bus reads the same."""
+    """Capture all nodes, several at once, into both banks; the bus reads the same values."""
     device = Map(dut, 0.0, 0.0)
     await device.start()
     for _ in range(2):
@@ -156,7 +157,7 @@ async def captured(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """In mid-frame: words and banks stay; a change-over that is due is made; the next frame is right."""
+    """Reset inside a frame: words and banks stay, a due change-over takes place, and the next frame is right."""
     device = Map(dut, 0.0, 0.0)
     await device.start()
     for count in (1, 2, 3, 4, 6, device.row, 2 * device.row + 3, 5 * device.row // 2):

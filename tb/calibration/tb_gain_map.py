@@ -17,7 +17,7 @@ PLACES = 2048  # that a test sends, at least
 
 
 class Nodes(Gains):
-    """Node memory of any width with one to three channels."""
+    """Node memory of any width, with one to three channels."""
 
     def __init__(self, dut: Any, config: Configuration) -> None:
         (self.count,) = parameters(dut, "Channels")
@@ -31,7 +31,7 @@ class Nodes(Gains):
 
 
 class Map:
-    """The device, and the gains that each frame sent should get."""
+    """Device, and the gains that each frame should get."""
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
@@ -39,7 +39,7 @@ class Map:
         size = self.config.rows * self.config.columns
         self.places = [(word,) for word in places(size, *parameters(dut, "DataWidth")).tolist()]
         self.frames = max(2, PLACES // len(self.places))
-        self.large = len(self.places) > PLACES  # then a few frames must do
+        self.large = len(self.places) > PLACES  # so that a large grid gets a few frames only
         self.bench = Bench(dut, pause)
         self.gains = Nodes(dut, self.config)
         self.driver = StreamDriver(dut, "in", "valid", ["data"])
@@ -52,7 +52,7 @@ class Map:
         await self.gains.settle(written)
 
     async def send(self, frames: int = 1) -> None:
-        """Frames back to back, each with the bank that stands when it begins."""
+        """Send frames back to back, each with the bank at its beginning."""
         for _ in range(frames):
             while self.bench.random.random() < self.gap:
                 await self.bench.clocks(1)
@@ -61,13 +61,13 @@ class Map:
             await self.words(self.places[1:], self.gap)
 
     async def words(self, places: Any, gap: float = 0.0) -> None:
-        """Data of a frame, or of a part of it."""
+        """Return random data of a frame, or of a part of it."""
         await send_apart(self.bench, self.driver, places, gap, len(self.places) if places[0] == self.places[0] else 0)
 
     async def check(self) -> None:
         await self.bench.clocks(GAIN_MAP + 2)
         sent = [place for _ in self.expected for place in self.places]
-        assert self.source.words == sent, "the driver sent something else"
+        assert self.source.words == sent, "the driver sent other words than the test gave it"
         words = np.concatenate([gains.reshape(-1, self.gains.channels) for gains in self.expected]).tolist()
         want = [
             (sum(gain << self.gains.width * channel for channel, gain in enumerate(word)), place)
@@ -81,7 +81,7 @@ class Map:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def at_power_up(dut: Any) -> None:
-    """Both banks hold the words of the files."""
+    """Read both banks at power-up: they hold the words of the files."""
     device = Map(dut, 0.0, 0.0)
     await device.start(written=False)
     await device.send()
@@ -94,7 +94,8 @@ async def at_power_up(dut: Any) -> None:
 @cocotb.test(timeout_time=60, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
 async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
-    """The first frame after a change-over has the new gains from first pixel to last, the one before it the old."""
+    """Rewrite gains while frames stream: the frame before a change-over has the old gains, the frame after it the
+    new."""
     device = Map(dut, gap, pause)
     await device.start()
     await device.gains.write(device.gains.random(device.bench.random))
@@ -107,7 +108,7 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     await rewriter
     await device.check()
     used = {gains.tobytes() for gains in device.expected}
-    assert len(used) > 1, "no change-over was seen: a poor test"
+    assert len(used) > 1, "the test is void: no change-over was seen"
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -121,7 +122,7 @@ async def read_as_a_pause_ends(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.3])
 async def named_inside_a_frame(dut: Any, pause: float) -> None:
-    """Another bank is that of the next frame, wherever in a frame it is named."""
+    """Select the other bank at any pixel of a frame: the next frame uses it."""
     device = Map(dut, 0.0, pause)
     await device.start()
     columns = device.config.columns
@@ -138,7 +139,7 @@ async def named_inside_a_frame(dut: Any, pause: float) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def captured(dut: Any) -> None:
-    """All nodes at once, into both banks; the bus reads the same; entries left over from before stay."""
+    """Capture all channels at once into both banks; the bus reads the same values, and unused entries stay."""
     device = Map(dut, 0.0, 0.0)
     await device.start()
     for _ in range(2):
@@ -152,7 +153,7 @@ async def captured(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """In mid-frame: gains and banks stay; a change-over that is due is made; the next frame is right."""
+    """Reset inside a frame: gains and banks stay, a due change-over takes place, and the next frame is right."""
     device = Map(dut, 0.0, 0.0)
     await device.start()
     columns = device.config.columns

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""reference_capture against its model: sums and gains in a memory, requests at any time, broken frames, the clock of
-done. The memory refuses what hdl/common/ram.sv leaves open."""
+"""reference_capture against its model: sums and gains in a memory, requests at any time, broken frames, the cycle of
+done. The memory of the bench refuses accesses whose result hdl/common/ram.sv leaves undefined."""
 
 import itertools
 from typing import Any
@@ -21,7 +21,7 @@ FIELDS = ["pixel", "position", "bad"]
 
 
 class Capture:
-    """The device, a memory, and what should be in it when the capture is done."""
+    """Device, its memory, and the content that is expected when the capture is done."""
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
@@ -37,14 +37,14 @@ class Capture:
         self.memory: list[Any] = [None] * nodes
         self.busy = self.inside = False
         self.due: Any = None
-        self.gains: Any = None  # the clock of done, and what is then in the memory
+        self.gains: Any = None  # cycle of done, and the content of the memory then
         self.divided = 0  # nodes whose gain was written
         self.captures = 0
         self.taken: list[Any] = []  # frames since the request: pixels, bad, log2_frames
-        self.frame: Any = None  # that is being sent: pixels, bad
-        self.flipped: Any = None  # what a test put into the memory before the last frame
-        self.sums: list[Any] = []  # to be written for the frames so far: (node, what is added, nothing before it)
-        self.passing = 0  # clocks in which sums of before a request may still be written
+        self.frame: Any = None  # frame that is being sent: pixels, bad
+        self.flipped: Any = None  # content that a test put into the memory before the last frame
+        self.sums: list[Any] = []  # expected writes: (node, sum of a row of the block, whether it begins a sum)
+        self.passing = 0  # cycles in which sums from before a request may still be written
         dut.request.value, dut.log2_frames.value = 0, 0
 
     async def start(self) -> None:
@@ -52,7 +52,7 @@ class Capture:
         cocotb.start_soon(self.run())
 
     async def run(self) -> None:
-        """Clock by clock, as the header has it."""
+        """Check each cycle against the rules in the header of the core."""
         dut = self.dut
         for clock in itertools.count():
             await RisingEdge(dut.clk)
@@ -108,7 +108,7 @@ class Capture:
                 word = sum(word << width * c for c, word in enumerate(sums))
                 assert (node, int(dut.map_write_gains.value)) == (wanted, word), "a sum"
             else:
-                assert self.due is not None, "a write of nothing"
+                assert self.due is not None, "a write that is not expected"
                 assert node == self.divided, f"gain of node {node}, not {self.divided}"
                 self.divided += 1
         self.passing = max(0, self.passing - 1)
@@ -120,7 +120,8 @@ class Capture:
             self.memory[node] = int(dut.map_write_gains.value)
 
     def pixels(self) -> Any:
-        """uint8 (rows, columns, 3): anything, black, white, nearly black, gains about to saturate."""
+        """Return pixels, uint8 (rows, columns, 3): random, black, white, nearly black, or with gains about to
+        saturate."""
         shape = (self.config.rows, self.config.columns, 3)
         match self.chance.randrange(6):
             case 0:
@@ -147,7 +148,7 @@ class Capture:
         ]
 
     def gains_behind_flips(self, frame: Any) -> Any:
-        """Return the gains of sums: the memory's words plus those of the last frame, modulo their width."""
+        """Return the gains of the sums: words of the memory plus sums of the last frame, modulo their width."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
         whole = frame[: rows * block, : columns * block].astype(np.int64)
@@ -157,7 +158,7 @@ class Capture:
         return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << self.config.gain_width) - 1)
 
     async def send(self, bad: Any = False) -> None:
-        """A frame."""
+        """Send a frame."""
         self.frame = (self.pixels(), bad)
         pixels = pack(self.frame[0]).ravel().tolist()
         marks = [bad if place & 12 == 12 else self.chance.randrange(2) for place in self.places]
@@ -166,7 +167,7 @@ class Capture:
     request = request
 
     async def until_done(self, bad: Any = 0.0) -> None:
-        """Frames go on until the capture is done, and end with a whole one."""
+        """Send frames until the capture is done and the current frame has ended."""
         before = self.captures
         while self.captures == before:
             await self.send(self.chance.random() < bad)
@@ -203,7 +204,8 @@ async def most_frames(dut: Any) -> None:
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 async def any_sum(dut: Any) -> None:
-    """The memory holds something else before the last frame: sums of all bits, which frames this small do not make."""
+    """Put random sums into the memory before the last frame, because frames this small do not reach all bits of a
+    sum."""
     device = Capture(dut, 0.0, 0.0)
     if len(device.places) > PIXELS:
         return
@@ -224,7 +226,8 @@ async def any_sum(dut: Any) -> None:
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(pause=[0.0, 0.4])
 async def requests_at_any_time(dut: Any, pause: float) -> None:
-    """While idle, armed, summing, dividing; in the clock of a frame's first and last pixel and in that of done."""
+    """Request a capture while idle, armed, summing and dividing, and in the cycles of a frame's first pixel, its last
+    pixel and done."""
     device = Capture(dut, 0.0, pause)
     await device.start()
     size = len(device.places)
@@ -240,7 +243,7 @@ async def requests_at_any_time(dut: Any, pause: float) -> None:
 
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """A reset ends a capture; nothing is written after it; the next request is served."""
+    """Reset during a capture: it ends, nothing is written after it, and the next request is served."""
     device = Capture(dut, 0.0, 0.0)
     await device.start()
     size = len(device.places)

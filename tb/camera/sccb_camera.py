@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A camera on SCCB: it follows the two lines, keeps registers, answers reads, and can be made to fail."""
+"""Model of a camera on SCCB: it follows the two lines, keeps registers, answers reads, and fails on request."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ RELEASED = 1
 
 @dataclass
 class SccbCamera:
-    """Registers of a camera, and where it is in a transmission.
+    """Registers of a camera, and the state of its transmission.
 
     Attributes
     ----------
@@ -32,14 +32,14 @@ class SccbCamera:
     faults: Callable[[str, int, int], int | None] = lambda what, address, value: value
     transmissions: list[list[int]] = field(default_factory=list)
     address: int = 0
-    bits: list[int] | None = None  # of the byte under way; None between transmissions
+    bits: list[int] | None = None  # bits of the current byte; None between transmissions
     bytes: list[int] = field(default_factory=list)
     answer: list[int] = field(default_factory=list)  # bits still to send
     line: int = RELEASED
     before: tuple[int, int] = (1, 1)
 
     def follow(self, sio_c: int, sio_d: int) -> int:
-        """Take the levels of both lines; return what this camera does to SIO_D: 0 pulls it low."""
+        """Take the levels of both lines; return 0 if this camera pulls SIO_D low, else 1."""
         was_c, was_d = self.before
         self.before = sio_c, sio_d
         if was_c and sio_c and was_d != sio_d:
@@ -54,7 +54,7 @@ class SccbCamera:
         self.bits, self.bytes, self.answer, self.line = [], [], [], RELEASED
 
     def _stop(self) -> None:
-        """End a transmission: take a write, or an address."""
+        """End a transmission: store the byte of a write, or the address of a read."""
         data, self.bits, self.line = self.bytes, None, RELEASED
         self.transmissions.append(data)
         if not data or data[0] != self.device_id or len(data) <= self.address_bytes:

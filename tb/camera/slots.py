@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The stream of pixels between the cores of the camera block: one slot for each cycle with `en`.
+"""Stream of pixels between the cores of the camera block: one slot for each cycle with `en`.
 
-A slot is a dict of pins. A pixel has `in_valid`, a broken frame ends with `in_abort`; in every other slot the pins of
-the data hold anything.
+A slot is a dict of pins. A pixel has `in_valid`, a broken frame ends with `in_abort`; in every other slot the data
+pins hold random values.
 """
 
 import random
@@ -23,19 +23,19 @@ CONTROL = ("in_valid", "in_abort", "rst")
 
 
 class Slots:
-    """Makes slots for a device with these data pins and their widths."""
+    """Source of slots for a device with these data pins and their widths."""
 
     def __init__(self, pins: Mapping[str, int], control: Sequence[str] = CONTROL) -> None:
         self.pins, self.control = pins, control
         self.random = random.Random(cocotb.RANDOM_SEED)
 
     def idle(self, **pins: int) -> Slot:
-        """Return a slot without a pixel; data pins hold anything."""
+        """Return a slot without a pixel; data pins hold random values."""
         noise = {pin: self.random.getrandbits(width) for pin, width in self.pins.items()}
         return noise | dict.fromkeys(self.control, 0) | pins
 
     def apart(self, words: Iterable[Slot], gap: float) -> Iterator[Slot]:
-        """Yield the words, before each any number of idle slots, one more with probability `gap`."""
+        """Yield the words, each after a random number of idle slots; `gap` is the probability of each idle slot."""
         for word in words:
             while self.random.random() < gap:
                 yield self.idle()
@@ -63,7 +63,7 @@ class Window:
         self.column_ends = block_weights(self.width, numerator, denominator)[1]
 
     def completes(self) -> np.ndarray:
-        """Return of each pixel whether it is the last of a block, bool (height, width)."""
+        """Return which pixels are the last of a block, bool (height, width)."""
         return np.logical_and.outer(self.row_ends, self.column_ends)
 
     def marks(self) -> list[Slot]:

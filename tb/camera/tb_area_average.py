@@ -15,7 +15,7 @@ OUTPUTS = ["out_valid", "out_pixel", "out_last", "out_user"]
 
 
 class Bench:
-    """Pixels in, and the words that the model says leave: slot, red, green, blue, last, user; colours of abort -1."""
+    """Pixels to send, and the words expected: slot, red, green, blue, last, user; -1 as the colours of an abort."""
 
     def __init__(self, dut: Any) -> None:
         self.dut = dut
@@ -29,10 +29,10 @@ class Bench:
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
         self.stimuli: list[Slot] = []
         self.expected: list[Any] = []
-        self.place = 0  # words of the frame that have left
+        self.place = 0  # words of the frame that are expected so far
 
     def samples(self, kind: str) -> np.ndarray:
-        """Samples of a frame: within full scale, of the whole range, constant near a tie, at the limits."""
+        """Return samples of a frame: within full scale, over the whole range, constant near a tie, or at the limits."""
         white, limit = (1 << self.bits) - 1, 1 << (self.width - 1)
         if kind == "picture":
             return self.rng.integers(0, white, self.shape, endpoint=True)
@@ -45,7 +45,7 @@ class Bench:
         return np.full(self.shape, {"black": 0, "white": white, "lowest": -limit, "highest": limit - 1}[kind])
 
     def frame(self, samples: np.ndarray, gap: float = 0.0, pixels: int | None = None) -> None:
-        """Append a frame, of which the first `pixels` pixels come."""
+        """Append a frame, of which only the first `pixels` pixels are sent."""
         blue_row, blue_column = (self.slots.random.getrandbits(1) for _ in "rc")
         colour = (blue_row, blue_column) if self.bayer else None
         means = area_average(samples, self.bits, self.numerator, self.denominator, colour).reshape(-1, 3)
@@ -104,7 +104,8 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(gap=[0.0, 0.3])
 async def broken_frames(dut: Any, gap: float) -> None:
-    """Broken after each of the first pixels, anywhere, and between frames; at once or later the next one follows."""
+    """Break a frame after each of its first pixels, at random positions, and between frames; the next one follows at
+    once or later."""
     bench = Bench(dut)
     pixels = bench.window.height * bench.window.width
     anywhere = [bench.slots.random.randrange(pixels) for _ in range(10)]
@@ -124,7 +125,7 @@ async def broken_frames(dut: Any, gap: float) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """Nothing that is inside leaves; the next frame is right, and so is a frame that breaks at once."""
+    """Reset at random positions: no block inside leaves, and the next frame is right, also if it breaks at once."""
     bench = Bench(dut)
     pixels = bench.window.height * bench.window.width
     for age in range(AREA_AVERAGE + 2):

@@ -18,7 +18,7 @@ OUTPUTS = ["out_valid", "out_totals", "out_areas"]
 
 
 class Bench:
-    """Frames in, and what the model says of them, in the order of the words that leave."""
+    """Frames to send, and the words expected in their order."""
 
     def __init__(self, dut: Any) -> None:
         self.dut = dut
@@ -31,10 +31,10 @@ class Bench:
         self.slots = Slots(pins, ("in_row_start", "in_frame_start", "in_ends", "rst"))
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
         self.stimuli: list[Slot] = []
-        self.expected: list[tuple[int, Any]] = []  # slot in which a block is complete, what leaves
+        self.expected: list[tuple[int, Any]] = []  # slot in which a block is complete, word that leaves
 
     def frame(self, kind: str, gap: float = 0.0, rows: int | None = None) -> None:
-        """Append a frame, of which `rows` rows come."""
+        """Append a frame, of which only `rows` rows are sent."""
         window, lanes, first = self.window, self.lanes, self.slots.random.getrandbits(1)
         limit = self.numerator << (self.width - 1)
         shape = (window.height, self.columns, lanes)
@@ -90,7 +90,7 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """A reset drops every block inside; the next frame is right."""
+    """Reset inside a frame: every block inside is dropped, and the next frame is right."""
     bench = Bench(dut)
     for age in range(1, BLOCK_TOTALS + 2):
         bench.frame("random")

@@ -24,7 +24,7 @@ async def axes(dut: Any, pause: float) -> None:
         stimuli += [{"step": 0, "restart": int(chance.random() < 0.5)}, {"step": 1, "restart": 1}, *axis]
     del stimuli[0]
     seen = await drive(dut, stimuli, ["weight", "block_ends"], pause)
-    place = 0  # of the pixel that is taken next
+    place = 0  # position of the pixel that is taken next
     for clock in range(len(stimuli)):
         present = 0 if seen["restart"][clock] else place
         got = int(seen["weight"][clock]), bool(seen["block_ends"][clock])

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_front_end against its model: blanking, gaps and stalls, broken pictures, changing windows, resets.
 
-What leaves goes through the model of frame_guard, as behind the core: each broken picture must be one broken frame.
+The output goes through the model of frame_guard, which follows the core: each broken picture must become one broken
+frame.
 """
 
 import json
@@ -77,14 +78,14 @@ class Bench:
         return camera_words(words, self.camera), camera_front_end(words, self.camera)
 
     def blanked(self, words: list[Word]) -> list[Word | None]:
-        """Return the words with blanking: nothing for any time behind each row, and before the picture."""
+        """Return the words with blanking of random length after each row and before the picture."""
         out: list[Word | None] = [None] * self.random.randrange(20)
         for word in words:
             out += [word, *[None] * (self.random.randrange(9) if word.last else 0)]
         return out
 
     async def frames(self) -> list[np.ndarray]:
-        """Wait for what is inside; return the good frames as frame_guard lets them pass, uint8 (rows, columns, 3)."""
+        """Wait until everything has left; return the frames that frame_guard accepts, uint8 (rows, columns, 3)."""
         rows, columns = self.camera.grid
         await ClockCycles(self.dut.clk, SETTLE)
         while self.dut.m_axis_tvalid.value:
@@ -104,7 +105,7 @@ class Bench:
     (("offers", "stalls"), [("none", "none"), ("random", "none"), ("none", "random"), ("long", "long")])
 )
 async def pictures(dut: Any, offers: str, stalls: str) -> None:
-    """Every frame equals the model; without stalls the cycles to its last pixel are the same for all."""
+    """Send pictures: every frame equals the model, and without stalls all have the same latency to their last pixel."""
     bench = Bench(dut, offers, stalls)
     await bench.start()
     want, last = [], []
@@ -127,7 +128,7 @@ async def pictures(dut: Any, offers: str, stalls: str) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(kind=KINDS, stalls=["none", "random"])
 async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
-    """A good picture, a broken one, a good one: the good ones leave, the other is one broken frame."""
+    """Send a good picture, a broken one and a good one: the good ones leave, and the other becomes one broken frame."""
     bench = Bench(dut, stalls, stalls)
     await bench.start()
     columns = bench.camera.picture[1] * bench.camera.words_per_pixel
@@ -145,7 +146,7 @@ async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def settings_change_between_pictures(dut: Any) -> None:
-    """Window anywhere, gains and black level of any size; a window that leaves the picture is a fault."""
+    """Change window, gains and black level between pictures; a window beyond the picture is a fault."""
     bench = Bench(dut)
     await bench.start()
     built = bench.camera
@@ -172,7 +173,7 @@ async def settings_change_between_pictures(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """Anywhere in a picture and behind it; the next one is right."""
+    """Reset anywhere in a picture and after it; the next picture is right."""
     bench = Bench(dut)
     await bench.start()
     for clocks in (1, 7, 60, 200, *(bench.random.randrange(500) for _ in range(4))):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""camera_setup against tactile_depth.camera.camera_setup, in every clock; a camera on its lines, with faults."""
+"""camera_setup against tactile_depth.camera.camera_setup in every cycle, with a camera on its lines that also fails."""
 
 import itertools
 import os
@@ -40,7 +40,7 @@ LISTS = {
 
 
 class Bench:
-    """The device, its model beside it in every clock, and a camera on its lines."""
+    """Device, its model in step with it, and a camera on its lines."""
 
     def __init__(self, dut: Any, faults: Fault | None = None, acknowledges: bool = True) -> None:
         self.dut, self.list = dut, LISTS[os.environ["LIST"]]
@@ -62,7 +62,7 @@ class Bench:
         dut.rst.value = 0
 
     async def follow(self) -> None:
-        """Compare every output in every clock; the camera answers on the line."""
+        """Compare every output in every cycle, and let the camera drive the line."""
         dut, edge = self.dut, RisingEdge(self.dut.clk)
         expected = None
         while True:
@@ -84,13 +84,13 @@ class Bench:
             assert int(dut.found.value) == expected.found, "found"
 
     async def end(self) -> None:
-        """Wait until the list has ended, one way or the other."""
+        """Wait until the list has ended, with or without a fault."""
         while not (self.dut.done.value or self.dut.failed.value):
             await RisingEdge(self.dut.clk)
         await ClockCycles(self.dut.clk, 3)
 
     def check_registers(self) -> None:
-        """Every register that is written has its last value."""
+        """Compare every register with the last value that the list writes to it."""
         last = {entry.address: entry.data for entry in self.list if entry.kind in (Kind.WRITE, Kind.PLAIN_WRITE)}
         assert {address: self.camera.registers.get(address) for address in last} == last
 
@@ -98,7 +98,8 @@ class Bench:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(acknowledges=[True, False])
 async def whole_list(dut: Any, acknowledges: bool) -> None:
-    """Every register arrives, whatever the camera does in the ninth bit; the pins end as the list says."""
+    """Play the whole list: every register arrives, whatever the camera drives in the ninth bit, and the pins end as the
+    list says."""
     bench = Bench(dut, acknowledges=acknowledges)
     await bench.start()
     await bench.end()
@@ -117,7 +118,7 @@ async def whole_list(dut: Any, acknowledges: bool) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(kind=["write", "read", "silent"], times=sample([1, 2, 3]))
 async def faults_that_end(dut: Any, kind: str, times: int) -> None:
-    """A write that is lost, an answer with a wrong bit, and none at all: the entry is sent again until it is right."""
+    """Lose a write, answer with a wrong bit, or give no answer: the entry is sent again until it is right."""
     count: dict[int, int] = {}
     chance = random.Random(cocotb.RANDOM_SEED)
 
@@ -131,7 +132,7 @@ async def faults_that_end(dut: Any, kind: str, times: int) -> None:
     bench = Bench(dut, faults)
     await bench.start()
     await bench.end()
-    if kind == "write":  # what is not read back is lost, and nobody knows
+    if kind == "write":  # a lost write that is not read back stays undetected
         plain = {entry.address for entry in bench.list if entry.kind == Kind.PLAIN_WRITE}
         for address in plain - {entry.address for entry in bench.list if entry.kind == Kind.WRITE}:
             bench.camera.registers[address] = next(e.data for e in bench.list if e.address == address)
@@ -141,7 +142,8 @@ async def faults_that_end(dut: Any, kind: str, times: int) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def faults_that_stay(dut: Any) -> None:
-    """An entry that is never right ends the list with its number and with what was read, after as many attempts."""
+    """Let an entry fail always: the list ends after the set number of attempts, with the entry's number and the value
+    read."""
     list_of = LISTS[os.environ["LIST"]]
     attempts = parameters(dut, "Attempts")[0]
     compared = [index for index, entry in enumerate(list_of) if entry.kind in (Kind.WRITE, Kind.CHECK)]
@@ -179,7 +181,7 @@ async def faults_that_stay(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(pin=["rst", "restart"])
 async def begun_afresh(dut: Any, pin: str) -> None:
-    """A reset or a restart, whenever it comes, begins with the first entry; the camera starts up all the same."""
+    """Reset or restart at any time: the list begins with its first entry and is completed."""
     bench = Bench(dut)
     await bench.start()
     chance = random.Random(cocotb.RANDOM_SEED)
@@ -196,7 +198,7 @@ async def begun_afresh(dut: Any, pin: str) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def camera_clock(dut: Any) -> None:
-    """XCLK has its period in every state, and stands still in a reset."""
+    """Check that XCLK has its period in every state, and stands still in a reset."""
     (half,) = parameters(dut, "XclkHalfClocks")
     bench = Bench(dut)
     await bench.start()

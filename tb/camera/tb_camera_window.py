@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""camera_window against tactile_depth.camera.camera_window: pixels, marks, breaks and faults of what was taken.
+"""camera_window against tactile_depth.camera.camera_window: pixels, marks, breaks and faults of the words taken.
 
-That the model flags and drops what it should is tests/camera/test_camera_window.py.
+tests/camera/test_camera_window.py checks what the model flags and drops.
 """
 
 import random
@@ -37,19 +37,19 @@ class Bench:
 
     def forget(self) -> None:
         self.taken: list[Any] = []  # word and settings
-        self.clocks: list[int] = []  # of each word, counted with en
+        self.clocks: list[int] = []  # cycle of each word, counted with en
         self.out: list[Any] = []
         self.faults: list[Any] = []
 
     def use(self, settings: Settings) -> None:
-        """Set the picture that comes next."""
+        """Set the size and the window of the next picture."""
         self.settings = settings
         names = ("columns", "rows", "window_x", "window_y")
         for name, value in zip(names, settings, strict=True):
             getattr(self.dut, name).value = value
 
     def any_settings(self) -> Settings:
-        """A picture around the window, at its edges or anywhere in it."""
+        """Return random settings: a window at the edges of a picture or anywhere in it."""
         columns = self.width + self.random.choice((0, 1, 2, 5))
         columns += columns % 2 if self.pairs else 0
         rows = self.height + self.random.choice((0, 1, 3))
@@ -133,7 +133,8 @@ class Bench:
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(kind=KINDS, stalls=list(STALLS))
 async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
-    """A good picture, a broken one, a good one, for every position of the break; with stalls for a few of them."""
+    """Send a good picture, a broken one and a good one, for every position of the break; with stalls for a few
+    positions."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start()
     bench.use(Settings(bench.width + 2, bench.height + 2, 1, 1))
@@ -150,7 +151,7 @@ async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(stalls=list(STALLS))
 async def windows_anywhere(dut: Any, stalls: str) -> None:
-    """Settings that change before, with and within pictures; some leave the picture."""
+    """Change the settings before, at the start of and within pictures; some windows exceed the picture."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start()
     outside = 0
@@ -168,12 +169,12 @@ async def windows_anywhere(dut: Any, stalls: str) -> None:
         outside += "window_outside" in bench.faults
         await bench.check(settings)
         await bench.reset(1)
-    assert outside, "a poor test"
+    assert outside, "the test is void: every window lies inside the picture"
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """At every position of a picture; the next one is right."""
+    """Reset at every position of a picture; the next picture is right."""
     bench = Bench(dut)
     await bench.start()
     bench.use(Settings(bench.width + 1 + bench.pairs, bench.height + 1, 1, 0))
@@ -191,7 +192,7 @@ async def resets(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(stalls=list(STALLS))
 async def random_streams(dut: Any, stalls: str) -> None:
-    """Broken and good pictures, several faults in one, stray words, marks flipped anywhere."""
+    """Send random streams: good and broken pictures, several faults in one, stray words, flipped marks."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start()
     rng, flagged = bench.random, set()
@@ -217,4 +218,6 @@ async def random_streams(dut: Any, stalls: str) -> None:
         if index % 10 == 9:
             flagged |= {name for _, name in (await bench.check(f"random stream {index}")).faults}
             await bench.reset(1)
-    assert flagged >= {"row_short", "row_long", "start_early", "start_missing"}, f"only {flagged}: a poor test"
+    assert flagged >= {"row_short", "row_long", "start_early", "start_missing"}, (
+        f"the test is void: it reached only {flagged}"
+    )

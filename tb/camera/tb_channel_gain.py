@@ -27,7 +27,7 @@ class Bench:
         self.stimuli: list[Slot] = []
 
     def settings(self) -> Slot:
-        """Settings of a frame: none, at their limits, or any."""
+        """Return settings of a frame: neutral, at their limits, or random."""
         chance = self.slots.random
         one, most = 1 << GAIN_FRACTION, (1 << GAIN_WIDTH) - 1
         if chance.random() < 0.2:
@@ -50,7 +50,7 @@ class Bench:
         self.stimuli += self.slots.apart(words, gap)
 
     def expected(self, seen: Any) -> list[Any]:
-        """Return of each clock what was taken in it: None, "abort" or samples, colour, marks."""
+        """Return what was taken in each cycle: None, "abort", or samples, colour and marks."""
         out: list[Any] = []
         black, gains = 0, np.zeros(3, np.int64)
         for clock in range(len(self.stimuli)):

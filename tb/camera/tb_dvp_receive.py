@@ -24,7 +24,7 @@ SYSTEM = ("rst", "m_axis_tready", "m_axis_tvalid", "m_axis_tdata", "m_axis_tlast
 
 
 class Bench:
-    """Both clocks, the sink, and what is seen at the pins; `check` compares all of it with the model."""
+    """Both clocks, the sink, and a record of the pins; `check` compares the record with the model."""
 
     def __init__(self, dut: Any) -> None:
         self.dut = dut
@@ -33,7 +33,7 @@ class Bench:
         self.lost: list[int] = []
 
     async def start(self, ratio: str, accepts: Iterable[bool]) -> None:
-        """Start the clocks; empty the queue of what was left in it; reset."""
+        """Start the clocks, empty the queue, and reset."""
         dut = self.dut
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
         dut.rst.value, dut.vsync.value, dut.href.value, dut.data.value = 1, 0, 0, 0
@@ -51,7 +51,8 @@ class Bench:
         await RisingEdge(dut.clk)
 
     async def settle(self, fifo_log2: int) -> None:
-        """Begin and end a frame: then the camera's side waits for the next; and let the reset take what has crossed."""
+        """Begin and end a frame, so that the side of the camera waits for the next one; reset the words that have
+        crossed."""
         await self.play([Pins(True, False, 0)] * 2)
         await self.play([IDLE] * 4)
         await ClockCycles(self.dut.clk, 8 + (1 << fifo_log2))
@@ -62,7 +63,7 @@ class Bench:
         await ClockCycles(self.dut.pclk, 4)
 
     async def play(self, pins: Iterable[Pins]) -> None:
-        """Drive the camera's pins, an entry in each clock of pclk."""
+        """Drive the pins of the camera, one entry in each cycle of pclk."""
         edge = RisingEdge(self.dut.pclk)
         for vsync, href, data in pins:
             self.dut.vsync.value, self.dut.href.value, self.dut.data.value = int(vsync), int(href), data
@@ -70,7 +71,7 @@ class Bench:
         self.dut.vsync.value = self.dut.href.value = 0
 
     async def end(self) -> None:
-        """Wait until nothing is inside, and check every edge."""
+        """Wait until the queue is empty, and check every edge."""
         self.sink.stall(itertools.repeat(True))
         (fifo_log2,) = parameters(self.dut, "FifoLog2")
         await ClockCycles(self.dut.pclk, 6)
@@ -78,7 +79,7 @@ class Bench:
         self.check()
 
     def check(self) -> None:
-        """Compare the outputs before each edge with the model, which takes what stood at the inputs."""
+        """Compare the outputs before each edge with the model, which takes the inputs before that edge."""
         model = self.model
         model.receiving = True  # as `settle` leaves it
         for time, edges in itertools.groupby(self.events, key=lambda event: event[0]):
@@ -103,20 +104,21 @@ class Bench:
 
 
 def beats(frame: np.ndarray) -> list[tuple[int, int, int]]:
-    """The beats of a whole frame."""
+    """Return the beats of a whole frame."""
     ends = np.arange(frame.size) % BYTES == BYTES - 1
     return [(byte, int(end), int(index == 0)) for index, (byte, end) in enumerate(zip(frame.flat, ends, strict=True))]
 
 
 def stalls(first: int, length: int) -> Iterator[bool]:
-    """A sink that is ready, but for `length` clocks after so many."""
+    """Yield the ready of a sink that stalls once, for `length` cycles after `first` cycles."""
     return itertools.chain([True] * first, [False] * length, itertools.repeat(True))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(ratio=list(RATIOS), accepts=sample(["none", "one_in_4", "random"]))
 async def whole_frames(dut: Any, ratio: str, accepts: str) -> None:
-    """Every byte arrives where the sink is fast enough; elsewhere whole frames, or ones cut short and counted."""
+    """Send frames: every byte arrives if the sink is fast enough; otherwise frames are whole, or cut short and
+    counted."""
     bench = Bench(dut)
     await bench.start(ratio, profile(accepts))
     frames = bench.frames(4)
@@ -131,7 +133,7 @@ async def whole_frames(dut: Any, ratio: str, accepts: str) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(ratio=sample(list(RATIOS)[:6]))
 async def frames_lost(dut: Any, ratio: str) -> None:
-    """A stall anywhere in a frame costs that frame alone, once; of it only its beginning leaves."""
+    """Stall anywhere in a frame: only that frame is lost, it is counted once, and only its beginning leaves."""
     fifo_depth = 1 << parameters(dut, "FifoLog2")[0]
     pclk, clk = RATIOS[ratio]
     frame_clocks = (2 + 40 + ROWS * (BYTES + 3)) * pclk // clk
@@ -158,7 +160,7 @@ async def frames_lost(dut: Any, ratio: str) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(ratio=sample(["equal", "half", "camera_24", "twice"]))
 async def anything(dut: Any, ratio: str) -> None:
-    """Pins at random, vsync inside a row and for one clock too; a sink that stalls at random, long and short."""
+    """Drive the pins at random, with vsync inside a row and for one cycle too; the sink stalls at random."""
     bench = Bench(dut)
     chance = bench.random
     runs = (([True] * chance.randint(1, 60)) + [False] * chance.randint(1, 40) for _ in itertools.repeat(None))
@@ -175,7 +177,7 @@ async def anything(dut: Any, ratio: str) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(count=[2, 5, 254, 255, 300])
 async def many_lost(dut: Any, count: int) -> None:
-    """The number of frames that nobody takes, up to 255."""
+    """Send frames that the sink never takes, and count them up to 255."""
     bench = Bench(dut)
     await bench.start("equal", itertools.repeat(True))
     frames = bench.frames(2)
@@ -194,7 +196,7 @@ async def many_lost(dut: Any, count: int) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(clocks=[1, 2, 5])
 async def resets(dut: Any, clocks: int) -> None:
-    """Nothing of a frame leaves after a reset in it, whenever that comes; the next is whole."""
+    """Reset at any time in a frame: nothing of it leaves afterwards, and the next frame is whole."""
     bench = Bench(dut)
     await bench.start("equal", itertools.repeat(True))
     for phase in range(0, 90, 3 if REGRESS else 11):

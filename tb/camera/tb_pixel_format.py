@@ -28,10 +28,11 @@ class Bench:
         self.slots = Slots({"in_data": 24, **dict.fromkeys(MARKS, 1)})
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
         self.stimuli: list[Slot] = []
-        self.expected: list[Any] = []  # slot in which it leaves; abort, or samples, colour and marks
+        self.expected: list[Any] = []  # slot in which each leaves; abort, or samples, colour and marks
 
     def every_code(self) -> np.ndarray:
-        """Words of a picture in which every bit field takes each of its values, beside any values of the others."""
+        """Return words of a picture in which every bit field takes each of its values, beside random values of the
+        others."""
         rows, columns = self.camera.picture
         words = self.rng.integers(0, 1 << 24, rows * columns)
         form = self.camera.pixel_format
@@ -46,7 +47,7 @@ class Bench:
         return words.reshape(rows, columns)
 
     def picture(self, words: np.ndarray, window: Place, gap: float, pixels: int | None = None) -> None:
-        """Append a picture, of which the first `pixels` pixels come."""
+        """Append a picture, of which only the first `pixels` pixels are sent."""
         samples = pixel_format(words, self.camera)
         x, y, width, height = window
         place = 0
@@ -86,7 +87,7 @@ class Bench:
         self.stimuli.append(self.slots.idle(rst=1))
 
     def window(self) -> Place:
-        """Return a window anywhere: at the edges, of one pixel, or any."""
+        """Return a window: at the edges, of one pixel, or random."""
         rows, columns = self.camera.picture
         chance = self.slots.random
         x, y = chance.choice((0, columns - 1, chance.randrange(columns))), chance.choice((0, chance.randrange(rows)))
@@ -123,7 +124,7 @@ async def every_code(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.5, 0.0), (0.2, 0.3)]))
 async def windows(dut: Any, gap: float, pause: float) -> None:
-    """Pictures whole and broken, with windows at any place; a broken one is followed at once or later."""
+    """Send whole and broken pictures with random windows; the picture after a broken one follows at once or later."""
     bench = Bench(dut)
     small = bench.rng.integers(0, 1 << 24, (4, 6))
     bench.camera = CameraConfiguration(**{**json.loads(os.environ["CAMERA"]), "picture": small.shape, "grid": (2, 2)})

@@ -66,7 +66,7 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
 
 @cocotb.test()
 async def a_reset_forgets_what_is_inside(dut: Any) -> None:
-    """Blocks end in every clock before it, and none after it."""
+    """Reset in a row: blocks end in every cycle before the reset, and none after it."""
     slots = Slots({"in_samples": len(dut.in_samples), "in_blue_column": 1}, ("in_valid", "in_row_start", "rst"))
     numerator, denominator = parameters(dut, "Numerator", "Denominator")
     width = Window(1, BLOCKS, numerator, denominator).width

@@ -18,7 +18,7 @@ WORDS = 400 if REGRESS else 150
 
 
 async def start(dut: Any, ratio: str) -> Any:
-    """Start both clocks, take what a clock wrote as the simulator began, and return what is seen at their edges."""
+    """Start both clocks, remove a word that the first edges may have written, and return the record of their edges."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.write_valid.value = dut.read_ready.value = dut.write_data.value = 0
     clocks = dut.write_clk, dut.read_clk
@@ -37,7 +37,7 @@ async def start(dut: Any, ratio: str) -> Any:
 
 
 async def write(dut: Any, words: Any, offers: str) -> None:
-    """Offer words, each until it is taken."""
+    """Offer each word until it is taken."""
     edge, moves = RisingEdge(dut.write_clk), profile(offers, 1)
     for word in words:
         while not next(moves):
@@ -51,7 +51,7 @@ async def write(dut: Any, words: Any, offers: str) -> None:
 
 
 async def read(dut: Any, count: int, accepts: str) -> list[int]:
-    """Take so many words."""
+    """Take `count` words."""
     edge, moves = RisingEdge(dut.read_clk), profile(accepts, 2)
     words: list[int] = []
     while len(words) < count:
@@ -65,7 +65,7 @@ async def read(dut: Any, count: int, accepts: str) -> list[int]:
 
 
 def check_edges(events: Any, depth: int) -> None:
-    """Compare the outputs before each edge with the model, which takes what stood at the inputs."""
+    """Compare the outputs before each edge with the model, which takes the inputs before that edge."""
     model = AsyncFifo(depth)
     for time, edges in itertools.groupby(events, key=lambda event: event[0]):
         pins = {side: values for _, side, values in edges}
@@ -83,7 +83,7 @@ def check_edges(events: Any, depth: int) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(ratio=list(RATIOS), offers=["none", "random"], accepts=["none", "random"])
 async def words(dut: Any, ratio: str, offers: str, accepts: str) -> None:
-    """All of them leave, in order, at every ratio; every output at every edge is the model's."""
+    """Send words at every ratio of the clocks: all leave in order, and every output equals the model at every edge."""
     width, depth_log2 = parameters(dut, "Width", "DepthLog2")
     rng = random.Random(cocotb.RANDOM_SEED)
     sent = [rng.getrandbits(width) for _ in range(WORDS)]
@@ -95,7 +95,7 @@ async def words(dut: Any, ratio: str, offers: str, accepts: str) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def fills_up(dut: Any) -> None:
-    """Without a reader as many words enter as there is room for, and one that waits at the output."""
+    """Fill the queue without a reader: it takes as many words as it holds, and one more that waits at the output."""
     width, depth_log2 = parameters(dut, "Width", "DepthLog2")
     events = await start(dut, "equal")
     sent = [word % (1 << width) for word in range((1 << depth_log2) + 1)]

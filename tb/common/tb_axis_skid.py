@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axis_skid against tactile_depth.common.axis_skid, every output in every clock; gaps, stalls, resets."""
+"""axis_skid against tactile_depth.common.axis_skid, every output in every cycle; gaps, stalls, resets."""
 
 import os
 import random
@@ -41,7 +41,7 @@ async def reset(dut: Any, clocks: int = 3) -> None:
 
 
 async def start(dut: Any, offers: str, accepts: str) -> Any:
-    """Clock, reset, both drivers, both monitors, the model."""
+    """Start clock, drivers, monitors and model, and reset."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     dut.rst.value, dut.s_data.value = 1, 0
     source = AxisSource(dut, "s", FIELDS, offers=profile(offers, 1))
@@ -62,7 +62,7 @@ def random_words(dut: Any, count: int) -> list[Any]:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(offers=list(PROFILES), accepts=list(PROFILES))
 async def words(dut: Any, offers: str, accepts: str) -> None:
-    """All of them leave, in order; at full rate each a clock after it came."""
+    """Send words: all leave in order, at full rate each one cycle after it entered."""
     source, taken, left = await start(dut, offers, accepts)
     sent = random_words(dut, WORDS)
     await source.send(sent)
@@ -78,7 +78,7 @@ async def words(dut: Any, offers: str, accepts: str) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=["none", "alternate", "long"], clocks=sample([1, 2, 5]))
 async def resets(dut: Any, accepts: Any, clocks: int) -> None:
-    """After a reset nothing of before is left, and nothing of after is lost."""
+    """Reset in every phase: no word from before the reset leaves, and none from after it is lost."""
     source, taken, left = await start(dut, "none", accepts)
     sent = random_words(dut, 200)
     for phase in (1, 2, 3, 4, 151, 153):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""banked_table against its model in every clock: frames of any length, both ports of the free bank, pauses, resets."""
+"""banked_table against its model in every cycle: frames of any length, both ports of the free bank, pauses, resets."""
 
 import random
 from pathlib import Path
@@ -17,22 +17,23 @@ CLOCKS = 6000
 
 
 class Bench:
-    """Drives one clock at a time at random, as the header allows it."""
+    """Random stimuli that the header of the core allows, one cycle at a time."""
 
-    banks: Any = None  # contents; no reset touches them, so the next test begins with them
+    banks: Any = None  # contents; they survive a reset, so the next test begins with them
 
     def __init__(self, dut: Any, pause: float) -> None:
         self.dut, self.pause = dut, pause
         self.width, self.depth = parameters(dut, "Width", "Depth")
         self.chance = random.Random(cocotb.RANDOM_SEED)
-        self.named = 0  # bank of the frame that comes
+        self.named = 0  # bank of the next frame
         self.begun: int | None = None  # clocks with en since frame_start, until the change
-        self.word: int | None = None  # that is read
+        self.word: int | None = None  # entry that is read
         self.free_word: int | None = None
         self.changes = 0
 
     async def start(self) -> None:
-        """Verilator begins with random pins, which may have written a word before the first edge: see test_power_up."""
+        """Start and reset. On Verilator rewrite both banks: its pins are random at first and may write a word
+        (test_power_up)."""
         pins = ("en", "frame_start", "change", "read", "free_write", "free_read", "table_bank")
         for pin in pins:
             getattr(self.dut, pin).value = 0
@@ -81,7 +82,7 @@ class Bench:
             if start:
                 self.named, self.begun = banks.wanted, 0
             self.word = int(banks.words[banks.in_use][address]) if int(dut.read.value) else None
-        if read:  # in the clock of a change: of the bank that was left
+        if read:  # in the cycle of a change: of the previous bank
             self.free_word = int(banks.free[free_address])
         if write:
             banks.write(write_address, written)
@@ -98,9 +99,9 @@ class Bench:
 @cocotb.test()
 @cocotb.parametrize(pause=[0.0, 0.5])
 async def frames_and_bus(dut: Any, pause: float) -> None:
-    """Reads of frames, with both ports of the free bank at work; resets now and then."""
+    """Read in frames while both ports of the free bank are in use; reset from time to time."""
     bench = Bench(dut, pause)
     await bench.start()
     for _ in range(CLOCKS):
         await bench.clock(bench.chance.random() < 0.005)
-    assert bench.changes > CLOCKS // 100, f"{bench.changes} change-overs: a poor test"
+    assert bench.changes > CLOCKS // 100, f"the test is void: {bench.changes} change-overs"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""block_sum against its model, with a memory: every write in its clock, sums over frames, gaps, resets."""
+"""block_sum against its model, with a memory: every write in its cycle, sums over frames, gaps, resets."""
 
 import itertools
 import random
@@ -17,7 +17,7 @@ NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Sig
 
 
 class Device:
-    """The core, a memory that refuses what ram.sv leaves open, and what is to be written."""
+    """Core, a memory that refuses accesses with an undefined result in ram.sv, and the expected writes."""
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
@@ -27,7 +27,7 @@ class Device:
         self.chance = random.Random(cocotb.RANDOM_SEED)
         self.generator = np.random.default_rng(cocotb.RANDOM_SEED)
         self.memory: dict[int, int] = {}
-        self.due: dict[int, tuple[int, int, bool]] = {}  # by clock: block, word, complete
+        self.due: dict[int, tuple[int, int, bool]] = {}  # block, word, complete, by cycle
         self.sums = np.zeros((*self.blocks, self.channels), np.int64)
         self.clock = 0
         self.writes = 0
@@ -48,7 +48,7 @@ class Device:
         return sum((int(word) & (1 << width) - 1) << width * channel for channel, word in enumerate(words))
 
     async def edge(self) -> None:
-        """One clock of the memory and of the checks."""
+        """Run one cycle of the memory and of the checks."""
         dut = self.dut
         await RisingEdge(dut.clk)
         self.clock += 1
@@ -74,7 +74,7 @@ class Device:
             await self.edge()
 
     def frame_words(self) -> np.ndarray:
-        """Anything, or the limits alone."""
+        """Return random words, or words at the limits."""
         low, high = (-(1 << self.width - 1), (1 << self.width - 1) - 1) if self.signed else (0, (1 << self.width) - 1)
         shape = (self.rows, self.columns, self.channels)
         match self.chance.randrange(4):
@@ -117,7 +117,7 @@ class Device:
 @cocotb.test()
 @cocotb.parametrize(gap=[0.0, 0.3])
 async def sums(dut: Any, gap: float) -> None:
-    """Captures of one frame and of several, one after another, and frames behind a last one."""
+    """Capture one frame and several, one capture after another, and send frames after the last one."""
     device = Device(dut, gap)
     await device.start()
     for frames in (1, 1, 2, 5) * MANY:
@@ -133,7 +133,7 @@ async def sums(dut: Any, gap: float) -> None:
 
 @cocotb.test()
 async def resets(dut: Any) -> None:
-    """In any clock of a frame and after it: nothing of it is written."""
+    """Reset in any cycle of a frame and after it: nothing of the frame is written."""
     device = Device(dut)
     await device.start()
     await device.frame(True, True)

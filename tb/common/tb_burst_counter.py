@@ -11,7 +11,7 @@ from tb.stream import drive, parameters
 
 
 def starts(size: int, chance: random.Random) -> list[Any]:
-    """Start in each clock: two bursts back to back, one apart, one begun again, random ones, silence."""
+    """Return `start` of each cycle: two bursts back to back, one apart, one restarted, random ones, silence."""
     burst = [1] + [0] * (size - 1)
     random_ones = [int(chance.random() < 2 / size) for _ in range(10 * size)]
     return [*burst, *burst, *[0] * 5, *burst, *burst[:3], *burst, *random_ones, *[0] * (size + 3)]

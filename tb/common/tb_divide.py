@@ -12,7 +12,8 @@ from tb.stream import drive, parameters
 
 
 def operands(divisor_width: int, quotient_width: int) -> list[tuple[int, int]]:
-    """Numerators and divisors at their limits, at the edge of an overflow, exact ones, and random ones of any size."""
+    """Return numerators and divisors: at their limits, at the edge of an overflow, exact ones, and random ones of any
+    size."""
     chance = random.Random(cocotb.RANDOM_SEED)
     top = (1 << divisor_width) - 1
     largest = (1 << divisor_width + quotient_width) - 1
@@ -28,14 +29,15 @@ def operands(divisor_width: int, quotient_width: int) -> list[tuple[int, int]]:
 
 @cocotb.test()
 async def quotients(dut: Any) -> None:
-    """Every `done` comes its cycles after the last start, with the results of the model, and none after a reset."""
+    """Check that each `done` comes at its latency after the last start with the results of the model, and none after a
+    reset."""
     divisor_width, quotient_width = parameters(dut, "DivisorWidth", "QuotientWidth")
     chance = random.Random(cocotb.RANDOM_SEED + 1)
     latency = cycles(quotient_width)
     stimuli: list[dict[str, int]] = []
     for numerator, divisor in [*operands(divisor_width, quotient_width), (0, 1)]:
-        # The next starts with `done`, or later; or this one is abandoned, by a start or a reset.
-        pause = chance.choice([1, 2, 3 * latency])  # long enough for any counter of bits to come round
+        # The next division starts with `done` or later, or a start or a reset ends this one early.
+        pause = chance.choice([1, 2, 3 * latency])  # long enough for any counter of bits to wrap
         length = chance.choice([latency, latency, latency + pause, chance.randint(1, latency)])
         reset = chance.randrange(length) if chance.random() < 0.1 else None
         for clock in range(length):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ram against its model: what reads return, with reads and writes in the same clock at different places."""
+"""ram against its model: every word read, with reads and writes of different addresses in the same cycle."""
 
 import os
 import random

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of depth as they leave, one clock at a time, for the cores that look at them; maps that matter to contact."""
+"""Bench of the cores that take the outgoing depth, one cycle at a time, and depth maps that reach their special
+cases."""
 
 import os
 import random
@@ -17,7 +18,7 @@ WORD_LOW, WORD_HIGH = -(1 << 31), (1 << 31) - 1
 
 
 class DepthBench:
-    """Sends maps; a core's bench says what one clock is (`edge`)."""
+    """Driver of depth maps; the bench of a core defines one cycle (`edge`)."""
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
@@ -42,15 +43,15 @@ class DepthBench:
 
     def drive(self, **pins: int) -> None:
         for name, value in pins.items():
-            if self.driven.get(name) != value:  # a write costs more than a clock
+            if self.driven.get(name) != value:  # a write costs more time than a cycle
                 getattr(self.dut, name).value = self.driven[name] = value
 
     async def edge(
         self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
     ) -> None:
-        """One clock: the depths of a beat, with frame_start, row_end and frame_end as position.
+        """Run one cycle with the depths of a beat; `position` has frame_start, row_end and frame_end.
 
-        The first beat of a frame has settings.
+        The first beat of a frame comes with settings.
         """
         raise NotImplementedError
 
@@ -60,7 +61,7 @@ class DepthBench:
         self.drive(in_valid=int(valid), in_data=data, in_position=depth_position(*position))
 
     def in_turn(self, depths: list[int], position: tuple[Any, Any, Any]) -> Iterator[tuple[int, Any, Any, Any]]:
-        """Yield the depths of a beat as a model takes them, each with its own position."""
+        """Yield the depths of a beat as a model takes them: single depths, each with its position."""
         frame_start, row_end, frame_end = position
         for lane, depth in enumerate(depths):
             last = lane == self.lanes - 1
@@ -86,14 +87,14 @@ class DepthBench:
         return np.full((self.rows, self.columns), value, np.int64)
 
     def lone(self, value: int, *positions: tuple[int, int]) -> np.ndarray:
-        """A map of the lowest code, but for a few positions."""
+        """Return a map of the lowest code, except at a few positions."""
         depth = self.full(self.low)
         for row, column in positions:
             depth[row, column] = value
         return depth
 
     def edge_maps(self) -> list[np.ndarray]:
-        """Lone depths in each corner, equal peaks, all and nothing above 0."""
+        """Return maps of special cases: a single depth in each corner, equal peaks, all and none above 0."""
         bottom, right = self.rows - 1, self.columns - 1
         corners = [(0, 0), (0, right), (bottom, 0), (bottom, right)]
         maps = [self.lone(self.high, corner) for corner in corners]
@@ -101,11 +102,11 @@ class DepthBench:
         return [*maps, self.full(self.high), self.full(0), self.full(self.low)]
 
     def random_map(self, rng: np.random.Generator) -> np.ndarray:
-        """A frame of one of the kinds that matter."""
+        """Return a random map of one of several kinds."""
         low, high = self.low, self.high
         shape: Any = (self.rows, self.columns)
         match rng.integers(10):
-            case 0:  # anything
+            case 0:  # full range
                 return rng.integers(low, high, shape, endpoint=True)
             case 1:  # few values: ties
                 return rng.integers(-2, 3, shape)
@@ -125,7 +126,7 @@ class DepthBench:
                 depth[:: self.rows - 1] = rng.integers(-1, 4, self.columns)
                 depth[:, :: self.columns - 1] += rng.integers(-1, 4, (self.rows, 1))
                 return depth
-        y, x = np.indices(shape)  # caps, over the edge too, on a noisy floor
+        y, x = np.indices(shape)  # caps on a noisy floor, some cut by the edge
         depth = rng.normal(0, 1, shape)
         for _ in range(rng.integers(1, 4)):
             centre = rng.uniform(-1, 1 + np.array(shape))
@@ -135,7 +136,7 @@ class DepthBench:
         return np.clip(np.rint(depth), low, high).astype(np.int64)
 
     def random_thresholds(self, rng: np.random.Generator, depth: np.ndarray) -> tuple[int, int]:
-        """Thresholds near the map's own values, and at their limits."""
+        """Return random thresholds near the values of the map, or at their limits."""
         values = [*rng.choice(depth.ravel(), 3), 0, depth.max(), depth.min(), depth.max() - 1]
         on, off = np.clip(rng.choice(values, 2) - rng.integers(0, 2, 2), WORD_LOW, WORD_HIGH)
         if rng.random() < 0.05:

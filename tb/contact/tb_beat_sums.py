@@ -15,7 +15,7 @@ SIGNED = ("volume", "peak")
 
 
 def beats(lanes: int, width: int) -> list[tuple[list[bool], list[int]]]:
-    """Depths of every kind, few values among them so that peaks are equal, and any of them above."""
+    """Return random depths of every kind; some beats have few different values, so that peaks are equal."""
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     low, high = -(1 << width - 1), (1 << width - 1) - 1
     made = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""centroid against its model: means at ties and beside them, at the limits; abandoned, reset, one after another."""
+"""centroid against its model: means at ties, beside them and at the limits; restarts, resets, one after another."""
 
 import random
 from typing import Any
@@ -11,7 +11,7 @@ from tb.stream import drive, parameters
 
 
 def totals(position_bits: int, area: int, chance: random.Random) -> list[int]:
-    """Sums of `area` positions: ends of the range, ties and others just beside, random ones."""
+    """Return sums of `area` positions: ends of the range, ties, neighbours of ties, random ones."""
     largest = min(area * ((1 << position_bits) - 1), 2 ** (area.bit_length() + position_bits - 1) - 1)
     near = [area * chance.randrange(32 << position_bits) // 32 + chance.choice([-1, 0, 1]) for _ in range(3)]
     return [min(max(total, 0), largest) for total in (0, largest, *near, chance.randint(0, largest))]
@@ -19,7 +19,7 @@ def totals(position_bits: int, area: int, chance: random.Random) -> list[int]:
 
 @cocotb.test()
 async def means(dut: Any) -> None:
-    """Every `done` comes its cycles after the last start, with both means, and none after a reset."""
+    """Check that each `done` comes at its latency after the last start with both means, and none after a reset."""
     position_bits, area_bits = parameters(dut, "PositionWidth", "AreaWidth")
     chance = random.Random(cocotb.RANDOM_SEED)
     latency = cycles(position_bits)

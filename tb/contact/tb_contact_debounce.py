@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""contact_debounce against its model in every clock: areas at the minimum, every debounce, resets."""
+"""contact_debounce against its model in every cycle: areas at the minimum, every debounce, resets."""
 
 import random
 from collections.abc import Iterable
@@ -18,7 +18,8 @@ class Frame(NamedTuple):
 
 
 async def check(dut: Any, frames: Iterable[Frame | None], gap: float = 0.5) -> list[int]:
-    """Send frames, idle clocks between them with noise at the pins, None for a reset; return the status of each."""
+    """Send frames, with random pins in the idle cycles between them, and None for a reset; return the status of
+    each."""
     (area_width,) = parameters(dut, "AreaWidth")
     chance = random.Random(cocotb.RANDOM_SEED)
     stimuli: list[dict[str, int]] = []
@@ -56,7 +57,7 @@ async def check(dut: Any, frames: Iterable[Frame | None], gap: float = 0.5) -> l
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def random_frames(dut: Any) -> None:
-    """Areas near the minimum and at the limits; a debounce that changes from frame to frame."""
+    """Send areas near the minimum and at the limits, with a debounce that changes from frame to frame."""
     (area_width,) = parameters(dut, "AreaWidth")
     chance, largest = random.Random(cocotb.RANDOM_SEED), (1 << area_width) - 1
     frames: list[Frame | None] = []
@@ -67,13 +68,14 @@ async def random_frames(dut: Any) -> None:
         if chance.random() < 0.01:
             frames.append(None)
     status = await check(dut, frames)
-    assert sum(bool(bits & (BEGAN | ENDED)) for bits in status) > len(status) // 20, "few changes: a poor test"
+    assert sum(bool(bits & (BEGAN | ENDED)) for bits in status) > len(status) // 20, "the test is void: few changes"
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(debounce=[0, 1, 2, 5, 255 if REGRESS else 20])
 async def debounce(dut: Any, debounce: int) -> None:
-    """It takes so many frames in a row to begin and to end, and one less does not; a frame between starts anew."""
+    """Begin and end contact with exactly `debounce` frames in a row; one frame less has no effect, and another frame
+    restarts the count."""
     pressed, free, needed = Frame(1, 1, debounce), Frame(0, 1, debounce), max(debounce, 1)
     frames: list[Frame | None] = []
     expected: list[int] = []
@@ -85,13 +87,13 @@ async def debounce(dut: Any, debounce: int) -> None:
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def a_debounce_that_is_lowered(dut: Any) -> None:
-    """A lower debounce keeps the count: the next frame that differs changes the state."""
+    """Lower the debounce: the count is kept, so the next frame that differs changes the state."""
     assert await check(dut, [Frame(1, 1, frames) for frames in (9, 9, 9, 9, 2)]) == [0, 0, 0, 0, TOUCHING | BEGAN]
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def large_minima(dut: Any) -> None:
-    """A minimum beyond any area is never reached, in any of its bits; 0 always is."""
+    """Set minima beyond any area, in each bit: no frame reaches them. Every frame reaches 0."""
     (area_width,) = parameters(dut, "AreaWidth")
     largest = (1 << area_width) - 1
     frames: list[Frame | None] = [Frame(largest, 1 << bit, 1) for bit in range(area_width, 32)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""contact_events against its model in every clock, and every field of a record against numpy on the map."""
+"""contact_events against its model in every cycle, and every field of a record against numpy on the map."""
 
 from fractions import Fraction
 from typing import Any
@@ -14,11 +14,11 @@ from tb.axis import profile
 from tb.contact.depth_bench import DepthBench
 from tb.stream import REGRESS
 
-FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 300, 0.1: 100}  # by the share of gaps
+FRAMES = {0.0: 1000, 0.1: 1000} if REGRESS else {0.0: 300, 0.1: 100}  # by the probability of a gap
 
 
 def numpy_fields(depth: np.ndarray, threshold: int, first_row_last: Any) -> Any:
-    """The fields of a record from the map of a frame, row 0 at the top, by numpy alone."""
+    """Return the fields of a record, computed by numpy alone from the map of a frame, row 0 at the top."""
     rows, columns = np.nonzero(depth > threshold)
     if not rows.size:
         return [0] * 14
@@ -35,7 +35,7 @@ def numpy_fields(depth: np.ndarray, threshold: int, first_row_last: Any) -> Any:
 
 
 def seen_fields(words: Any) -> list[Any]:
-    """The same, from the words of a packet."""
+    """Return the same fields, read from the words of a packet."""
     halves = np.array(words, np.uint32)
     signed = halves.view(np.int32)
 
@@ -49,14 +49,14 @@ def seen_fields(words: Any) -> list[Any]:
 
 
 class Events:
-    """State of contact from the areas of all frames so far."""
+    """State of contact, computed from the areas of all frames so far."""
 
     def __init__(self) -> None:
         self.touching = False
         self.contrary: list[Any] = []
 
     def frame(self, area: int, minimum: Any, debounce: int) -> Any:
-        """Status bits of the frame."""
+        """Return the status bits of the frame."""
         self.contrary.append((area >= minimum) != self.touching)
         needed = max(debounce, 1)
         if len(self.contrary) < needed or not all(self.contrary[-needed:]):
@@ -66,7 +66,7 @@ class Events:
 
 
 class Bench(DepthBench):
-    """Drives one clock at a time; every output must be what the model makes of the clocks before."""
+    """Driver of one cycle at a time; every output is compared with the model."""
 
     def __init__(self, dut: Any, accepts: str = "none", gap: float = 0.0) -> None:
         super().__init__(dut, gap)
@@ -75,8 +75,8 @@ class Bench(DepthBench):
         self.model = ContactEvents(self.rows, self.columns, bool(self.bottom_first))
         self.packets = RecordPackets()
         self.lost = 0
-        self.moved = False  # the record, since it was read
-        # words of each record as it was new, of each packet
+        self.moved = False  # value of the record when it was read last
+        # words of each new record, words of each packet
         self.records: list[Any] = []
         self.sent: list[Any] = []
         self.forget()
@@ -109,7 +109,7 @@ class Bench(DepthBench):
     async def edge(
         self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
     ) -> None:
-        """One clock. Settings and time that are not given do not count in it."""
+        """Run one cycle. Settings and time get random values where the test gives none."""
         ready = next(self.accepts)
         self.drive_depth(valid, depths, position)
         self.drive(m_event_tready=int(ready))
@@ -131,17 +131,17 @@ class Bench(DepthBench):
         self.now += 1
 
     def check(self, ready: Any) -> None:
-        """Outputs as they stand at the end of the clock."""
+        """Compare the outputs at the end of the cycle."""
         dut, now = self.dut, self.now
         self.touching = self.touching_due.pop(now, self.touching)
         new = self.record_due.pop(now, None)
         self.record = new or self.record
         assert bool(dut.touching.value) == self.touching, "touching"
         assert bool(dut.record_valid.value) == (new is not None), "record_valid"
-        if new or self.moved:  # its many bits are read when they have changed, or should have
+        if new or self.moved:  # its many bits are read only when they change or should change
             value = int(dut.record.value)
             words = tuple(value >> 32 * word & 0xFFFF_FFFF for word in range(WORDS))
-            assert words == self.record, f"record {words}, the model says {self.record}"
+            assert words == self.record, f"record {words}, expected {self.record}"
             self.moved = False
         if new:
             self.records.append(words)
@@ -160,12 +160,12 @@ class Bench(DepthBench):
             self.open = []
 
     async def settle(self) -> None:
-        """Until the last record has left or waits behind a sink that does not take it."""
+        """Run until the last record has left or waits for the sink."""
         await self.idle(self.latency + 2)
 
 
 def random_settings(bench: Any, rng: Any, depth: np.ndarray) -> Any:
-    """Thresholds near the map's own values, areas near what is above."""
+    """Return random settings: thresholds near the values of the map, areas near the number of depths above them."""
     on, off = bench.random_thresholds(rng, depth)
     area = int(np.count_nonzero(depth > rng.choice([on, off])))
     minimum = rng.choice([0, 1, area, max(area - 1, 0), area + 1, bench.pixels, bench.pixels + 1, 2**32 - 1],
@@ -176,7 +176,7 @@ def random_settings(bench: Any, rng: Any, depth: np.ndarray) -> Any:
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(gap=[0.0, 0.1])
 async def random_frames(dut: Any, gap: float) -> None:
-    """Every field of every record equals numpy on the map; frames back to back, or with gaps."""
+    """Send random maps, back to back or with gaps: every field of every record equals numpy on the map."""
     bench = Bench(dut, gap=gap)
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
@@ -192,19 +192,22 @@ async def random_frames(dut: Any, gap: float) -> None:
     await bench.settle()
     got = [(words[:3], seen_fields(words)) for words in bench.records]
     for index, (ours, theirs) in enumerate(zip(got, want, strict=True)):
-        assert ours == theirs, f"frame {index}: {ours}, numpy says {theirs}"
+        assert ours == theirs, f"frame {index}: {ours}, numpy gives {theirs}"
     await bench.idle(WORDS + 2)
     assert bench.sent == bench.records, "packets are not the records"
     assert not bench.lost
     touching = [status & 1 for (status, _, _), _ in want]
     changes = np.count_nonzero(np.diff(touching))
-    assert changes > len(want) // 20, f"{changes} changes in {len(want)} frames: a poor test"
-    assert sum(not fields[0] for _, fields in want) > len(want) // 50, "hardly a frame with nothing above: a poor test"
+    assert changes > len(want) // 20, f"the test is void: {changes} changes in {len(want)} frames"
+    assert sum(not fields[0] for _, fields in want) > len(want) // 50, (
+        "the test is void: too few frames have no depth above"
+    )
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def centroids_between_two(dut: Any) -> None:
-    """A mean that lies half way goes to the even one: 32 pixels above, since 16 sum / 32 has halves."""
+    """Reach means half way between two codes, which round to the even one: with 32 pixels above, 16 sum / 32 has
+    halves."""
     bench = Bench(dut)
     await bench.start()
     want, halves = [], set()
@@ -216,19 +219,19 @@ async def centroids_between_two(dut: Any) -> None:
         halves |= {total % 4 for total in want[-1][8:10]}
     await bench.settle()
     assert [seen_fields(words) for words in bench.records] == want
-    assert halves == {0, 1, 2, 3}, "not both ties: a poor test"
+    assert halves == {0, 1, 2, 3}, "the test is void: it did not reach both ties"
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def hysteresis(dut: Any) -> None:
-    """Between the thresholds the state stays, whichever it is; on its own threshold nothing counts as above."""
+    """Send depths between the thresholds: either state stays. A depth equal to a threshold is not above it."""
     bench = Bench(dut)
     await bench.start()
     settings, status = Settings(20, 10, 2, 1), []
     levels = [0, 15, 20, 21, 15, 11, 10, 15, 21, 21, 0, 15]
     for level in levels:
         await bench.frame(bench.lone(level, (1, 1), (2, 3)), settings)
-    for positions in ([(1, 1), (2, 2)], [(1, 1)]):  # too small an area ends it
+    for positions in ([(1, 1), (2, 2)], [(1, 1)]):  # an area that is too small ends contact
         await bench.frame(bench.lone(30, *positions), settings)
     await bench.settle()
     status = [words[0] for words in bench.records]
@@ -237,14 +240,14 @@ async def hysteresis(dut: Any) -> None:
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def settings_in_every_bit(dut: Any) -> None:
-    """A minimum area in each of its bits, and each bit of the debounce, reach the decision of their own frame."""
+    """Set each bit of the minimum area and of the debounce alone: it decides the state of its own frame."""
     bench = Bench(dut)
     await bench.start()
     for debounce in (1, 0):  # 1: each bit of the area decides alone
         for bit in range(32):
             await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, debounce or 1 << bit % 8))
     await bench.frame(bench.full(1), Settings(0, 0, bench.pixels, 1))
-    for count in (8, 7):  # the count of frames so far is less than a debounce with one bit, and the next is not
+    for count in (8, 7):  # the count is just below a debounce with one bit set, and reaches it with the next frame
         for bit in range(count):
             await bench.frame(bench.full(0), Settings(0, 0, 1, 1 << 7 - bit))
     await bench.settle()
@@ -252,7 +255,7 @@ async def settings_in_every_bit(dut: Any) -> None:
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def frame_numbers(dut: Any) -> None:
-    """They count on through every bit, and over the end."""
+    """Count frames through every bit of the number and past its end."""
     bench = Bench(dut)
     await bench.start()
     for bits in range(6, 33):
@@ -264,7 +267,7 @@ async def frame_numbers(dut: Any) -> None:
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def interrupted_frames(dut: Any) -> None:
-    """A frame that begins inside another begins afresh, and its settings are its own."""
+    """Begin a frame inside another one: it is measured alone, with its own settings."""
     bench = Bench(dut)
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
@@ -280,7 +283,7 @@ async def interrupted_frames(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def the_sink_takes_the_last_word(dut: Any) -> None:
-    """In any clock around a new record: the one that waits leaves or is lost, never both."""
+    """Take the last word in any cycle around a new record: the waiting record leaves or is lost, never both."""
     bench = Bench(dut)
     await bench.start()
     for late in range(-3, 4):
@@ -304,7 +307,7 @@ async def the_sink_takes_the_last_word(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """In any clock of a frame and after it: no trace is left, registers read zero."""
+    """Reset in any cycle of a frame and after it: nothing of the frame remains, and registers read zero."""
     bench = Bench(dut, accepts="alternate")
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)

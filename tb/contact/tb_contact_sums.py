@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""contact_sums against its model: area and sums of each frame, in their clocks and in no others."""
+"""contact_sums against its model: area and sums of each frame, each valid in its cycle only."""
 
 from typing import Any
 
@@ -15,16 +15,16 @@ FRAMES = 1000 if REGRESS else 200
 
 
 class Bench(DepthBench):
-    """Drives one clock at a time; `touching` changes in the clock of area_valid, the earliest that it may."""
+    """Driver of one cycle at a time; `touching` changes in the cycle of area_valid, the earliest allowed."""
 
     def __init__(self, dut: Any, gap: float = 0.0) -> None:
         super().__init__(dut, gap)
         self.model = ContactSums(self.rows, self.columns, bool(self.bottom_first))
         self.cycles_to_sums = cycles_to_sums(self.lanes)
-        self.touching = False  # of the frame that comes in
+        self.touching = False  # of the frame that enters
         self.seen: list[Sums] = []
-        self.due: dict[int, Sums] = {}  # by the clock of the frame's last depth
-        self.changes: dict[int, bool] = {}  # of `touching`, by clock
+        self.due: dict[int, Sums] = {}  # by the cycle of the frame's last depth
+        self.changes: dict[int, bool] = {}  # values of `touching` by cycle
 
     async def edge(
         self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
@@ -42,7 +42,7 @@ class Bench(DepthBench):
                 self.due[self.now] = sums
                 self.touching = bool(self.random.getrandbits(1))
                 self.changes[self.now + CYCLES_TO_AREA] = self.touching
-        if settings is not None:  # from now on they do not count
+        if settings is not None:  # from now on they have no effect
             self.drive(on_threshold=self.random.randint(self.low, self.high), off_threshold=0)
         self.now += 1
 
@@ -57,7 +57,7 @@ class Bench(DepthBench):
         if sums is not None:
             value = int(dut.sums.value)
             words = tuple(value >> 32 * word & 0xFFFF_FFFF for word in range(len(sums.words)))
-            assert words == sums.words, f"sums {words}, the model says {sums}"
+            assert words == sums.words, f"sums {words}, expected {sums}"
             self.seen.append(sums)
 
     async def reset(self) -> None:
@@ -74,7 +74,7 @@ class Bench(DepthBench):
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(gap=[0.0, 0.1])
 async def random_frames(dut: Any, gap: float) -> None:
-    """Maps of every kind, back to back or with gaps, and thresholds near their values."""
+    """Send maps of every kind, back to back or with gaps, with thresholds near their values."""
     bench = Bench(dut, gap)
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
@@ -84,13 +84,13 @@ async def random_frames(dut: Any, gap: float) -> None:
     await bench.settle()
     areas = [sums.area for sums in bench.seen]
     assert len(areas) == FRAMES
-    assert areas.count(0) > FRAMES // 50, "hardly a frame with nothing above: a poor test"
-    assert areas.count(bench.pixels) > FRAMES // 50, "hardly a frame with all above: a poor test"
+    assert areas.count(0) > FRAMES // 50, "the test is void: too few frames have no depth above"
+    assert areas.count(bench.pixels) > FRAMES // 50, "the test is void: too few frames have all depths above"
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def ties_and_edges(dut: Any) -> None:
-    """The first of equal peaks in stream order; a lone one in each corner; all and nothing above."""
+    """Find the first of equal peaks in stream order, a single one in each corner, and all and no depths above."""
     bench = Bench(dut)
     await bench.start()
     maps = bench.edge_maps()
@@ -100,12 +100,12 @@ async def ties_and_edges(dut: Any) -> None:
     await bench.settle()
     assert len(bench.seen) == len(maps) + 1
     first_row = bench.rows - 1 if bench.bottom_first else 0
-    assert bench.seen[4].peak_position == (first_row, 0), "not the first of the equals"
+    assert bench.seen[4].peak_position == (first_row, 0), "the peak is not the first of the equal ones"
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 async def interrupted_frames(dut: Any) -> None:
-    """A frame that begins inside another begins afresh, with its own thresholds."""
+    """Begin a frame inside another one: it is measured alone, with its own thresholds."""
     bench = Bench(dut)
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
@@ -119,7 +119,7 @@ async def interrupted_frames(dut: Any) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """In any clock of a frame and after it: nothing of it is left."""
+    """Reset in any cycle of a frame and after it: nothing of it remains."""
     bench = Bench(dut)
     await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""record_packets against its model in every clock: sinks of every kind, records close together, resets."""
+"""record_packets against its model in every cycle: sinks of every kind, records close together, resets."""
 
 import random
 from typing import Any
@@ -15,7 +15,7 @@ PROFILES["never"] = lambda rng: iter(lambda: False, True)
 
 
 def stimuli(words: int, accepts: str, chance: random.Random) -> list[dict[str, int]]:
-    """Records at random times, close together and far apart; with a few resets."""
+    """Return records at random times, close together and far apart, and a few resets."""
     ready = profile(accepts)
     clocks: list[dict[str, int]] = []
     for _ in range(60):
@@ -30,7 +30,7 @@ def stimuli(words: int, accepts: str, chance: random.Random) -> list[dict[str, i
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(accepts=[*PROFILES])
 async def packets(dut: Any, accepts: str) -> None:
-    """Whole packets of records, in order; a slow sink misses some, as many as are said to be lost."""
+    """Receive whole packets in order; with a slow sink as many are missing as record_lost counts."""
     (words,) = parameters(dut, "Words")
     given = stimuli(words, accepts, random.Random(cocotb.RANDOM_SEED))
     outputs = ["record_valid", "record", "record_lost", "m_event_tvalid", "m_event_tdata", "m_event_tlast"]
@@ -57,5 +57,5 @@ async def packets(dut: Any, accepts: str) -> None:
         assert bool(seen["record_lost"][clock]) == lost_now, f"record_lost in clock {clock}"
         lost += lost_now
         record = pins["new_record"] if was_new else record
-    assert taken, "no word left: a poor test"
-    assert lost, "no record was lost: a poor test"
+    assert taken, "the test is void: no word left"
+    assert lost, "the test is void: no record was lost"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""threshold_comparator against tactile_depth.contact.threshold_comparator: contact in every clock."""
+"""threshold_comparator against tactile_depth.contact.threshold_comparator: contact in every cycle."""
 
 import os
 import random
@@ -17,7 +17,7 @@ WORD_BITS = 32
 
 
 class Bench:
-    """Drives one clock at a time; contact must be what the model makes of the beats of the clocks before."""
+    """Driver of one cycle at a time; contact is compared with the model, which takes the beats of earlier cycles."""
 
     def __init__(self, dut: Any) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
@@ -36,7 +36,7 @@ class Bench:
         await self.idle()
 
     async def edge(self, valid: Any, data: int = 0, user: Any = False) -> None:
-        """One clock, with a depth in one of the lanes and depths that are no higher in the others."""
+        """Run one cycle with a depth in a random lane and depths that are no higher in the others."""
         depths = [self.random.choice((data, self.lowest, max(data - 1, self.lowest))) for _ in range(self.lanes)]
         depths[self.random.randrange(self.lanes)] = data
         beat = sum((depth & (1 << self.width) - 1) << lane * self.width for lane, depth in enumerate(depths))
@@ -45,7 +45,7 @@ class Bench:
         await RisingEdge(self.dut.clk)
 
     async def idle(self) -> None:
-        """A clock without a beat, whose data and user must not count."""
+        """Run a cycle without a beat; random data and user have no effect."""
         await self.edge(False, self.highest, bool(self.random.getrandbits(1)))
         self.check()
         self.model.idle(self.hold)
@@ -56,11 +56,11 @@ class Bench:
 
     async def beat(self, data: Any, user: bool = False) -> None:
         await self.edge(True, data, user)
-        self.check()  # as it was before this beat: it counts one clock later, neither sooner nor further on
+        self.check()  # as it was before this beat, which takes effect exactly one cycle later
         self.model.beat(data, user, self.threshold, self.hold)
 
     async def contact_after(self, *frame: Any) -> bool:
-        """Send a frame of data; contact in the clock after its last beat."""
+        """Send a frame of data; return contact in the cycle after its last beat."""
         for index, data in enumerate(frame):
             await self.beat(data, user=index == 0)
         await self.idle()
@@ -69,7 +69,8 @@ class Bench:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def boundaries(dut: Any) -> None:
-    """A depth is above the threshold from one more than it; at and beyond both full scales of the data."""
+    """Send depths equal to the threshold and one above it, with thresholds at and beyond both full scales of the
+    data."""
     bench = Bench(dut)
     await bench.start()
     low, high = bench.lowest, bench.highest
@@ -86,16 +87,16 @@ async def boundaries(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def clearing(dut: Any) -> None:
-    """The next frame's first beat clears contact; its second does not, and one above sets it all the same."""
+    """Clear contact by the first beat of a frame, not by its second; a first beat above the threshold sets it."""
     bench = Bench(dut)
     await bench.start()
     bench.threshold = 10
     assert await bench.contact_after(0, 11, 0, 0)
-    assert not await bench.contact_after(0), "not cleared by a first beat"
+    assert not await bench.contact_after(0), "the first beat did not clear contact"
     assert await bench.contact_after(11)
     for _ in range(5):
         await bench.idle()
-    await bench.beat(11, user=True)  # contact stays high through this beat: checked in every clock
+    await bench.beat(11, user=True)  # contact stays high through this beat: `edge` checks every cycle
     await bench.idle()
     assert dut.contact.value, "clearing won over setting"
     assert not await bench.contact_after(10, 10, 10)
@@ -103,7 +104,7 @@ async def clearing(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def hold(dut: Any) -> None:
-    """Held as long as the bit is set; then it is what it would be without the bit."""
+    """Hold contact while the bit is set; afterwards it has the value that it would have without the bit."""
     bench = Bench(dut)
     await bench.start()
     bench.threshold, bench.hold = 10, True
@@ -113,25 +114,25 @@ async def hold(dut: Any) -> None:
     bench.hold = False
     await bench.idle()
     await bench.idle()
-    assert not dut.contact.value, "it stayed after the bit was cleared between frames"
+    assert not dut.contact.value, "contact stayed high after the bit was cleared between frames"
 
     bench.hold = True
     assert await bench.contact_after(0, 11)
     bench.hold = False
     await bench.beat(0)
     await bench.idle()
-    assert dut.contact.value, "cleared inside a frame that raised it"
+    assert dut.contact.value, "clearing the bit inside a frame that raised contact cleared contact"
     bench.hold = True
     assert await bench.contact_after(0, 0)
     bench.hold = False
     await bench.beat(0)
     await bench.idle()
-    assert not dut.contact.value, "it stayed in a frame that did not raise it"
+    assert not dut.contact.value, "contact stayed high in a frame that did not raise it"
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def threshold_change(dut: Any) -> None:
-    """One written inside a frame counts from the next on; one written between frames from there."""
+    """Write a threshold inside a frame and between frames: it applies from the next frame on."""
     bench = Bench(dut)
     await bench.start()
     bench.threshold = 10
@@ -139,8 +140,8 @@ async def threshold_change(dut: Any) -> None:
     bench.threshold = -10
     await bench.beat(0)
     await bench.idle()
-    assert not dut.contact.value, "a lower threshold counted in the frame it was written in"
-    assert await bench.contact_after(0), "it did not count in the next"
+    assert not dut.contact.value, "a lower threshold applied inside the frame in which it was written"
+    assert await bench.contact_after(0), "it did not apply to the next frame"
     bench.threshold = 10
     await bench.beat(5)
     assert not await bench.contact_after(5)
@@ -151,7 +152,7 @@ async def threshold_change(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def random_frames(dut: Any) -> None:
-    """Beats near a threshold that moves, gaps, hold and resets at random."""
+    """Send random beats near a changing threshold, with random gaps, hold and resets."""
     bench = Bench(dut)
     await bench.start()
     rng = bench.random
@@ -175,4 +176,4 @@ async def random_frames(dut: Any) -> None:
             await bench.beat(min(max(near, bench.lowest), bench.highest), user=left == 0)
             left = left - 1 if left else rng.randint(0, 12)
         raised += bench.model.contact
-    assert CLOCKS // 10 < raised < CLOCKS * 9 // 10, f"contact in {raised} of {CLOCKS} clocks: a poor test"
+    assert CLOCKS // 10 < raised < CLOCKS * 9 // 10, f"the test is void: contact in {raised} of {CLOCKS} clocks"

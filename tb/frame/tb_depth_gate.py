@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""depth_gate against its model, every output in every clock; and what it promises, from the pins alone."""
+"""depth_gate against its model, every output in every cycle; and its rules, checked at the pins alone."""
 
 import os
 import random
@@ -23,10 +23,10 @@ def word_of(data: int, position: int) -> Word:
 
 
 class Bench:
-    """Drives one clock at a time.
+    """Driver of one cycle at a time.
 
-    `frames` are the words of each frame that began, `waits` whether it came in with drop_frames at 0, `sent` the words
-    of each that left; `tapped` are all words that were tapped.
+    `frames` holds the words of each frame that entered, `waits` whether it entered with drop_frames at 0, `sent` the
+    number of its words that left; `tapped` holds all words that were tapped.
     """
 
     def __init__(self, dut: Any, accepts: str = "none") -> None:
@@ -69,7 +69,7 @@ class Bench:
         await self.clock()
 
     async def clock(self, word: Any = None) -> Any:
-        """One clock, with a word present or none; whether it moved. Marks without a word do not count."""
+        """Run one cycle, with a word or without; return whether the word moved. Marks without a word have no effect."""
         dut, ready, coin = self.dut, next(self.accepts), self.random.getrandbits
         dut.in_valid.value, dut.m_ready.value = int(word is not None), int(ready)
         dut.drop_frames.value = int(self.drop_frames)
@@ -104,7 +104,7 @@ class Bench:
         return word_of(*(int(getattr(self.dut, f"{name}_{field}").value) for field in FIELDS))
 
     async def frame(self, rows: int = ROWS, columns: int = COLUMNS, words: Any = None, each: Any = None) -> None:
-        """Send a frame, or its first words; `each`: called before every clock."""
+        """Send a frame, or its first words; call `each` before every cycle."""
         total = rows * columns
         self.frames.append([])
         self.waits.append(not self.drop_frames)
@@ -127,7 +127,8 @@ class Bench:
         await self.idle(4)
 
     def check(self) -> Any:
-        """Words of each frame that left: the first ones, all of them unless it was given up; every word was seen."""
+        """Check that of each frame its first words left, all of them unless it was cut, and that every word was
+        tapped."""
         assert self.tapped == [word for frame in self.frames for word in frame]
         words = [word_of(*word) for word in self.monitor.words]
         sent = []
@@ -139,7 +140,7 @@ class Bench:
             words = words[count:]
             assert (count < len(frame)) == (number in self.dropped), f"{count} words left of frame {number}"
             assert count == len(frame) or not self.waits[number], f"frame {number} is not whole"
-        assert not words, "words that belong to no frame, or not there"
+        assert not words, "words left that belong to no frame, or at a wrong position"
         assert len(set(self.dropped)) == len(self.dropped), "counted twice"
         return sent
 
@@ -153,7 +154,7 @@ async def started(dut: Any, *arguments: Any) -> Any:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
 async def waiting(dut: Any, accepts: str, gap: float) -> None:
-    """Nothing is lost, and each word is tapped in the clock in which it leaves."""
+    """Stall with drop_frames at 0: no word is lost, and each is tapped in the cycle in which it leaves."""
     bench = await started(dut, accepts)
     for _ in range(15):
         await bench.frame()
@@ -168,7 +169,7 @@ async def waiting(dut: Any, accepts: str, gap: float) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
 async def dropping(dut: Any, accepts: str, gap: float) -> None:
-    """The pipeline never waits; each word is tapped a clock after it came, whatever the sink does."""
+    """Stall with drop_frames at 1: the pipeline never waits, and each word is tapped one cycle after it entered."""
     bench = await started(dut, accepts)
     bench.drop_frames = True
     await bench.idle()
@@ -186,16 +187,16 @@ async def dropping(dut: Any, accepts: str, gap: float) -> None:
     else:
         assert bench.dropped
     if accepts in ("random", "long"):
-        assert set(sent) & set(range(1, ROWS * COLUMNS)), "no frame was cut: a poor test"
+        assert set(sent) & set(range(1, ROWS * COLUMNS)), "the test is void: no frame was cut"
     if accepts == "long":
-        assert 0 in sent, "no frame was dropped whole: a poor test"
+        assert 0 in sent, "the test is void: no frame was dropped whole"
         assert ROWS * COLUMNS in sent
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
 async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
-    """When 0 turns to 1 with words in the gate, they are tapped first; when 1 turns to 0, none is twice."""
+    """Change drop_frames while words are in the gate: each of them is tapped once, in order."""
     bench, total = await started(dut), ROWS * COLUMNS
     for ready_after in range(8):
         await bench.reset()
@@ -217,7 +218,7 @@ async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
 
 
 def rest(bench: Any, total: int, stands: int) -> Any:
-    """The last words of the frame that is being sent."""
+    """Return the remaining words of the current frame."""
     words = []
     for place in range(total - stands, total):
         last = place % COLUMNS == COLUMNS - 1
@@ -229,7 +230,7 @@ def rest(bench: Any, total: int, stands: int) -> Any:
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(accepts=list(PROFILES))
 async def changes_at_random(dut: Any, accepts: str) -> None:
-    """The bit moves in any clock: a frame keeps what it began with."""
+    """Change the bit in random cycles: a frame keeps the value with which it began."""
     bench = await started(dut, accepts)
 
     def coin() -> None:
@@ -251,7 +252,7 @@ async def changes_at_random(dut: Any, accepts: str) -> None:
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(drop_frames=[False, True])
 async def resets(dut: Any, drop_frames: Any) -> None:
-    """In any clock of a stalled frame: nothing of it is left."""
+    """Reset in any cycle of a stalled frame: nothing of it leaves."""
     bench = await started(dut)
     bench.drop_frames = drop_frames
     for words in range(1, ROWS * COLUMNS + 1):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_guard against tactile_depth.frame.frame_guard: frames, marks and faults of what was seen on the input.
+"""frame_guard against tactile_depth.frame.frame_guard: frames, marks and faults of the words seen at the input.
 
-That the model's frames and faults are the right ones is tests/frame/test_frame_guard.py.
+tests/frame/test_frame_guard.py checks the frames and faults of the model.
 """
 
 import os
@@ -22,7 +22,7 @@ RANDOM_FRAMES = 60
 
 
 class Collector:
-    """Collect the output: frames as (pixels, bad), faults by name; check the place of every flag."""
+    """Collect frames as (pixels, bad) and faults by name; check the position of every flag."""
 
     def __init__(self, dut: Any) -> None:
         self.dut = dut
@@ -105,16 +105,16 @@ class Bench:
         return video(pixels, self.columns)
 
     async def check(self, what: Any) -> Any:
-        """Let filler end; compare with the model, then start afresh. Must be called with an idle source."""
+        """Wait for the end of the filler, compare with the model, and clear the records. The source must be idle."""
         moved = 0
         while moved < self.rows * self.columns + 2:
             await RisingEdge(self.dut.clk)
             moved += bool(self.dut.en.value)
         want = frame_guard(self.monitor.words, self.rows, self.columns, self.timeout)
         got = self.collector
-        assert got.faults == want.faults, f"{what}: faults {got.faults}, the model says {want.faults}"
+        assert got.faults == want.faults, f"{what}: faults {got.faults}, expected {want.faults}"
         marks = [frame.bad for frame in want.frames]
-        assert [bad for _, bad in got.frames] == marks, f"{what}: marks, the model says {marks}"
+        assert [bad for _, bad in got.frames] == marks, f"{what}: marks, expected {marks}"
         for index, ((pixels, _), frame) in enumerate(zip(got.frames, want.frames, strict=True)):
             assert pixels == frame.pixels, f"{what}: pixels of frame {index}"
         assert got.open == want.open, f"{what}: pixels of the last, incomplete frame"
@@ -134,7 +134,7 @@ STALLS = {
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def long_silences(dut: Any) -> None:
-    """Every bit of the timeout and of the count: it is set to a little before the end of what would take too long."""
+    """Time out with every bit of the timeout and of the counter, which is set to a value near its end to save time."""
     bench = Bench(dut)
     await bench.start()
     powers = [1 << bit for bit in range(3, 32)]
@@ -144,15 +144,16 @@ async def long_silences(dut: Any) -> None:
         await ClockCycles(dut.clk, 2)
         dut.silence.value = timeout - 3
         await ClockCycles(dut.clk, 4)
-        assert not bench.collector.faults, f"given up before {timeout} clocks"
+        assert not bench.collector.faults, f"timed out before {timeout} cycles"
         await ClockCycles(dut.clk, 1)
-        assert bench.collector.faults == ["timed_out"], f"not given up after {timeout} clocks"
+        assert bench.collector.faults == ["timed_out"], f"not timed out after {timeout} cycles"
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
 async def faults(dut: Any, kind: str, stalls: str) -> None:
-    """A good frame, a broken one, a good one, for every position of the break; with stalls for a third of them."""
+    """Send a good frame, a broken one and a good one, for every position of the break; with stalls for a third of
+    them."""
     bench = Bench(dut, *STALLS[stalls])
     timeout = TIMEOUT if kind in SILENT else 0
     await bench.start(timeout)
@@ -171,7 +172,7 @@ async def faults(dut: Any, kind: str, stalls: str) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(stalls=list(STALLS))
 async def words_before_the_first_frame(dut: Any, stalls: str) -> None:
-    """Any number of them: dropped, one fault; the frame after them is right."""
+    """Send any number of words before a frame: they are dropped as one fault, and the frame is right."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start()
     for count in range(1, 2 * bench.columns + 2):
@@ -185,7 +186,8 @@ async def words_before_the_first_frame(dut: Any, stalls: str) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def silence(dut: Any) -> None:
-    """At every position `timeout` clocks are waited, not one more; with 0, or between frames, any number."""
+    """Pause at every position for `timeout` cycles and for one more. With a timeout of 0, or between frames, wait for
+    ever."""
     bench = Bench(dut)
     await bench.start()
     for timeout in (0, 1, TIMEOUT):
@@ -203,7 +205,7 @@ async def silence(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def silence_without_movement(dut: Any) -> None:
-    """Clocks with en low are not silence; a timeout written late counts from where the silence began."""
+    """Pause with en low, which is not silence; a timeout written during a silence counts from its beginning."""
     bench = Bench(dut)
     await bench.start(TIMEOUT)
     frame = bench.frame()
@@ -225,7 +227,7 @@ async def silence_without_movement(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def long_time_outs(dut: Any) -> None:
-    """Every bit of the register counts. Most of the silence is written into its counter, not waited for."""
+    """Time out with every bit of the register; the counter is set to a value near its end to save time."""
     bench = Bench(dut)
     await bench.start()
     left = 5
@@ -243,7 +245,7 @@ async def long_time_outs(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(clocks=[1, 2, 16])
 async def resets(dut: Any, clocks: Any) -> None:
-    """At every position of a good frame and of the filler of a broken one; the next frame is right."""
+    """Reset at every position of a good frame and of the filler of a broken one; the next frame is right."""
     bench = Bench(dut)
     await bench.start()
     for position in bench.places("start_early"):
@@ -262,7 +264,7 @@ async def resets(dut: Any, clocks: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(timeout=[0, 1, TIMEOUT], stalls=list(STALLS))
 async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
-    """Broken and good frames, several faults in one, stray words, marks flipped anywhere, long silences."""
+    """Send random streams: good and broken frames, several faults in one, stray words, flipped marks, long silences."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start(timeout)
     rng, seen = bench.random, set()
@@ -292,5 +294,7 @@ async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
             await bench.source.send(bench.frame())
             seen |= set((await bench.check(f"random stream {index}")).faults)
             await bench.reset(1)
-    if stalls in ("none", "en"):  # with gaps most frames time out before anything else can happen to them
-        assert seen >= set(FAULTS) - ({"timed_out"} if not timeout else set()), f"only {seen}: a poor test"
+    if stalls in ("none", "en"):  # with gaps most frames time out before another fault can occur
+        assert seen >= set(FAULTS) - ({"timed_out"} if not timeout else set()), (
+            f"the test is void: it reached only {seen}"
+        )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_output against tactile_depth.frame.frame_output: what leaves, side-bands and marks, in every enabled clock."""
+"""frame_output against tactile_depth.frame.frame_output: words, side-bands and marks in every enabled cycle."""
 
 import os
 import random
@@ -14,7 +14,7 @@ from tb.stream import CLOCK_NS, depth_position, parameters
 
 
 class Bench:
-    """Drives the inputs of a clock, keeps the outputs, compares them with the model at the end."""
+    """Driver of one cycle at a time; it keeps the outputs and compares them with the model at the end."""
 
     def __init__(self, dut: Any, pause: float = 0.0) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
@@ -31,7 +31,7 @@ class Bench:
         dut.in_start.value, dut.in_frame_start.value, dut.in_due.value, dut.rst.value = 0, 0, 0, 1
         await RisingEdge(dut.clk)
         dut.rst.value = 0
-        self.left = 0  # words of the frame, with the present one
+        self.left = 0  # words of the frame, the current one included
         self.inputs: list[Any] = []
         self.beats: list[Any] = []
         self.clocks: list[Any] = []
@@ -41,7 +41,7 @@ class Bench:
     async def clock(
         self, start: bool = False, frame_start: bool = False, due: bool = False, bad: bool | None = None
     ) -> None:
-        """in_bad is right with in_due only: elsewhere anything."""
+        """Run one cycle. in_bad has its value with in_due only, and is random elsewhere."""
         dut, coin = self.dut, self.random.random
         bad = coin() < 0.5 if bad is None else bad
         word = Clock(start, frame_start, self.random.getrandbits(self.width), due, bad)
@@ -96,7 +96,7 @@ async def started(dut: Any, **arguments: Any) -> Any:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
 async def frames(dut: Any, gap: float, pause: float) -> None:
-    """Frames marked bad do not leave, the others do; nothing is out of step."""
+    """Send frames: those marked bad do not leave, the others do, and out_of_step stays low."""
     bench = await started(dut, pause=pause)
     marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
     for bad in marks:
@@ -111,7 +111,7 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def out_of_step(dut: Any) -> None:
-    """A frame that is not due, a due one that does not come, rows too early, late or without a start."""
+    """Send a frame that is not due, omit one that is due, send rows too early, too late or without a start."""
     bench = await started(dut)
     await bench.frame(due=False)
     await bench.frame()
@@ -130,7 +130,7 @@ async def out_of_step(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def whatever_comes(dut: Any) -> None:
-    """Each input by chance: frames keep their form, whatever the bursts do."""
+    """Drive each input at random: frames that leave have the right form for any bursts."""
     bench = await started(dut, pause=0.1)
     chance = bench.random.random
     for _ in range(2000):
@@ -141,7 +141,7 @@ async def whatever_comes(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(bad=[False, True])
 async def resets(dut: Any, bad: Any) -> None:
-    """A frame cut short by a reset, in any of its rows, leaves no trace."""
+    """Reset in any row of a frame: nothing of the frame leaves afterwards."""
     bench = await started(dut)
     for row in range(1, bench.rows + 1):
         await bench.frame(bad, rows=row)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frame_tags against its model: every output in every clock; frames close and apart, pauses, resets."""
+"""frame_tags against its model: every output in every cycle; frames close together and apart, pauses, resets."""
 
 import os
 import random
@@ -14,7 +14,7 @@ from tb.stream import CLOCK_NS, parameters
 
 
 class Bench:
-    """Drives one clock at a time and compares the outputs with the model."""
+    """Driver of one cycle at a time; it compares the outputs with the model."""
 
     def __init__(self, dut: Any) -> None:
         dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
@@ -42,7 +42,7 @@ class Bench:
             model.clock(tag if push else None)
 
     async def frames(self, count: int, apart: Any, pause: float = 0.0, reset: float = 0.0) -> None:
-        """Push `count` tags, `apart()` enabled clocks from one to the next."""
+        """Push `count` tags, with `apart()` enabled cycles from one to the next."""
         for _ in range(count):
             left = apart()
             while left:
@@ -63,7 +63,7 @@ async def frames_as_close_as_they_can_be(dut: Any, pause: float) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(reset=[0.0, 0.01])
 async def frames_apart(dut: Any, reset: Any) -> None:
-    """Each distance from the closest to where the one before has left; then at random."""
+    """Send frames at each distance, from the closest until the one before has left; then at random."""
     bench = Bench(dut)
     await bench.start()
     distances = iter(range(bench.pixels, bench.model.latency + bench.pixels + 2))

@@ -51,7 +51,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
 
     source.forget_but(len(words))
     sink.forget_but(len(words) // size)
-    np.testing.assert_array_equal(np.array(source.words), words, "the driver sent something else")
+    np.testing.assert_array_equal(np.array(source.words), words, "the driver sent other words than the test gave it")
     monitor = Monitor()
     z = spectral_solver(np.array(source.words).reshape(f.shape), config, monitor)
     np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)

@@ -101,7 +101,7 @@ class Scoreboard:
     def frames(self, into: AxisMonitor, timeout: int) -> tuple[list[Frame], list[str]]:
         """Return the frames that the device has taken, and the faults."""
         guarded = frame_guard(into.words, self.rows, self.columns, timeout)
-        assert not guarded.open, "a poor test: the last frame of the stream is not complete"
+        assert not guarded.open, "the test is void: the last frame of the stream is not complete"
         return guarded.frames, guarded.faults
 
     def depth(self, out: AxisMonitor, count: int) -> np.ndarray:

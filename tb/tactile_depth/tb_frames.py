@@ -150,7 +150,7 @@ async def saturation(dut: Any, accepts: str) -> None:
     steep = pipeline.pressed(slope=1.0)
     await pipeline.send(steep, pipeline.frame(), steep)
     codes = (await pipeline.check()).codes
-    assert pipeline.scoreboard.counters["SATURATIONS"] > 0, "a poor test: nothing clips"
+    assert pipeline.scoreboard.counters["SATURATIONS"] > 0, "the test is void: nothing clips"
     limit = 1 << pipeline.config.data_width - 1
     assert codes.max() == limit - 1 or codes.min() == -limit, "no depth at full scale"
     await pipeline.clear_status(saturation=1)

@@ -125,7 +125,7 @@ async def committed_at_the_first_pixel(dut: Any) -> None:
         await pipeline.send(frame)
         await pipeline.check(contents=[new if taken[-1] else old, new])
         tables.use("gradient", entries)
-    assert set(taken) == {False, True}, "a poor test: every commit came on the same side of the first pixel"
+    assert set(taken) == {False, True}, "the test is void: every commit came on the same side of the first pixel"
 
 
 @case(needs=looks_up)
@@ -169,7 +169,7 @@ async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> 
     used = pipeline.scoreboard.used(pipeline.into, pipeline.out, candidates)
     order = [contents.index(content) for content in used]
     assert order == sorted(order), f"a frame used a table that was in use before: {order}"
-    assert set(order) == set(range(len(contents))), f"a poor test: no frame used one of the tables: {order}"
+    assert set(order) == set(range(len(contents))), f"the test is void: no frame used one of the tables: {order}"
     await pipeline.check(contents=used)
 
 

@@ -33,7 +33,7 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
     source.forget_but(len(words))
     sink.forget_but(ROWS)
 
-    assert source.words == [tuple(word) for word in words], "the driver sent something else"
+    assert source.words == [tuple(word) for word in words], "the driver sent other words than the test gave it"
     rows = np.array(source.words).reshape(ROWS, size)
     np.testing.assert_array_equal(np.array(sink.words).reshape(rows.shape), row_reorder(rows, bool(to_burst)))
     check_frame_starts([source], FRAME * size)

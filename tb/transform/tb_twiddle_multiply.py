@@ -65,7 +65,7 @@ async def ties(dut: Any, part: Any) -> None:
                 other = int(word[1 - part]) * im * (-1 if part else 1)
                 wanted = (rest + other) * pow(re, -1, modulus) % modulus
                 word[part] = wanted - modulus * (wanted >= modulus // 2)
-    assert any(re % 2 for re, _ in factors), "a poor test: no factor is odd"
+    assert any(re % 2 for re, _ in factors), "the test is void: no factor is odd"
     await check(dut, words)
 
 
