@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_front_end: RTL against the model, the model against the resampling of the Python package."""
 
+import itertools
 import json
+import math
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -20,6 +23,28 @@ def arguments(form: str, picture: tuple[int, int], **choices: Any) -> dict[str, 
     return {"picture": picture, "grid": GRID, "pixel_format": form, **choices}
 
 
+# Camera pixels per grid pixel. A picture of YUYV has an even number of columns.
+RATIOS = [Fraction(*ratio) for ratio in ((1, 1), (5, 4), (3, 2), (2, 1), (9, 4), (11, 4), (15, 4), (23, 4), (8, 1))]
+COLOURED = [("rgb888", False), ("rgb565", False), ("rgb565", True), ("yuyv", False), ("yuyv", True)]
+PATTERNS = [(form, phase) for form in FORMATS if FORMATS[form].bayer for phase in PHASES]
+
+
+def every_format_phase_and_ratio(each: int) -> list[tuple[dict[str, Any]]]:
+    """Return structures: each format, with each phase and order of bytes or bits, with `each` ratios in turn."""
+    sizes = [(math.ceil(GRID[0] * ratio) + 1, int(GRID[1] * ratio)) for ratio in RATIOS]
+    pictures = itertools.cycle(sizes)
+    coloured = [
+        arguments(form, next(pictures), byte_serial=serial) for form, serial in COLOURED for _ in range(max(each, 2))
+    ]
+    pictures = itertools.cycle(sizes[RATIOS.index(Fraction(2)) :])
+    patterns = [
+        arguments(form, next(pictures), phase=phase, byte_serial=form == "raw8" and n % 2 == 1, msb_aligned=n % 2 == 0)
+        for n, (form, phase) in enumerate(PATTERNS)
+        for _ in range(each)
+    ]
+    return [(choices,) for choices in (*coloured, *patterns)]
+
+
 @pytest.mark.structures(
     "choices",
     verilator=[(arguments("raw10", (17, 34), phase="gbrg"),)],
@@ -29,19 +54,25 @@ def arguments(form: str, picture: tuple[int, int], **choices: Any) -> dict[str, 
         (arguments("rgb888", (4, 9)),),
     ],
     regress=[
-        *((arguments(form, (12, 22), phase=phase),) for form in ("raw8", "raw10", "raw12") for phase in PHASES),
+        *every_format_phase_and_ratio(3),
         (arguments("yuyv", (7, 18), window=[3, 1, 10, 5]),),
         (arguments("yuyv", (7, 18), window=[4, 1, 9, 5]),),
-        (arguments("rgb565", (21, 40)),),
-        (arguments("rgb565", (21, 40), byte_serial=True),),
-        (arguments("rgb888", (32, 64)),),
-        (arguments("raw12", (32, 64), msb_aligned=False),),
     ],
-    regress_verilator=[(arguments("yuyv", (10, 16)),), (arguments("rgb888", (4, 9)),)],
+    regress_verilator=every_format_phase_and_ratio(1),
 )
 def test_rtl(run_tb: Callable[..., None], choices: dict[str, Any]) -> None:
     camera = CameraConfiguration(**choices)
     run_tb("camera_front_end", camera_front_end_parameters(camera), environment={"CAMERA": json.dumps(choices)})
+
+
+@pytest.mark.parametrize("each", [1, 3])
+def test_every_format_phase_and_ratio_is_among_the_structures(each: int) -> None:
+    """On Verilator, and on Icarus."""
+    cameras = [CameraConfiguration(**choices) for (choices,) in every_format_phase_and_ratio(each)]
+    assert {(camera.pixel_format, camera.phase) for camera in cameras if camera.format.bayer} == set(PATTERNS)
+    assert {camera.pixel_format for camera in cameras} == set(FORMATS)
+    assert {camera.ratio for camera in cameras if not camera.format.bayer} == set(RATIOS)
+    assert {camera.ratio for camera in cameras if camera.format.bayer} == {ratio for ratio in RATIOS if ratio >= 2}
 
 
 @pytest.mark.parametrize("picture", [(4, 8), (480, 640), (240, 320), (33, 70), (100, 90)])
