@@ -24,7 +24,7 @@ from tactile_depth.tactile_depth import tactile_depth
 from tests.ball_presses import read, real_folder, write_folder
 
 FULL_WORDS: dict[str, int] = {}  # the defaults, 24 bits
-REAL_SENSOR_WORDS = {"data_width": 15, "coefficient_width": 18}
+REAL_SENSOR_WORDS = {"data_width": 15, "coefficient_width": 18, "gain_width": 16}
 HEIGHT_BAR = 0.01  # of a cap height
 
 
