@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Driver and monitors of lanes: row b of a frame is a burst in lane b mod lanes, a step behind the row before it.
+"""Driver and monitors of lanes: row b of a frame is a burst in lane b mod lanes, one step after the row before it.
 
-A step is the clocks of a burst over the number of lanes.
+A step has the cycles of a burst divided by the number of lanes.
 """
 
 from typing import Any
@@ -14,7 +14,7 @@ from tb.stream import Bench, StreamMonitor, check_frame_starts, check_words, int
 
 
 class LanePin:
-    """The part of a pin that belongs to one lane; of a pin with fewer parts than lanes the others have none."""
+    """Part of a pin that belongs to one lane. A pin may have parts for the first lanes only."""
 
     def __init__(self, handle: Any, lane: int, lanes: int) -> None:
         self.handle, width = handle, len(handle) // lanes
@@ -44,7 +44,7 @@ class LaneMonitor(StreamMonitor):
 
 
 class BeatMonitor(StreamMonitor):
-    """StreamMonitor of one stream with a word of each lane side by side: a tuple, the first in the lowest bits."""
+    """StreamMonitor of one stream whose words are tuples, one element per lane, the first in the lowest bits."""
 
     def __init__(self, dut: Any, name: str, length: int, lanes: int) -> None:
         self.lanes = lanes
@@ -56,17 +56,17 @@ class BeatMonitor(StreamMonitor):
 
 
 class LanesMonitor:
-    """Keeps the bursts of all lanes in the order in which they begin; see StreamMonitor."""
+    """Monitor that keeps the bursts of all lanes in the order in which they begin; see StreamMonitor."""
 
     def __init__(self, dut: Any, name: str, length: int, lanes: int) -> None:
         self.name, self.length, self.kept = name, length, 0
         self.monitors = [LaneMonitor(lane, lanes, dut, name, "start", ["data"], length) for lane in range(lanes)]
         self.frame_pin: Any = self.monitors[0].frame_pin
-        self.marks = len(self.frame_pin)  # bursts at the beginning of a frame that are marked
+        self.marks = len(self.frame_pin)  # number of marked bursts at the beginning of a frame
 
     @property
     def bursts(self) -> list[Any]:
-        """Start, mark of a frame, and words of each burst."""
+        """Return start, frame mark and words of each burst."""
         bursts = [
             (start, frame_start, monitor.words[index * self.length : (index + 1) * self.length])
             for monitor in self.monitors
@@ -96,7 +96,7 @@ class LanesMonitor:
 
 
 class LanesDriver:
-    """Sends frames (rows, size) under in_start, in_frame_start and in_data of all lanes."""
+    """Driver that sends frames (rows, size) with in_start, in_frame_start and in_data of all lanes."""
 
     def __init__(self, dut: Any, lanes: int) -> None:
         self.dut, self.lanes, self.width = dut, lanes, len(dut.in_data) // lanes
@@ -106,7 +106,7 @@ class LanesDriver:
         self.dut.in_start.value, self.dut.in_frame_start.value = 0, 0
 
     async def send(self, frame: Any, clocks: int | None = None) -> None:
-        """Send a frame, or the first clocks of it."""
+        """Send a frame, or its first cycles."""
         dut, marks = self.dut, len(self.dut.in_frame_start)
         rows, size = frame.shape
         step = size // self.lanes
@@ -139,11 +139,12 @@ async def check_lanes(
     interrupts: Any = (),
     strays: int = 0,
 ) -> None:
-    """Send frames (count, rows, size); compare what leaves with the model of what was seen going in.
+    """Send frames (count, rows, size); compare the output with the model of the words seen at the input.
 
-    `model` takes the frames and a Monitor, and returns as many words. `latency`: clocks from the start of a row to its
-    start out. Up to `gap` clocks lie between frames, more than a core takes to be ready for the next. `interrupts`:
-    see stream.interrupt, in clocks of a frame. `strays`: rows of a frame that is not completed, sent before.
+    `model` takes the frames and a Monitor, and returns as many words. `latency` is the number of cycles from the start
+    of a row at the input to its start at the output. Up to `gap` cycles lie between frames, more than a core needs
+    between two frames. `interrupts`: see stream.interrupt, in cycles of a frame. `strays` are rows of an incomplete
+    frame that is sent first.
     """
     bench = Bench(dut, pause)
     count, rows, size = frames.shape

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the tests of the testbenches that follow it once for every mutant, each in a fork of the simulator.
+"""Runner that plays the testbenches listed after it once for every mutant, each in a fork of the simulator.
 
-The device is a netlist with all mutants in it; its register `mutsel` says which one is alive, 0 being none. To start a
-simulator and import its testbench takes longer than most mutants live, so one process does that and then forks: the
-child sets the register, runs the tests and ends with the first that fails. Environment: MUTANT_NUMBERS, those to run,
-with commas; MUTANT_JOBS, how many at a time; MUTANT_RESULTS, the file that results are added to, a line each.
+The device is a netlist with all mutants; its register `mutsel` selects one, and 0 selects none. Starting a simulator
+and importing its testbench takes longer than most mutants need to fail, so one process does both and then forks. The
+child sets the register, runs the tests and ends with the first that fails. Environment: MUTANT_NUMBERS, the mutants to
+run, with commas; MUTANT_JOBS, the number of children at a time; MUTANT_RESULTS, the file that gets a line per result.
 """
 
 import json
@@ -20,13 +20,13 @@ import cocotb.regression
 from cocotb.triggers import Timer
 
 SURVIVED, KILLED = 0, 1  # exit status of a child
-# A mutant that takes this many times as long as the device itself, and so many seconds, hangs.
+# A mutant hangs if it takes this many times as long as the unchanged device, plus so many seconds.
 HANG_FACTOR, HANG_SECONDS = 6, 10
 REASON_LENGTH = 240
 
 
 class Child:
-    """A fork that runs the tests: its process, what it says on the way out, when it began."""
+    """Fork that runs the tests: its process, the file of its message, and the time of its start."""
 
     def __init__(self, number: int, process: Any, pipe: Any) -> None:
         self.number, self.process, self.pipe = number, process, pipe
@@ -46,7 +46,7 @@ class Child:
 
 
 def end_with_the_first_failure(pipe: Any) -> None:
-    """End this process as soon as a test fails, or when all have passed."""
+    """Make this process end as soon as a test fails, or when all have passed."""
     manager: Any = cocotb.regression.RegressionManager
 
     def failed(self: Any, *_: Any, result: Any = None, **__: Any) -> None:
@@ -62,25 +62,26 @@ def end_with_the_first_failure(pipe: Any) -> None:
 
 
 def fork(number: int, seconds: Any) -> Any:
-    """Returns the Child in the parent, None in the child."""
+    """Return the Child in the parent, None in the child."""
     read, write = os.pipe()
     process = os.fork()
     if process:
         os.close(write)
         return Child(number, process, read)
     os.close(read)
-    if number:  # the device itself says in the log what it fails in
+    if number:  # the unchanged device writes its failures to the log
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, 1)
         os.dup2(null, 2)
     if seconds:
-        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))  # at the first a signal, at the second the end
+        # After the first time the system sends a signal, after the second it ends the process.
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
     end_with_the_first_failure(write)
     return None
 
 
 def wait(children: Any) -> Any:
-    """Wait for one of them to end; it leaves the set. Returns its result."""
+    """Wait until one child ends; remove it from the set and return its result."""
     process, status, usage = os.wait4(-1, 0)
     (child,) = (child for child in children if child.process == process)
     children.remove(child)
@@ -88,7 +89,7 @@ def wait(children: Any) -> Any:
 
 
 def children(numbers: Any, jobs: int, keep: Any) -> Any:
-    """In the parent: returns None when all have run. In a child: returns its number at once."""
+    """Return the number of the mutant in a child, at once; return None in the parent when all children have ended."""
     running = {fork(0, 0)}
     if None in running:
         return 0
@@ -119,7 +120,7 @@ async def every_mutant(dut: Any) -> None:
             lambda result: results.write(json.dumps(result) + "\n"),
         )
     if number is None:
-        cocotb.regression._manager_inst._test_queue.clear()  # the children have run them
+        cocotb.regression._manager_inst._test_queue.clear()  # the children have run the tests
         return
     dut.mutsel.value = number
     await Timer(1, "step")

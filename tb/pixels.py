@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Colours to the words of s_axis and back."""
+"""Conversion of colours to the words of s_axis and back."""
 
 from typing import Any
 

@@ -10,16 +10,16 @@ OFFSETS = {register.offset: register.name for register in MAP}
 
 
 class RegisterMirror:
-    """The words of some registers, as the cores see them in the clock of the latest call of `clock`.
+    """Words of some registers, as the cores see them in the cycle of the latest call of `clock`.
 
-    A write takes effect at the clock edge at which `bvalid` rises. Only plain registers are followed: those that read
-    what was written.
+    A write takes effect at the clock edge at which `bvalid` rises. Only registers that read back the written word can
+    be followed.
     """
 
     def __init__(self, dut: Any, *names: str) -> None:
         self.dut = dut
         self.names = names
-        self.address = self.data = self.strobe = 0  # of the latest write
+        self.address = self.data = self.strobe = 0  # address and data of the latest write
         self.reset()
 
     def reset(self) -> None:

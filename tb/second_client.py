@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The AXI ports through cocotbext-axi: a client that shares no code with tb/axis.py and cocotb-bus.
+"""Client of the AXI ports by cocotbext-axi, which shares no code with tb/axis.py and cocotb-bus.
 
-With the methods that tb/tactile_depth/bench.py calls of its own drivers.
+Its classes have the methods that tb/tactile_depth/bench.py calls.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,7 +16,7 @@ from tactile_depth.registers.axil_port import BYTES, Response
 
 
 class SecondSource:
-    """Sends rows as packets; in a row None is a clock of pause."""
+    """Source that sends rows as packets; in a row None is a cycle of pause."""
 
     def __init__(self, dut: Any, offers: Iterable[bool]) -> None:
         self.dut, self.offers, self.held = dut, iter(offers), False
@@ -50,26 +50,26 @@ class SecondSource:
                 frame = AxiStreamFrame(tdata=[w.data for w in packet], tuser=[w.user for w in packet])
                 self.source.send_nowait(frame)
                 packet = []
-        assert not packet, "a packet ends with tlast: this client cannot break off in mid row"
+        assert not packet, "this client sends whole rows only: the words end without tlast"
         self.taking = cocotb.start_soon(self.take(silences, sent))
         await self.taking
 
     async def take(self, silences: dict[int, int], sent: int) -> None:
-        """Until all words are taken; pause at each silence."""
+        """Wait until all words are taken; pause at each None."""
         dut, edge, taken = self.dut, RisingEdge(self.dut.clk), 0
         while taken < sent:
-            self.held = taken + 1 in silences  # the word on the pins is the last before it
+            self.held = taken + 1 in silences  # the word on the pins is the last one before the pause
             await edge
             if dut.s_axis_tvalid.value and dut.s_axis_tready.value:
                 taken += 1
                 if taken in silences:
-                    for _ in range(silences[taken] - 1):  # what is decided here shows a clock later
+                    for _ in range(silences[taken] - 1):  # the decision takes effect one cycle later
                         await edge
                     self.held = False
 
 
 class SecondSink:
-    """Takes packets, pausing as a profile says."""
+    """Sink that takes packets and pauses by a profile."""
 
     def __init__(self, dut: Any, accepts: Iterable[bool]) -> None:
         self.sink = AxiStreamSink(AxiStreamBus.from_prefix(dut, "m_axis"), dut.clk, dut.rst, byte_lanes=1)
@@ -90,7 +90,7 @@ class SecondSink:
 
 
 class SecondMaster:
-    """Reads and writes registers."""
+    """Master that reads and writes registers."""
 
     def __init__(self, dut: Any) -> None:
         self.master = AxiLiteMaster(AxiLiteBus.from_prefix(dut, "s_axil"), dut.clk, dut.rst)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Choice of the tests that a run takes: a test states its level and what it needs, a run states how far it goes.
+"""Selection of tests: a test states its level and its needs, and a run states the last level that it plays.
 
-A run with the environment variable LEVEL=formats takes the tests of that level and of those before it. Without LEVEL a
-run goes as far as `whole`, and with REGRESS=1 as far as `long`. cocotb runs the levels in their order.
+A run with the environment variable LEVEL=formats plays the tests of that level and of the levels before it. The default
+is LEVEL=whole, and LEVEL=long with REGRESS=1. cocotb plays the levels in their order.
 """
 
 import os
@@ -19,28 +19,28 @@ Value = TypeVar("Value")
 
 
 class Level(IntEnum):
-    """Level of a run: the tests that it plays."""
+    """Level of a test, or the last level that a run plays."""
 
     FIRST = 0  # one frame
-    STREAM = 1  # frames without a pause, gaps and stalls at random, a reset
-    FORMATS = 2  # what depends on word lengths, boundary and choices of the build
+    STREAM = 1  # frames back to back, random gaps and stalls, a reset
+    FORMATS = 2  # tests that depend on word lengths, boundary and options of the build
     DISTURBED = 3  # half of the pairs of gaps and stalls
-    WHOLE = 4  # everything else, once
-    LONG = 5  # what repeats a test under another disturbance
+    WHOLE = 4  # each other test once
+    LONG = 5  # repetitions of a test under another disturbance
 
 
 LEVEL = Level[os.environ.get("LEVEL", "long" if REGRESS else "whole").upper()]
 SECOND_CLIENT = os.environ.get("CLIENT") == "second"  # cocotbext-axi drives the ports
-NETLIST = os.environ.get("NETLIST") == "1"  # the device has pins and parameters, and no names inside
+NETLIST = os.environ.get("NETLIST") == "1"  # the device has pins and parameters, but no names of inner signals
 
 
 def up_to(values: Mapping[Level, Sequence[Value]]) -> list[Value]:
-    """Return the values of a test's parameter at the levels that this run takes."""
+    """Return the values of a test's parameter at the levels that this run plays."""
     return [value for level, some in values.items() if level <= LEVEL for value in some]
 
 
 def named(values: Sequence[str]) -> list[Any]:
-    """Return values of a parameter that stand in the names of tests, however long they are."""
+    """Return values of a parameter that appear in the names of tests, even if they are long."""
     return [cocotb.Param(value, value) for value in values]
 
 
@@ -52,12 +52,12 @@ def case(
     inside: bool = False,
     milliseconds: float = 3,
 ) -> Callable[[Any], Any]:
-    """Make a coroutine a test of this run, if the run goes so far and the device has what the test needs.
+    """Make a coroutine a test of this run, if the run plays its level and the device meets its needs.
 
     Parameters
     ----------
     needs : function of the configuration, or None
-        Returns whether the build has what is tested.
+        Returns True if the build has the feature under test.
     whole_rows : bool
         The test sends whole rows only, so that the second client can send them.
     inside : bool

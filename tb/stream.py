@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drivers and monitors of the streams between cores, and the one loop that most testbenches need."""
+"""Drivers and monitors of the streams between cores, and the loop that most testbenches share."""
 
 import json
 import os
@@ -17,8 +17,8 @@ from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 
 CLOCK_NS = 6
-REGRESS = os.environ.get("REGRESS", "0") != "0"  # the full product in place of a choice
-# Frames or bursts, where what a test is after comes seldom: ties, values that just clip. Mutants and coverage get more.
+REGRESS = os.environ.get("REGRESS", "0") != "0"  # play the full product instead of a selection
+# Frames or bursts of tests whose cases are rare: ties, values that just clip. Mutants and coverage get more.
 MANY = int(os.environ.get("MANY", "15" if REGRESS else "2"))
 
 
@@ -28,33 +28,34 @@ def sample(values: list[Any]) -> list[Any]:
 
 
 def parameters(dut: Any, *names: str) -> tuple[int, ...]:
-    """Values of the device's parameters."""
+    """Return the values of these parameters of the device."""
     return tuple(getattr(dut, name).value.to_signed() for name in names)
 
 
 def configuration() -> Configuration:
-    """The configuration that the test built the device for, from the environment variable CONFIGURATION."""
+    """Return the configuration of the device, from the environment variable CONFIGURATION."""
     return Configuration(**json.loads(os.environ["CONFIGURATION"]))
 
 
 def uniform(shape: int | tuple[int, ...], width: int, amplitude: float = 1.0) -> np.ndarray:
-    """Random words of `width` signed bits, up to `amplitude` of full scale, the same for a seed."""
+    """Return random words of `width` signed bits, up to `amplitude` of full scale; a seed gives the same words."""
     limit = amplitude * 2.0 ** (width - 1)
     words = np.random.default_rng(cocotb.RANDOM_SEED).uniform(-limit, limit, shape)
     return np.clip(np.rint(words), -limit, limit - 1).astype(np.int64)
 
 
 def places(count: int, width: int) -> np.ndarray:
-    """`count` words of `width` signed bits that stand for their place: all different, and every bit changes often."""
+    """Return `count` words of `width` signed bits that identify their positions: all differ, and every bit changes
+    often."""
     factor = round(2.0**width * 0.618) | 1  # odd, so that no two products are the same in `width` bits
     words = [place * factor % (1 << width) for place in range(1, count + 1)]
     return np.array([word - (word >> (width - 1) << width) for word in words], np.int64)
 
 
 def extremes(size: int, width: int, fields: int = 1) -> np.ndarray:
-    """Bursts (8, size, fields) of words at their limits; the first is zero throughout.
+    """Return bursts (8, size, fields) of words at their limits; the first is all zero.
 
-    Then: highest, lowest, both in turn, by halves, in turn over the fields, a lone word at either end.
+    The others are: highest, lowest, both in turn, by halves, in turn over the fields, a single word at either end.
     """
     low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
     bursts = np.zeros((8, size, fields), np.int64)
@@ -67,13 +68,14 @@ def extremes(size: int, width: int, fields: int = 1) -> np.ndarray:
 
 
 def corners(shape: int | tuple[int, ...], width: int) -> np.ndarray:
-    """Random words, mostly the lowest and the highest: sums and differences of them clip in every pairing."""
+    """Return random words, mostly the lowest and the highest, whose sums and differences clip in every pairing."""
     low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
     return np.random.default_rng(cocotb.RANDOM_SEED).choice([*6 * [low, high], -1, 0], shape)
 
 
 def raster(rows: int, columns: int) -> list[Any]:
-    """The marks of a frame's pixels in their order: bit 0 first row, 1 first column, 2 last row, 3 last column."""
+    """Return the marks of the pixels of a frame in order: bit 0 first row, 1 first column, 2 last row, 3 last
+    column."""
     return [
         (row == 0) | (column == 0) << 1 | (row == rows - 1) << 2 | (column == columns - 1) << 3
         for row in range(rows)
@@ -87,7 +89,7 @@ def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
 
 
 class StreamDriver(BusDriver):
-    """Sends words under a qualifier: `start` (with the first word of a burst) or `valid` (with each word).
+    """Driver of words with a qualifier: `start` (at the first word of a burst) or `valid` (at each word).
 
     A transaction is a list of tuples, one word each, in the order of `fields`. A word counts in a clock with
     `en`. Where the device has a pin `frame_start`, it is high with the first word of a transaction sent while
@@ -122,10 +124,10 @@ class StreamDriver(BusDriver):
 
 
 class StreamMonitor(BusMonitor):
-    """Keeps (clock, word) of every word, one tuple of signed values in the order of `fields`.
+    """Monitor that keeps (cycle, word) of every word, a tuple of signed values in the order of `fields`.
 
-    With `start` a burst lasts `length` clocks; a burst cut short by another start is an error. `starts` are the
-    clocks of the qualifier, `frame_starts` says of each whether it begins a frame; elsewhere none may begin.
+    With `start` a burst lasts `length` cycles; a burst cut short by another start is an error. `starts` holds the
+    cycles of the qualifier, `frame_starts` whether each begins a frame; no frame may begin in another cycle.
     """
 
     def __init__(self, dut: Any, name: str, qualifier: str, fields: Any, length: int = 1, unsigned: Any = ()) -> None:
@@ -187,8 +189,8 @@ class Bench:
     def __init__(self, dut: Any, pause: float = 0.0) -> None:
         self.dut, self.pause = dut, pause
         self.random = random.Random(cocotb.RANDOM_SEED)
-        self.clock, self.saturations = 0, 0  # clocks with en; values clipped
-        self.in_reset: int | None = None  # en in the clock of a reset
+        self.clock, self.saturations = 0, 0  # cycles with en; values clipped
+        self.in_reset: int | None = None  # en in the cycle of a reset
 
     async def start(self) -> None:
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
@@ -210,7 +212,7 @@ class Bench:
                 self.saturations += int(self.dut.saturations.value)
 
     async def reset(self, en: Any = False) -> None:
-        """One clock of reset; unless `en` is given nothing moves on in it by itself."""
+        """Reset for one cycle, in which the words inside move only with `en`."""
         self.in_reset = int(en)
         self.dut.rst.value, self.dut.en.value = 1, self.in_reset
         await RisingEdge(self.dut.clk)
@@ -219,16 +221,16 @@ class Bench:
         self.saturations = 0
 
     async def clocks(self, count: int) -> None:
-        """Wait for `count` clocks with en."""
+        """Wait for `count` cycles with en."""
         last = self.clock + count
         while self.clock < last:
             await RisingEdge(self.dut.clk)
 
 
 async def send_apart(bench: Any, driver: Any, words: Any, gap: float, frame: int = 0) -> None:
-    """Send words (tuples) one by one, an idle clock before each with probability `gap`.
+    """Send words (tuples) one by one, each after an idle cycle with probability `gap`.
 
-    Every `frame` words a frame begins; 0: none does.
+    A frame begins every `frame` words; 0: no frame begins.
     """
     for index, word in enumerate(words):
         while bench.random.random() < gap:
@@ -238,7 +240,7 @@ async def send_apart(bench: Any, driver: Any, words: Any, gap: float, frame: int
 
 
 def check_words(got: Any, expected: Any, size: int, rows: int) -> None:
-    """Compare words (count, fields) in the order in which they leave; a difference is named by frame, row and column.
+    """Compare words (count, fields) in the order in which they leave; a message names frame, row and column.
 
     A burst of `size` words is a row, `rows` of them are a frame.
     """
@@ -260,7 +262,7 @@ def plain(word: Any) -> Any:
 
 
 def check_frame_starts(monitors: Any, frame: Any) -> None:
-    """Frames begin with every `frame`-th start that a monitor saw, and nowhere else."""
+    """Check that frames begin at every `frame`-th start that a monitor saw, and nowhere else."""
     for monitor in monitors:
         if monitor.frame_pin is not None:
             marks = getattr(monitor, "marks", 1)  # LanesMonitor: the first burst of each lane
@@ -269,15 +271,16 @@ def check_frame_starts(monitors: Any, frame: Any) -> None:
 
 
 def with_and_without_en(counts: Any) -> list[Any]:
-    """Return each count twice, since `interrupt` resets with and without en in turn."""
+    """Return each count twice, because `interrupt` resets with and without en in turn."""
     return [count for count in counts for _ in range(2)]
 
 
 async def interrupt(bench: Any, send: Any, interrupts: Any, monitors: Any, quiet: Any) -> None:
-    """For each count in `interrupts`: send so many words, reset, with en and without by turns; nothing of them may
-    leave in `quiet` clocks.
+    """For each count in `interrupts` send so many words and reset, with and without en in turn.
 
-    After the last of them it does not wait, so that the next word comes right after a reset.
+    Nothing of them may leave in `quiet` cycles.
+
+    After the last one it does not wait, so that the next word comes right after a reset.
     """
     for index, count in enumerate(interrupts):
         await send(count)
@@ -306,15 +309,15 @@ async def check_bursts(
     settle: int = 40,
     sink: Any = None,
 ) -> tuple[Any, ...]:
-    """Send bursts (count, size, fields); compare what leaves with the model of what was seen going in.
+    """Send bursts (count, size, fields); compare the output with the model of the words seen at the input.
 
     `model` takes int64 (count, size, fields) and a Monitor, and returns the expected bursts. `latency` is the
-    number of clocks from each start in to its start out, or None where the core regroups bursts. Up to `gap`
-    idle clocks lie between bursts. Every `frame` bursts a frame begins. `interrupts`: see there.
-    `strays` bursts, the beginning of a frame that is not completed, come right before; what they give is not looked at.
-    `sink`: monitor of the output where it is none of one lane.
+    number of cycles from each start at the input to its start at the output, or None if the core regroups bursts. Up to
+    `gap` idle cycles lie between bursts. A frame begins every `frame` bursts. `interrupts`: see `interrupt`. `strays`
+    bursts of an incomplete frame come right before; their results are not compared. `sink` is the monitor of an output
+    with several lanes.
 
-    Returns the monitors of both sides.
+    Return the monitors of both sides.
     """
     bench = Bench(dut, pause)
     size = bursts.shape[1]
@@ -357,7 +360,7 @@ async def check_bursts(
 async def check_frame_memory(
     dut: Any, words: Any, model: Any, latency: Any, *, rows: int, lanes: int = 1, **behaviour: Any
 ) -> None:
-    """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row.
+    """Check a core that stores frames (count, rows * size) and sends each without a pause after its last row came.
 
     `latency` is the number of cycles from the start of the last row in to the first start out. Several lanes take
     turns, each a part of a row behind the one before.
@@ -380,9 +383,9 @@ async def check_frame_memory(
 
 
 async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any:
-    """Give the pins of each clock their values (one dict a clock); return what stood at all pins at its end.
+    """Drive the pins with one dict of values per cycle; return the values of all pins at the end of each cycle.
 
-    For cores without a stream. Where there is an `en` it pauses at random, and only clocks with it count.
+    Use it for cores without a stream. A pin `en` pauses at random, and only cycles with `en` count.
 
     Returns
     -------

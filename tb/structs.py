@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packed structs of hdl/common/stream_pkg.sv, which a simulator shows as vectors: members by name."""
+"""Members by name of the packed structs in hdl/common/stream_pkg.sv, which a simulator shows as vectors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MEMBER = re.compile(r"^ +(\w+) +(?:\[(\d+):0\] +)?(\w+);", re.MULTILINE)
 
 @cache
 def members(name: str) -> dict[str, tuple[int, int]]:
-    """Return the members of a struct, those of structs in it too: name to lowest bit and width.
+    """Return the members of a struct and of the structs inside it: name to lowest bit and width.
 
     Raises
     ------

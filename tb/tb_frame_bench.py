@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Driver of frame_bench in the simulator: writes registers, starts it, waits for its end, reads the registers."""
+"""Driver of frame_bench in the simulator: it writes registers, starts the bench, waits for its end and reads
+registers."""
 
 import json
 import os

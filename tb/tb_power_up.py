@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes down what power_up holds before anything was written to it."""
+"""Record of the content of power_up before anything is written to it."""
 
 import json
 from pathlib import Path

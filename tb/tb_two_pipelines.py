@@ -20,11 +20,11 @@ from tb.axis import AxisMonitor, AxisSource, video
 from tb.pixels import unpack
 from tb.stream import CLOCK_NS
 
-STEEPNESS = {"left": 1.0, "right": -0.5}  # of each gel, relative to the synthetic sensor
+STEEPNESS = {"left": 1.0, "right": -0.5}  # slope of each gel, relative to the synthetic sensor
 
 
 def calibration(side: str, config: Configuration) -> Sensor:
-    """Return the calibration of a pipeline: colours of the synthetic sensor stand for other slopes."""
+    """Return the calibration of a pipeline: the colours of the synthetic sensor, for scaled slopes."""
     sensor = synthetic(config.bits_per_channel)
     assert sensor.gradient is not None
     return replace(sensor, gradient=sensor.gradient * STEEPNESS[side])
@@ -32,7 +32,7 @@ def calibration(side: str, config: Configuration) -> Sensor:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def codes(dut: Any) -> None:
-    """Send a frame to each at the same time, and compare each depth map with its own model."""
+    """Send a frame to each pipeline at the same time, and compare each depth map with its model."""
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     rng = random.Random(cocotb.RANDOM_SEED)
     configs = {side: Configuration(**choices) for side, choices in json.loads(os.environ["CONFIGURATIONS"]).items()}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Soft errors: one bit of a register or memory of tactile_depth flips while frames stream through.
 
-Each experiment resets the device, streams FRAMES frames, flips one bit at one clock and looks at what leaves. Its
-outcome is the first of OUTCOMES of upsets.py that holds. The bits are sampled evenly over modules, so that small
-ones are not lost among the memories. Results go to upsets.json in the run folder.
+Each experiment resets the device, streams FRAMES frames, flips one bit in one cycle and classifies the output. Its
+outcome is the first of OUTCOMES of upsets.py that applies. The bits are sampled evenly over modules, so that small
+modules count as much as memories. Results go to upsets.json in the run folder.
 """
 
 import json
@@ -30,9 +30,9 @@ from tb.pixels import pack
 from tb.stream import CLOCK_NS, configuration
 
 FRAMES = 6
-FLIPPED_IN = 1  # the flip comes when this frame enters, or up to one latency later
-OF_DATA = ("saturation", "contact", "touching")  # bits of STATUS that depend on what a frame shows
-# What holds until software writes it again; an upset there is no matter of frames.
+FLIPPED_IN = 1  # the flip comes as this frame enters, or up to one latency later
+OF_DATA = ("saturation", "contact", "touching")  # bits of STATUS that depend on the content of a frame
+# Values that hold until software writes them again; an upset there persists over frames.
 SETTINGS = {
     "setting_registers": ("settings",),
     "table_access": ("index", "high"),
@@ -52,7 +52,7 @@ class Place:
 
 
 def registers_of(module: str) -> set[str]:
-    """Names that a module's source assigns with <= in a clocked block."""
+    """Return the names that the source of a module assigns with <= in a clocked block."""
     text = re.sub(r"//.*", "", cores()[module].hdl.read_text())
     clocked = text[text.find("always_ff") :]
     names = set(re.findall(r"(?:^|[;)]|begin|else)\s*\{?\s*(\w+)(?:\[[^\]]*\])?\s*<=", clocked, re.M))
@@ -61,7 +61,7 @@ def registers_of(module: str) -> set[str]:
 
 
 def places(dut: Any) -> list[Place]:
-    """Every register and every word of memory; ROMs and what only simulation has are left out."""
+    """Return every register and every word of memory, without ROMs and objects that exist in simulation only."""
     found: list[Place] = []
 
     def visit(scope: Any, module: str, owner: str) -> None:
@@ -75,7 +75,7 @@ def places(dut: Any) -> list[Place]:
                 inner = child._def_name
                 if inner in cores():
                     if inner != "rom":
-                        # A memory counts for the core it serves, and so does what only counts or delays.
+                        # A memory counts for the core that contains it, and so does a counter or a delay line.
                         shared = inner in ("ram", "delay_line", "burst_counter", "round_saturate", "dot_product")
                         visit(child, inner, owner if shared else inner)
                 else:
@@ -90,7 +90,7 @@ def places(dut: Any) -> list[Place]:
 
 
 class Device:
-    """The pins, clock by clock."""
+    """Driver of the pins, one cycle at a time."""
 
     def __init__(self, dut: Any, rng: Any) -> None:
         self.dut, self.random = dut, rng
@@ -115,7 +115,7 @@ class Device:
         await RisingEdge(dut.clk)
 
     async def status(self) -> int | None:
-        """STATUS; None: the registers do not answer."""
+        """Read STATUS; None: the registers do not answer."""
         dut = self.dut
         dut.s_axil_araddr.value, dut.s_axil_arvalid.value = REGISTERS["STATUS"].offset, 1
         for _ in range(10):
@@ -124,13 +124,14 @@ class Device:
                 dut.s_axil_arvalid.value = 0
             if dut.s_axil_rvalid.value:
                 word = list(str(dut.s_axil_rdata.value))
-                for name in OF_DATA:  # unknown where a place was read that was never written
+                for name in OF_DATA:  # unknown if it depends on a place that was never written
                     word[-1 - REGISTERS["STATUS"].field(name).low] = "0"
                 return int("".join(word), 2)
         return None
 
     async def experiment(self, place: Place, bit: int, at: int, stall: float) -> str | None:
-        """Stream the frames, flip one bit after clock `at`; the outcome. None: nothing was written there before."""
+        """Stream the frames and flip one bit after cycle `at`; return the outcome, None if the place was never written
+        before."""
         dut, edge = self.dut, RisingEdge(self.dut.clk)
         await self.reset()
         sent, clock, quiet = 0, 0, 0
@@ -155,7 +156,7 @@ class Device:
             if sent < len(self.words) and ready.value:
                 sent += 1
             if m_valid.value and m_ready.value:
-                code = dut.m_axis_tdata.value  # unknown where a place was read that was never written
+                code = dut.m_axis_tdata.value  # unknown if it depends on a place that was never written
                 beats.append((code.to_signed() if code.is_resolvable else None, int(dut.m_axis_tuser.value)))
                 quiet = 0
         valid.value = 0

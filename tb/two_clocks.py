@@ -8,8 +8,7 @@ import cocotb
 from cocotb.triggers import RisingEdge, Timer
 from cocotb.utils import get_sim_time
 
-# Periods in picoseconds, of the source and of the sink: equal, in ratios of small whole numbers, close to each other
-# and far apart.
+# Periods of source and sink in picoseconds: equal, in ratios of small integers, close to each other, and far apart.
 RATIOS = {
     "equal": (10_000, 10_000),
     "twice": (10_000, 20_000),
@@ -22,11 +21,11 @@ RATIOS = {
     "far_slower": (4_000, 74_000),
     "far_faster": (74_000, 4_000),
 }
-JITTER = 0.1  # of a period, either way
+JITTER = 0.1  # of a period, in both directions
 
 
 async def run_clock(pin: Any, period_ps: int, seed: int, jitter: float = JITTER) -> None:
-    """Drive a clock for ever, both of its edges at random within the jitter."""
+    """Drive a clock for ever; both edges vary at random within the jitter."""
     chance = random.Random(f"{cocotb.RANDOM_SEED} {seed}")
     while True:
         for level in (0, 1):

@@ -25,7 +25,7 @@ FIELDS = ["gx", "gy", "position"]
 
 
 def pixels(gradient: Any) -> Any:
-    """Gradients (frames, rows, columns, 2) as words of FIELDS."""
+    """Return gradients (frames, rows, columns, 2) as words of FIELDS."""
     frames, rows, columns, _ = gradient.shape
     positions = np.array(frames * raster(rows, columns)).reshape(frames, rows, columns, 1)
     return np.concatenate((gradient, positions), axis=-1).reshape(-1, len(FIELDS)).tolist()
@@ -61,9 +61,9 @@ async def frames(dut: Any, gap: float, pause: float, rows: int) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def limits(dut: Any) -> None:
-    """Rows of each kind, then with their fields exchanged; the last frame is a chequer board.
+    """Send rows of each kind of limits, then with their fields exchanged; the last frame is a chequer board.
 
-    On the board neighbours stand at opposite limits everywhere: the largest and smallest results there are.
+    On the board all neighbours are at opposite limits, which gives the largest and the smallest results.
     """
     width, columns = parameters(dut, "Width", "Columns")
     rows = extremes(columns, width, 2)
@@ -74,6 +74,6 @@ async def limits(dut: Any) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def reset_in_mid_frame(dut: Any) -> None:
-    """At each of the first words, and in the second row."""
+    """Reset at each of the first words, and in the second row."""
     width, columns = parameters(dut, "Width", "Columns")
     await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 5 * columns // 4])

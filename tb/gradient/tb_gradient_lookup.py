@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """gradient_lookup against its model: both banks, rewritten and read while frames stream; gaps, pauses, reset.
 
-The reference follows the pins, clock by clock: a pixel's slopes are those that its frame's bank holds.
+The reference follows the pins in every cycle: a pixel gets the slopes in the bank of its frame.
 """
 
 from typing import Any
@@ -19,12 +19,12 @@ from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, paramet
 
 PIXEL = ["pixel", "position"]
 SLOPES = ["gx", "gy", "position"]
-FIRST = 0b0011  # place of the first pixel: in the first row and the first column
-READ_CLOCKS = 2  # from table_read to its words
+FIRST = 0b0011  # position of the first pixel: in the first row and the first column
+READ_CLOCKS = 2  # cycles from table_read to the words
 
 
 def every_colour(bits: int, random: Any) -> Any:
-    """Each bin of the table once, in random order, its lower bits random; and each again in reverse."""
+    """Return a colour of each bin of the table in random order, its lower bits random; then all in reverse order."""
     bins = np.array(random.sample(range(1 << 3 * bits), 1 << 3 * bits))
     top = np.stack((bins >> 2 * bits, bins >> bits, bins), axis=-1) & (1 << bits) - 1
     low = np.array([random.getrandbits(8 - bits) for _ in range(3 * len(bins))]).reshape(-1, 3)
@@ -33,9 +33,9 @@ def every_colour(bits: int, random: Any) -> Any:
 
 
 class Lookup:
-    """The device, its reference, and what software does at the table."""
+    """Device, its reference, and the accesses of software to the table."""
 
-    banks: Any = None  # what stands in them; no reset touches it, so the next test begins with it
+    banks: Any = None  # content of the banks; it survives a reset, so the next test begins with it
 
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
@@ -53,12 +53,15 @@ class Lookup:
         dut.in_position.value = 0
 
     async def start(self) -> None:
-        """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
-        both banks anew, and what they hold at power-up is tested on Icarus and by the top."""
+        """Start and reset. On Verilator the first test rewrites both banks.
+
+        The pins of Verilator are random at first and may write a word at the first edge. Icarus and the top test the
+        content at power-up.
+        """
         at_power_up = Lookup.banks is None
         if at_power_up:
             Lookup.banks = BankedTable.of(self.power_up)
-        self.banks.wanted = self.banks.in_use = 0  # by the reset
+        self.banks.wanted = self.banks.in_use = 0  # changed by the reset
         await self.bench.start()
         cocotb.start_soon(self.follow())
         if at_power_up and cocotb.SIM_NAME.lower().startswith("verilator"):
@@ -70,14 +73,14 @@ class Lookup:
 
     async def follow(self) -> None:
         dut, table = self.dut, self.banks.words[0]
-        named = 0  # bank of the frame that comes
-        changes = False  # the first pixel of a frame waits in front of the table
+        named = 0  # bank of the next frame
+        changes = False  # the first pixel of a frame waits before the table
         while True:
             await RisingEdge(dut.clk)
             assert int(dut.table_in_use.value) == self.banks.in_use
             if changes and dut.en.value and not dut.rst.value:
                 self.banks.in_use, changes = named, False
-            if dut.table_read.value:  # in the clock of a change-over: of the bank that was left
+            if dut.table_read.value:  # in the cycle of a change-over: of the previous bank
                 self.to_read = self.banks.free[int(dut.table_index.value)].tolist()
             self.banks.wanted = int(dut.table_bank.value)
             if dut.table_write.value:
@@ -97,7 +100,7 @@ class Lookup:
     # Software.
 
     async def write(self, index: Any, gx: Any, gy: Any) -> None:
-        """One entry of the bank not in use, in one clock, whether or not the pipeline moves."""
+        """Write one entry of the free bank in one cycle, with en high or low."""
         for pin, value in (("write", 1), ("index", index), ("gx", gx), ("gy", gy)):
             getattr(self.dut, f"table_{pin}").value = int(value)
         await RisingEdge(self.dut.clk)
@@ -110,7 +113,7 @@ class Lookup:
             await self.write(index, *codes[index])
 
     async def read(self, index: int) -> None:
-        """The slopes of an entry of the bank not in use."""
+        """Read the slopes of an entry of the free bank."""
         dut = self.dut
         dut.table_read.value, dut.table_index.value = 1, index
         await RisingEdge(dut.clk)
@@ -122,21 +125,21 @@ class Lookup:
             await RisingEdge(dut.clk)
 
     async def commit(self) -> None:
-        """Ask for the other bank; the frames that begin from now on use it."""
+        """Commit the free bank: frames that begin from now on use it."""
         self.dut.table_bank.value = 1 - self.banks.in_use
         await RisingEdge(self.dut.clk)
 
     # Frames.
 
     def words(self, colours: Any) -> Any:
-        """A frame: the first pixel has its place, the others any but that."""
+        """Return the words of a frame; only the first has the position of a first pixel."""
         random = self.bench.random
         marks = [FIRST | random.getrandbits(2) << 2]
         marks += [random.choice([m for m in range(16) if m & FIRST != FIRST]) for _ in colours[1:]]
         return list(zip(pack(colours).tolist(), marks, strict=True))
 
     async def frame(self) -> None:
-        """Every colour; then compare."""
+        """Send every colour, and compare."""
         await send_apart(self.bench, self.driver, self.words(every_colour(self.bits, self.bench.random)), self.gap)
         await self.compare()
 
@@ -165,7 +168,7 @@ async def whole_table_then_rewritten(dut: Any, gap: float, pause: float) -> None
         await lookup.rewrite(codes, lookup.bench.random.sample(range(lookup.bins), lookup.bins))
         for index in lookup.bench.random.sample(range(lookup.bins), min(lookup.bins, 64)):
             await lookup.read(index)
-        await lookup.frame()  # of the old table
+        await lookup.frame()  # pixels that use the old table
         await lookup.commit()
         await lookup.frame()
         np.testing.assert_array_equal(lookup.banks.words[lookup.banks.in_use], codes)
@@ -175,7 +178,7 @@ async def whole_table_then_rewritten(dut: Any, gap: float, pause: float) -> None
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
 async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> None:
-    """Short frames without a pause between; writes, reads and commits in every clock of theirs."""
+    """Send short frames back to back; write, read and commit in every one of their cycles."""
     lookup = Lookup(dut, gap, pause)
     await lookup.start()
     random, running, changes = lookup.bench.random, True, 0
@@ -190,7 +193,7 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
             await ClockCycles(dut.clk, random.randrange(1, 4))
             await lookup.commit()
             while running and lookup.banks.in_use != int(dut.table_bank.value):
-                if random.random() < 0.5:  # while the change-over is due, in the clock of it, after it
+                if random.random() < 0.5:  # while the change-over is due, in its cycle, and after it
                     await lookup.read(random.randrange(lookup.bins))
                 else:
                     await RisingEdge(dut.clk)
@@ -221,7 +224,7 @@ async def reset_keeps_the_table_and_takes_the_bank_over(dut: Any) -> None:
         lookup.sink.forget()
         await lookup.frame()
     assert (lookup.banks.words[lookup.banks.in_use][0] == (1, -2)).all()
-    lookup.dut.table_read.value = 1  # a read that a reset cuts short
+    lookup.dut.table_read.value = 1  # a read that a reset ends early
     await RisingEdge(dut.clk)
     lookup.dut.table_read.value = 0
     await lookup.bench.reset()

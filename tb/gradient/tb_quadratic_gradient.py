@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """quadratic_gradient against its model: both banks, rewritten and read while frames stream; gaps, limits, reset.
 
-The reference follows the pins, clock by clock: a frame's slopes are those of the words that the bank held which it
-began with.
+The reference follows the pins in every cycle: a frame uses the words that its bank held as the frame began.
 """
 
 import itertools
@@ -23,7 +22,7 @@ DEVIATIONS = [*COLOURS, "position"]
 SLOPES = ["gx", "gy", "position"]
 WORDS = (2, 3, 6)  # axes, colours, terms
 COUNT = 36
-READ_CLOCKS = 3  # from table_read to its word
+READ_CLOCKS = 3  # cycles from table_read to the word
 SMALLEST = [(2, 4), (3, 4), (2, 7)]  # rows and columns
 
 
@@ -32,10 +31,10 @@ def place(row: Any, column: Any, rows: int, columns: int) -> Any:
 
 
 class Gradient:
-    """The device, its reference, and what software does at the words."""
+    """Device, its reference, and the accesses of software to the words."""
 
-    in_use = [0] * len(COLOURS)  # bank of each colour: they change over in turn
-    banks: Any = None  # what stands in them; no reset touches it, so the next test begins with it
+    in_use = [0] * len(COLOURS)  # bank of each colour; the colours change over in turn
+    banks: Any = None  # content of the banks; it survives a reset, so the next test begins with it
 
     def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
@@ -53,15 +52,18 @@ class Gradient:
         dut.in_position.value = 0
 
     async def start(self) -> None:
-        """Verilator begins with random pins, so that a first edge may have written a word: there the first test writes
-        both banks anew, and what they hold at power-up is tested on Icarus."""
+        """Start and reset. On Verilator the first test rewrites both banks.
+
+        The pins of Verilator are random at first and may write a word at the first edge. Icarus tests the content at
+        power-up.
+        """
         at_power_up = Gradient.banks is None
         if at_power_up:
             lines = [line for p in range(COUNT // 6) for line in Path(f"quadratic_{p}.hex").read_text().split()]
             raw = np.array([int(line, 16) for line in lines])
             Gradient.banks = np.stack(2 * [raw - (raw >> (self.word_width - 1) << self.word_width)])
         await self.bench.start()
-        Gradient.in_use = [0] * len(COLOURS)  # by the reset
+        Gradient.in_use = [0] * len(COLOURS)  # changed by the reset
         cocotb.start_soon(self.follow())
         if at_power_up and cocotb.SIM_NAME.lower().startswith("verilator"):
             for words in self.banks[::-1].copy():
@@ -74,8 +76,8 @@ class Gradient:
 
     async def follow(self) -> None:
         dut = self.dut
-        named = 0  # bank of the frame that comes
-        begun: list[int] = []  # clocks with en since each first pixel was taken
+        named = 0  # bank of the next frame
+        begun: list[int] = []  # cycles with en since each first pixel was taken
         while True:
             await RisingEdge(dut.clk)
             assert int(dut.table_in_use.value) == self.in_use[-1]
@@ -104,14 +106,14 @@ class Gradient:
                     column += 1
                 colours = [getattr(dut, f"in_{colour}").value.to_signed() for colour in COLOURS]
                 self.frames[-1][1].append((row, column, colours))
-            if dut.table_read.value:  # in the clock of a change-over: of the bank that is left
+            if dut.table_read.value:  # in the cycle of a change-over: of the previous bank
                 index = int(dut.table_index.value)
                 self.to_read = int(self.banks[1 - self.in_use[index // 6 % len(COLOURS)]][index])
 
     # Software.
 
     async def write(self, index: Any, word: Any) -> None:
-        """Write one word of the bank not in use in one clock, once no change-over is due, `en` or not."""
+        """Write one word of the free bank in one cycle, as soon as no change-over is due, with en high or low."""
         while len({*self.in_use, int(self.dut.table_bank.value)}) > 1:
             await RisingEdge(self.dut.clk)
         for pin, value in (("write", 1), ("index", index), ("word", word)):
@@ -137,19 +139,19 @@ class Gradient:
             await RisingEdge(dut.clk)
 
     async def commit(self) -> None:
-        """Ask for the other bank; the frames that begin from now on use it."""
+        """Commit the free bank: frames that begin from now on use it."""
         self.dut.table_bank.value = 1 - int(self.dut.table_bank.value)
         await RisingEdge(self.dut.clk)
 
     async def use(self, words: Any) -> None:
-        """The next frame uses these words."""
+        """Write these words and commit them: the next frame uses them."""
         await self.rewrite(words)
         await self.commit()
 
     # Frames.
 
     def any_words(self) -> Any:
-        """At their limits, over the whole range, small ones, planes, and constants."""
+        """Return random words: at the limits, over the whole range, small ones, planes, or constants."""
         kind = self.random.randrange(5)
         if kind == 0:
             return corners_of(self.random, COUNT, self.word_width)
@@ -163,7 +165,8 @@ class Gradient:
         return words.reshape(COUNT)
 
     def any_deviation(self) -> Any:
-        """Over the whole range or a part of it, at its limits, or a multiple of half a step of the result: ties."""
+        """Return random deviations: over a range, at the limits, or multiples of half a step of the result, which are
+        ties."""
         width = self.deviation_width
         kind = self.random.randrange(4)
         if kind == 0:
@@ -174,7 +177,7 @@ class Gradient:
         return [self.random.randrange(-1 << width - 1, 1 << width - 1) >> grain << grain for _ in COLOURS]
 
     async def send(self, rows: int, columns: int, pixels: Any = None, deviations: Any = None) -> None:
-        """A frame, or its first pixels."""
+        """Send a frame, or its first pixels."""
         words = []
         for index in range(rows * columns if pixels is None else pixels):
             colours = self.any_deviation() if deviations is None else deviations[index]
@@ -182,7 +185,7 @@ class Gradient:
         await send_apart(self.bench, self.driver, words, self.gap)
 
     async def compare(self, last: int = 0) -> Any:
-        """All pixels, or the last ones, which are the last frame. Returns how many values were clipped."""
+        """Compare all pixels, or those of the last frame; return the number of values clipped."""
         await self.bench.clocks(QUADRATIC_GRADIENT + 2)
         assert self.sink.starts == [clock + QUADRATIC_GRADIENT for clock in self.source.starts]
         if last:
@@ -213,7 +216,7 @@ class Gradient:
 
 
 def corners_of(random: Any, count: int, width: int) -> Any:
-    """Mostly the lowest and the highest."""
+    """Return random values, mostly the lowest and the highest."""
     low, high = -1 << width - 1, (1 << width - 1) - 1
     return np.array([random.choice((*6 * [low, high], -1, 0)) for _ in range(count)])
 
@@ -224,7 +227,7 @@ TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
 async def both_banks(dut: Any, gap: float, pause: float) -> None:
-    """Frames of what stands there, then of words written since, every one read back before it is used."""
+    """Send frames with the words of power-up, then with new words, each read back before it is used."""
     device = Gradient(dut, gap, pause)
     await device.start()
     await device.send(5, 8)
@@ -234,7 +237,7 @@ async def both_banks(dut: Any, gap: float, pause: float) -> None:
         await device.rewrite(words)
         for index in device.random.sample(range(COUNT), COUNT):
             await device.read(index)
-        await device.send(3, 5)  # of the old words
+        await device.send(3, 5)  # pixels that use the old words
         await device.commit()
         await device.send(5, 8)
         await device.compare()
@@ -245,7 +248,7 @@ async def both_banks(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
 async def limits(dut: Any, gap: float, pause: float) -> None:
-    """Words and deviations of every kind, so that sums clip in both directions, and polynomials run over."""
+    """Use words and deviations of every kind, so that sums clip in both directions and polynomials overflow."""
     device = Gradient(dut, gap, pause)
     await device.start()
     clipped = 0
@@ -265,7 +268,7 @@ async def limits(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
 async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> None:
-    """Frames without a pause between; writes, reads and commits in every clock of theirs."""
+    """Send frames back to back; write, read and commit in every one of their cycles."""
     device = Gradient(dut, gap, pause)
     await device.start()
     random, running, changes = device.random, True, 0
@@ -281,7 +284,7 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
             await ClockCycles(dut.clk, random.randrange(1, 4))
             await device.commit()
             while running and device.in_use[-1] != int(dut.table_bank.value):
-                if random.random() < 0.5:  # while the change-over is due, in the clock of it, after it
+                if random.random() < 0.5:  # while the change-over is due, in its cycle, and after it
                     await device.read(random.randrange(COUNT))
                 else:
                     await RisingEdge(dut.clk)
@@ -298,7 +301,7 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
-    """Reset among pixels that all clip; none may be counted after it."""
+    """Reset among pixels that all clip: none is counted after it, the words stay, and the due bank is taken."""
     device = Gradient(dut)
     await device.start()
     lowest = [[-1 << device.deviation_width - 1] * 3]
@@ -328,7 +331,7 @@ async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @TRAFFIC
 async def a_cut_frame_does_no_harm_to_the_next(dut: Any, gap: float, pause: float) -> None:
-    """Nobody sends one; but a mark may be upset, and that shall heal."""
+    """Cut a frame short, which only an upset of a mark can do: the next frame is right."""
     device = Gradient(dut, gap, pause)
     await device.start()
     for pixels in (*range(1, 14), 20):

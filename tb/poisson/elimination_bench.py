@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of the two halves of Thomas's algorithm, forward_elimination and back_substitution, against their models.
 
-Checked are codes, latency and saturation counts, with gaps, pauses and resets.
+The tests check codes, latency and saturation counts, with gaps, pauses and resets.
 """
 
 import math

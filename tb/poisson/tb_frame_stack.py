@@ -15,7 +15,8 @@ FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
     size, width, rows, lanes = parameters(dut, "Size", "Width", "Rows", "Lanes")
-    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]  # so that no bit of a position stays
+    # One word per frame is left out, so that every bit of a position changes from frame to frame.
+    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]
     if lanes > 1:
         behaviour["sink"] = LanesMonitor(dut, "out", size, lanes)
     await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, lanes=lanes, **behaviour)
@@ -36,7 +37,7 @@ async def reset_in_mid_frame(dut: Any, halves: int) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
-    """With the last row's first words, and around its end: each register that says so is set in one of these clocks."""
+    """Reset at the first words of the last row and around its end, where each register of the reading side is set."""
     size, rows = parameters(dut, "Size", "Rows")
     clocks = (1, 2, 3, size, size + 1, size + 2)
     await check(dut, frames=2, interrupts=[(rows - 1) * size + clock for clock in clocks])
@@ -45,5 +46,5 @@ async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
-    """After part of a frame, and after more than one without a start in between."""
+    """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, frames=2, strays=strays)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""spectral_divide against its model: whole frames, so all positions; gaps, pauses, extremes, reset."""
+"""spectral_divide against its model: whole frames, which reach all positions; gaps, pauses, extremes, reset."""
 
 from typing import Any
 
@@ -32,7 +32,7 @@ async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.01, 0.2, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
-    """Ties of the rounding, and values that just clip."""
+    """Reach ties of the rounding, and values that just clip."""
     size, width = parameters(dut, "Size", "Width")
     shape = (MANY * size, size, 1)
     await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
@@ -40,7 +40,7 @@ async def many_frames(dut: Any, amplitude: float) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def limits(dut: Any) -> None:
-    """Each kind of burst fills a frame of its own: every position sees it, and the lowest modes clip."""
+    """Fill a frame with each kind of burst, so that it reaches every position and the lowest modes clip."""
     size, width = parameters(dut, "Size", "Width")
     _, sink = await check(dut, np.repeat(extremes(size, width), size, axis=0))
     assert not np.any(sink.words[: size * size]), "zero in, but not zero out"
@@ -49,7 +49,7 @@ async def limits(dut: Any) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
-    """Reset as the first words enter and leave, and in the middle of a second frame."""
+    """Reset as the first words enter and leave, and in the middle of the second frame."""
     size, width = parameters(dut, "Size", "Width")
     first = 3 * size * size // 2 + size // 2 if late else 1
     await check(dut, uniform((size, size, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))
@@ -58,6 +58,6 @@ async def reset_in_mid_frame(dut: Any, late: bool) -> None:
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
-    """After part of a frame, and after more than one without a start in between."""
+    """Start a frame after part of another one, and after more than one without a start of frame in between."""
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((size, size, 1), width), strays=strays)

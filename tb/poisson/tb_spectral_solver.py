@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""spectral_solver against its model: codes, fixed latency, one frame every N^2 clocks, saturations; reset."""
+"""spectral_solver against its model: codes, fixed latency, one frame every N^2 cycles, saturations; reset."""
 
 from typing import Any
 
@@ -24,7 +24,8 @@ from tb.stream import (
 
 
 def codes(frames: int, amplitude: float) -> Any:
-    """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
+    """Return a random divergence, whose depth fits at 0.002 of full scale. None: mostly the lowest and the highest
+    word."""
     config = configuration()
     shape, width = (frames, config.columns, config.columns), config.divergence.width
     return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
@@ -76,7 +77,7 @@ async def frames_that_fit(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 0.05, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
-    """Ties of every rounding, and clips of every one that can."""
+    """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, codes(MANY, amplitude))
 
 
@@ -91,7 +92,7 @@ async def frames_that_saturate(dut: Any) -> None:
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 1.0])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
-    """The third frame arrives as the first one leaves: every core is at work, and clips if it can."""
+    """Reset as the third frame enters and the first one leaves: every core is active, and clips if it can."""
     size = configuration().columns
     first = 2 * size * size + 10 * size + size // 2
     await check(dut, codes(1, amplitude), interrupts=[first, first + size // 3])
@@ -100,6 +101,6 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(rows=[1, 3])
 async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
-    """After rows of a frame that is not completed, and part of one more."""
+    """Start a frame after rows of an incomplete frame, and after part of another row."""
     columns = configuration().columns
     await check(dut, codes(2, 0.002), strays=rows * columns + 5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""thomas_table against its model: every position of every row."""
+"""thomas_table against its model at every position of every row."""
 
 from typing import Any
 

@@ -26,7 +26,7 @@ from tb.stream import (
 
 
 async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> Any:
-    """Frames f (frames, rows, columns) through the device; for `interrupts` see stream.interrupt."""
+    """Send frames f (frames, rows, columns) and compare; for `interrupts` see stream.interrupt."""
     config = configuration()
     pixels = config.rows * config.columns
     bench = Bench(dut, pause)
@@ -63,7 +63,8 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
 
 
 def codes(frames: int, amplitude: float) -> Any:
-    """Random divergence; at 0.002 of full scale its depth fits. None: mostly the lowest and the highest."""
+    """Return a random divergence, whose depth fits at 0.002 of full scale. None: mostly the lowest and the highest
+    word."""
     config = configuration()
     shape, width = (frames, config.rows, config.columns), config.divergence.width
     return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
@@ -78,7 +79,7 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=200, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 0.05, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
-    """Ties of every rounding, and clips of every one that can."""
+    """Reach ties of every rounding, and clip every value that can clip."""
     await check(dut, codes(MANY, amplitude))
 
 
@@ -97,7 +98,8 @@ async def a_frame_does_not_know_the_one_before(dut: Any) -> None:
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.002, 1.0])
 async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
-    """At places in a row of the second frame, as the first one leaves: every core is at work, and clips if it can."""
+    """Reset at positions in a row of the second frame as the first one leaves: every core is active, and clips if it
+    can."""
     config = configuration()
     first = 3 * config.rows * config.columns // 2 + 3
     places = [first + step * (config.columns // 4 + 1) for step in range(4)]
@@ -107,6 +109,6 @@ async def reset_in_mid_frame(dut: Any, amplitude: float) -> None:
 @cocotb.test(timeout_time=100, timeout_unit="ms")
 @cocotb.parametrize(rows=[1, 3])
 async def a_frame_begins_afresh(dut: Any, rows: int) -> None:
-    """After rows of a frame that is not completed, and part of one more."""
+    """Start a frame after rows of an incomplete frame, and after part of another row."""
     columns = configuration().columns
     await check(dut, codes(2, 0.002), strays=rows * columns + 5)

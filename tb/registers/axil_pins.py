@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pins `s_axil_*` as the model of the port has them."""
+"""Pins `s_axil_*` as arguments and results of the model of the port."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def pin(dut: Any, name: str) -> int:
 
 
 def pins(dut: Any) -> Pins:
-    """Return what the client offers in this clock."""
+    """Return the inputs that the client drives in this cycle."""
     return Pins(
         pin(dut, "awaddr") if pin(dut, "awvalid") else None,
         (pin(dut, "wdata"), pin(dut, "wstrb")) if pin(dut, "wvalid") else None,
@@ -30,7 +30,7 @@ def pins(dut: Any) -> Pins:
 
 
 def expected(port: AxilPort) -> dict[str, int]:
-    """Return the outputs of the port in this clock; data and responses while they are valid alone."""
+    """Return the outputs of the port in this cycle; data and responses only while they are valid."""
     outputs = {
         "awready": port.address is None,
         "wready": port.data is None,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bench of a core of registers behind axil_port: one call a clock sets all inputs, and compares all outputs.
+"""Bench of a core of registers behind axil_port: one call per cycle sets all inputs and compares all outputs.
 
 A core has the inputs write, write_offset, write_ones, write_mask (some), read_offset and the output read_data.
 """
@@ -26,12 +26,12 @@ WHOLE = 0xF  # every byte is strobed
 
 
 class RegisterBench:
-    """Drives a core clock by clock; the subclass of a core has its model.
+    """Driver of a core, one cycle at a time; the subclass of a core has its model.
 
     Attributes
     ----------
     random : random.Random
-        From cocotb's seed.
+        Seeded by cocotb.
     """
 
     idle: Mapping[str, int] = MappingProxyType({})  # inputs beside the bus, while a test sets no other value
@@ -48,15 +48,15 @@ class RegisterBench:
         raise NotImplementedError
 
     def refuses(self, name: str, ones: int, mask: int) -> bool:
-        """Return True if a write is refused; compared with the pin write_refused of cores that have it."""
+        """Return True if a write is refused, for cores with the pin write_refused."""
         return False
 
     def outputs(self) -> dict[str, int]:
-        """Return all other outputs in this clock."""
+        """Return all other outputs in this cycle."""
         return {}
 
     def step(self, write: tuple[str, int, int] | None) -> None:
-        """Take the clock edge, with the allowed write of this clock: register, ones, mask."""
+        """Take the clock edge with the accepted write of this cycle: register, ones, mask."""
         raise NotImplementedError
 
     def reset(self) -> None:
@@ -82,7 +82,7 @@ class RegisterBench:
     async def clock(
         self, write: tuple[str | int, int, int] | None = None, read_at: str | int = 0, rst: bool = False, **inputs: int
     ) -> int:
-        """Set the inputs of one clock, compare its outputs, and return read_data.
+        """Set the inputs of one cycle, compare its outputs, and return read_data.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class RegisterBench:
         """
         dut = self.dut
         self.inputs = {**self.idle, **inputs}
-        # Without a write the address and the data of any other may stand there.
+        # Without a write address and data are random.
         offset, data, strobe = write or (self.random.choice(tuple(OFFSET)), self.random.getrandbits(32), WHOLE)
         offset = REGISTERS[offset].offset if isinstance(offset, str) else offset
         mask = strobed_bits(strobe)
@@ -124,7 +124,7 @@ class RegisterBench:
     async def random_clocks(
         self, registers: tuple[str, ...], resets: float = 0.005, count: int = RANDOM_CLOCKS
     ) -> None:
-        """Write and read registers at random, those named more often than all others, with `random_inputs`."""
+        """Write and read registers at random, preferably those named, with `random_inputs`."""
         rng = self.random
 
         def any_offset() -> int:

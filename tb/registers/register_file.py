@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bench of hdl/registers/axil_registers.sv: a checker of every output in every clock, and tables behind the bus."""
+"""Bench of hdl/registers/axil_registers.sv: a checker of every output in every cycle, and tables behind the bus."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ PARAMETERS = (
 
 
 def entry(table: int, index: int) -> tuple[int, int]:
-    """Words (high, low) of an entry of the tables behind the registers: other ones for each."""
+    """Return the words (high, low) of an entry of a table; they differ for each entry."""
     low = (index + 1) * 0x9E37_79B1 + (table + 1) * 0x85EB_CA6B & WORD
     return low * 0xC2B2_AE35 >> 5 & WORD, low
 
 
 class Checker:
-    """Follows the pins, feeds the model with what it sees there, and compares every output in every clock."""
+    """Checker that feeds the model with the input pins and compares every output in every cycle."""
 
     def __init__(self, dut: Any) -> None:
         self.dut = dut
@@ -66,8 +66,8 @@ class Checker:
 
     async def run(self) -> None:
         """Compare until the test ends, from the end of the first reset on."""
-        await RisingEdge(self.dut.clk)  # of the first reset: before it everything is unknown
-        self.model.banks.bank = self.pin("table_bank")  # of the test before: no reset touches it
+        await RisingEdge(self.dut.clk)  # end of the first reset: before it all outputs are unknown
+        self.model.banks.bank = self.pin("table_bank")  # value of the test before: it survives a reset
         while True:
             await RisingEdge(self.dut.clk)
             self.step()
@@ -78,7 +78,7 @@ class Checker:
         return frozenset(t for t in CAPTURES if structs.unpack("capture_status_t", self.pin(f"{t}_status"))[flag])
 
     def live(self) -> Live:
-        """Return the inputs that reads and writes of this clock use."""
+        """Return the inputs that reads and writes of this cycle use."""
         record = self.pin("record")
         return Live(
             **{name: bool(high) for name, high in structs.unpack("levels_t", self.pin("levels")).items()},
@@ -103,7 +103,7 @@ class Checker:
         }
 
     def step(self) -> None:
-        """Compare the outputs of one clock."""
+        """Compare the outputs of one cycle."""
         model, port, offered = self.model, self.port, axil_pins.pins(self.dut)
         resets, starts = bool(self.pin("rst")), bool(self.pin("frame_start"))
         outputs = axil_pins.expected(port) | self.settings()
@@ -111,7 +111,7 @@ class Checker:
         command = {"select": model.table, "index": model.values["TABLE_INDEX"], "high": model.values["TABLE_HIGH"]}
         log2 = {t: register.unpack(model.values[register.name])["log2_frames"] for t, register in CAPTURES.items()}
 
-        # In this order: a table read in the clock before, a read, a write.
+        # In this order: a table read in the previous cycle, a read, a write.
         asked_before, reads_table = self.asked if port.late == LATE_CLOCKS else "", False
         if asked_before:
             self.late_answer = model.read(OFFSET[asked_before])
@@ -171,9 +171,9 @@ class Checker:
 
 
 class Tables:
-    """Tables behind the table bus. The words of an entry come as late as allowed, after other words.
+    """Tables behind the table bus. The words of an entry arrive at the latest allowed cycle, after other words.
 
-    A table changes its bank `lag` clocks after the frame start.
+    A table changes its bank `lag` cycles after the frame start.
     """
 
     def __init__(self, dut: Any, lag: int = 0) -> None:
@@ -208,7 +208,7 @@ async def reset(dut: Any) -> None:
 
 @asynccontextmanager
 async def checked(dut: Any, lag: int = 0) -> AsyncIterator[Checker]:
-    """Clock and reset the registers, and compare them with their model until the end; `lag`: of the tables."""
+    """Clock and reset the registers, and compare them with their model until the end; `lag` is that of the tables."""
     for name in INPUTS:
         getattr(dut, name).value = 0
     dut.rst.value = 1
@@ -226,7 +226,7 @@ async def checked(dut: Any, lag: int = 0) -> AsyncIterator[Checker]:
 
 
 async def pulse(dut: Any, *events: str, saturations: int = 0, settle: int = 1, **values: int) -> None:
-    """Raise events and other inputs for one clock; return `settle` clocks later, when registers show them."""
+    """Raise events and other inputs for one cycle; return `settle` cycles later, when registers show them."""
     members = dict.fromkeys(events, 1) | {"saturations": saturations}
     for name, value in {"events": structs.pack("events_t", members), **values}.items():
         getattr(dut, name).value = value
@@ -243,7 +243,7 @@ async def write(dut: Any, name: str, data: int, strobe: int = 0xF) -> int:
 
 
 async def everything_happens(dut: Any) -> None:
-    """Raise every event for one clock."""
+    """Raise every event for one cycle."""
     await pulse(dut, *EVENTS, saturations=1)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/registers/axil_port.sv against its model, every output in every clock."""
+"""axil_port against tactile_depth.registers.axil_port, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LAST = (1 << ADDRESS_WIDTH) - 4
 
 
 class Checker:
-    """Feeds the model with the pins in every clock, and compares every output.
+    """Checker that feeds the model with the input pins in every cycle, and compares every output.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Checker:
     def __init__(self, dut: Any) -> None:
         self.dut, self.port, self.clocks = dut, AxilPort(), 0
         self.writes: list[tuple[int, int, int]] = []
-        self.taken: dict[str, Any] = dict.fromkeys(("offset", "ones", "mask"))  # last; None: nothing yet
+        self.taken: dict[str, Any] = dict.fromkeys(("offset", "ones", "mask"))  # the latest; None before the first
 
     def expect(self, name: str, value: int) -> None:
         got = int(getattr(self.dut, name).value)
@@ -52,7 +52,7 @@ class Checker:
             self.clocks += 1
 
     def step(self) -> None:
-        """Compare the outputs of one clock."""
+        """Compare the outputs of one cycle."""
         dut, port = self.dut, self.port
         offered, resets = pins(dut), bool(dut.rst.value)
         for name, value in expected(port).items():
@@ -111,7 +111,7 @@ async def checked(dut: Any) -> AsyncIterator[Checker]:
 
 
 def settle(dut: Any, rng: random.Random) -> None:
-    """Change what the registers would answer."""
+    """Drive the answers of the registers with random values."""
     for name in WORDS:
         getattr(dut, name).value = rng.getrandbits(32)
     for name in FLAGS:
@@ -120,7 +120,7 @@ def settle(dut: Any, rng: random.Random) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def bytes_of_a_write(dut: Any) -> None:
-    """Every strobe, at the first and the last register, and at addresses inside a register."""
+    """Write with every strobe, at the first and the last register, and at addresses inside a register."""
     async with checked(dut) as checker:
         for strobe in range(16):
             for address in (0, LAST, LAST + strobe % 4, 4 << strobe % 8):
@@ -131,7 +131,7 @@ async def bytes_of_a_write(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def address_and_data_in_either_order(dut: Any) -> None:
-    """Neither is lost, and no response comes before both were taken."""
+    """Send address and data in either order: neither is lost, and no response comes before both were taken."""
     async with checked(dut) as checker:
         address = {"channel": "aw", "awaddr": 0x18}
         for gap in range(4):
@@ -151,7 +151,7 @@ async def address_and_data_in_either_order(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(ahead=["aw", "w"])
 async def the_next_waits_for_this(dut: Any, ahead: Any) -> None:
-    """An address, or a word, that is offered while the one before it waits for its other half stays out."""
+    """Offer an address or a word while the previous one waits for its other half: it is not taken."""
     async with checked(dut) as checker:
         writes = [(0x18, 0x1234), (0x60, 0xABCD_EF01)]
         addresses: list[dict[str, Any]] = [{"channel": "aw", "awaddr": address} for address, _ in writes]
@@ -169,7 +169,7 @@ async def the_next_waits_for_this(dut: Any, ahead: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def responses_wait(dut: Any) -> None:
-    """A response stays, unchanged, until it is taken, and holds off the next transaction of its kind only."""
+    """Refuse responses: each stays unchanged until it is taken, and delays the next transaction of its kind only."""
     async with checked(dut):
         dut.write_refused.value = 1
         cocotb.start_soon(write_beats(dut, 0x18, 8))
@@ -196,7 +196,7 @@ async def responses_wait(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_inside_transactions(dut: Any) -> None:
-    """A reset at every point of a write and a read leaves nothing behind."""
+    """Reset at every point of a write and a read: nothing of the transaction remains."""
     async with checked(dut) as checker:
         for late in (0, 1):
             for clocks in range(8):
@@ -225,7 +225,7 @@ async def reset_inside_transactions(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def offered_in_reset(dut: Any) -> None:
-    """An access offered in a reset has no effect, the clock before the reset's end included."""
+    """Offer accesses in a reset, its last cycle included: they have no effect."""
     async with checked(dut) as checker:
         for channel in ("aw", "w", "ar"):
             getattr(dut, f"s_axil_{channel}valid").value = 1
@@ -240,7 +240,7 @@ async def offered_in_reset(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(pressure=[0.0, 0.6])
 async def random_traffic(dut: Any, pressure: float) -> None:
-    """Random beats, answers and resets; responses are refused a ready with probability `pressure`."""
+    """Drive random beats, answers and resets; ready of the responses is low with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)
     async with checked(dut) as checker:
         valid = {channel: getattr(dut, f"s_axil_{channel}valid") for channel in ("aw", "w", "ar")}

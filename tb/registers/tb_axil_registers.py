@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/registers/axil_registers.sv against its model, every output in every clock.
+"""axil_registers against tactile_depth.registers.axil_registers, every output in every cycle.
 
-The cores in it have testbenches of their own; here it is tested that the map is theirs together.
+The cores inside have their own testbenches. The tests here check that together they implement the register map.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ from tb.registers.register_file import (
 from tb.stream import REGRESS
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
-SATURATION_BITS = structs.members("events_t")["saturations"][1]  # of the values clipped in a clock
+SATURATION_BITS = structs.members("events_t")["saturations"][1]  # of the count of values clipped in a cycle
 # The ends of the map, all of its offsets, and the words between them.
 ADDRESSES = tuple(range(0, max(OFFSET.values()) + 8, BYTES)) + tuple(range(256, 1 << ADDRESS_WIDTH, 64))
 
 
 def tables_present(build: Build) -> int:
-    """Return the bits of TABLE_COMMIT of the tables that the build has."""
+    """Return the bits in TABLE_COMMIT of the tables in this build."""
     return build.present
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_values(dut: Any) -> None:
-    """Every field has the reset value of the map, or that of the build; bits of no field read 0."""
+    """Read every register after a reset: fields have the value of the map or of the build, other bits read 0."""
     async with checked(dut) as checker:
         for register in MAP:
             data = (await read(dut, register.offset))[0]
@@ -66,10 +66,10 @@ async def reset_values(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(register=[name for name in REGISTERS if name not in PORTS])
 async def access(dut: Any, register: Any) -> None:
-    """Each field has the access of the map; what lies behind the ports to the tables is tested with the tables."""
+    """Write and read every register: each field has the access of the map. The ports to the tables have other tests."""
     async with checked(dut) as checker:
         register, build = REGISTERS[register], checker.build
-        refused = {  # by name: bits of a word that is refused
+        refused = {  # bits of a word that is refused, by register
             capture.name: capture.field("start").mask
             for table, capture in CAPTURES.items()
             if not build.table_sizes[TABLES[table]]
@@ -110,7 +110,7 @@ async def access(dut: Any, register: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def outputs(dut: Any) -> None:
-    """A second bus master writes registers; the outputs to the pipeline and the words read back are right."""
+    """Write registers with a second bus master: the outputs to the pipeline and the words read back are right."""
     async with checked(dut):
         master = master_of(dut)
         await master.write(OFFSET["THRESHOLD"], -5 & WORD)
@@ -123,7 +123,7 @@ async def outputs(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def unaligned_byte_access(dut: Any) -> None:
-    """A byte of a register is written and read at its own address, as a processor does."""
+    """Write and read single bytes of a register at their addresses, as a processor does."""
     async with checked(dut):
         for byte in range(BYTES):
             address = OFFSET["TIMEOUT"] + byte
@@ -134,7 +134,7 @@ async def unaligned_byte_access(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def errors_change_nothing(dut: Any) -> None:
-    """Unmapped offsets and writes to ro registers: SLVERR, as the map says, and no effect."""
+    """Access unmapped offsets and write ro registers: the response is SLVERR, and nothing changes."""
     async with checked(dut) as checker:
         master = master_of(dut)
         for offset in ADDRESSES:
@@ -142,7 +142,7 @@ async def errors_change_nothing(dut: Any) -> None:
             before = dict(checker.model.values)
             if register is None or not register.writable:
                 response = await response_of(master.write(offset, WORD))
-                assert response == Response.SLVERR, f"a write to {offset:#x} passed"
+                assert response == Response.SLVERR, f"a write to {offset:#x} was accepted"
             if not checker.model.is_port(offset):
                 response = await response_of(master.read(offset))
                 assert response == (Response.OKAY if register else Response.SLVERR), f"a read of {offset:#x}"
@@ -158,7 +158,7 @@ async def choose(dut: Any, table: int, index: int) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(table=list(TABLES.values()))
 async def table_entries(dut: Any, table: Any) -> None:
-    """Entries are written and read in turn, the last one before the first."""
+    """Write and read entries in turn, with the first after the last."""
     async with checked(dut) as checker:
         size, writes = checker.build.table_sizes[table], checker.model.table_writes
         await choose(dut, table, max(0, size - 2))
@@ -182,7 +182,7 @@ async def table_entries(dut: Any, table: Any) -> None:
             assert await value_of(dut, "TABLE_LOW") == entry(table, index)[1]
         assert await write(dut, "TABLE_LOW", 5, strobe=7) == Response.SLVERR
 
-        # Taken in the clock before a reset, so that it would go out in the reset's first.
+        # Taken in the cycle before a reset, so that it would go out in the first cycle of the reset.
         writing = cocotb.start_soon(write(dut, "TABLE_LOW", 9))
         while checker.port.write() is None:
             await RisingEdge(dut.clk)
@@ -193,7 +193,8 @@ async def table_entries(dut: Any, table: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_write_beside_a_read_of_a_table(dut: Any) -> None:
-    """Writes that come in each clock of a read wait for its end, and the entry read is that of before or after."""
+    """Write in each cycle of a read of a table: the write waits for its end, and the entry is the old or the new
+    one."""
     async with checked(dut) as checker:
         table = min(table for table, size in checker.build.table_sizes.items() if size)
         for lead in range(-3, 8):
@@ -217,7 +218,8 @@ async def a_write_beside_a_read_of_a_table(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(lag=[0, 7])
 async def commits(dut: Any, lag: int) -> None:
-    """A change-over comes with the next frame start, is pending until the table has followed, and guards that table."""
+    """Commit: the change-over comes with the next frame start, is pending until the table follows, and closes that
+    table."""
     async with checked(dut, lag) as checker:
         has = tables_present(checker.build)
         for tables in range(1, 1 << len(TABLES)):
@@ -233,13 +235,15 @@ async def commits(dut: Any, lag: int) -> None:
             await ClockCycles(dut.clk, lag + 1)
             assert await value_of(dut, COMMIT.name) == 0
 
-        # Frame starts around the clock in which the write takes effect: those after it change over.
+        # Frame starts around the cycle in which the write takes effect: those after it change over.
         for clocks, late in ((0, False), (1, False), (2, True), (3, True)):
             bank = int(dut.table_bank.value)
             writing = cocotb.start_soon(write(dut, COMMIT.name, has))
             await ClockCycles(dut.clk, clocks)
             await pulse(dut, frame_start=1)
-            assert int(dut.table_bank.value) ^ bank == late * has, f"a frame {clocks} clocks after the write's offer"
+            assert int(dut.table_bank.value) ^ bank == late * has, (
+                f"a frame {clocks} cycles after the write was offered"
+            )
             await writing
             await pulse(dut, frame_start=1)
             assert int(dut.table_bank.value) ^ bank == has
@@ -248,7 +252,7 @@ async def commits(dut: Any, lag: int) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def resets_and_banks(dut: Any) -> None:
-    """A reset forgets what no frame has taken and leaves the banks; a cold reset clears them."""
+    """Reset: commits that no frame has taken are dropped, and the banks stay. A cold reset clears the banks."""
     async with checked(dut) as checker:
         has = tables_present(checker.build)
         for cold in (1, 0, 1):
@@ -270,7 +274,8 @@ async def resets_and_banks(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(name=list(CAPTURES))
 async def capture(dut: Any, name: str) -> None:
-    """A start goes out once; while the capture is busy its table is closed, and its end asks for the change-over."""
+    """Start a capture: the start goes out once, the table is closed while the capture is busy, and its end commits the
+    table."""
     async with checked(dut) as checker:
         model, table, register = checker.model, TABLES[name], CAPTURES[name]
         bit, status = 1 << table, getattr(dut, f"{name}_status")
@@ -294,7 +299,7 @@ async def capture(dut: Any, name: str) -> None:
         bank = int(dut.table_bank.value)
         await pulse(dut, **{f"{name}_status": structs.pack("capture_status_t", {"busy": 1, "done": 1})})
         assert await value_of(dut, COMMIT.name) == bit
-        later = Response.SLVERR if name == "floor" else Response.OKAY  # its change-over comes behind the solver
+        later = Response.SLVERR if name == "floor" else Response.OKAY  # its change-over follows the solver
         assert await write(dut, register.name, start) == later
         await pulse(dut, frame_start=1)
         await ClockCycles(dut.clk, 2)
@@ -305,10 +310,10 @@ async def capture(dut: Any, name: str) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(register=["STATUS", "CONTROL", "INTERRUPT_STATUS"])
 async def setting_wins_over_clearing(dut: Any, register: str) -> None:
-    """Events one clock before, in, and one clock after the clock in which a write clears what they set."""
+    """Raise events one cycle before, in, and one cycle after the cycle in which a write clears their bits."""
     async with checked(dut):
         counted = dict.fromkeys(COUNTERS, 1) | {"SATURATIONS": 9}
-        # A write takes effect in the clock after its address and data were taken, an event in the clock after it came.
+        # A write takes effect one cycle after its address and data were taken, an event one cycle after it came.
         for lag, survives in ((-1, False), (0, True), (1, True)):
             await write(dut, "CONTROL", CONTROL.pack(clear_counters=1))
             await pulse(dut, *EVENTS, saturations=9, settle=0)
@@ -323,7 +328,7 @@ async def setting_wins_over_clearing(dut: Any, register: str) -> None:
             assert await take(dut, "b") == Response.OKAY
             if register == "CONTROL":
                 for name, count in counted.items():
-                    assert await value_of(dut, name) == survives * count, f"{name}, events in clock {lag}"
+                    assert await value_of(dut, name) == survives * count, f"{name}, events in cycle {lag}"
             else:
                 bits = REGISTERS[register].mask("w1c")
                 assert await value_of(dut, register) == survives * bits, f"events in clock {lag}"
@@ -333,7 +338,7 @@ async def setting_wins_over_clearing(dut: Any, register: str) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(event=["record_valid", "row_long"])
 async def interrupts(dut: Any, event: str) -> None:
-    """The pin is high while the event's bit is set and not masked, and low once a 1 is written to the bit."""
+    """Check irq: high while the bit of an event is set and not masked, low after a 1 is written to the bit."""
     async with checked(dut):
         await write(dut, "INTERRUPT_MASK", WORD)
         await pulse(dut, event, settle=3)
@@ -350,7 +355,7 @@ async def interrupts(dut: Any, event: str) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def each_address_reads_its_own(dut: Any) -> None:
-    """Every register with bits of its own, so that another in its place, or two at once, would show at any address."""
+    """Give every register its own bits, so that a wrong register, or two at once, would be seen at any address."""
     async with checked(dut):
         rng = random.Random(cocotb.RANDOM_SEED)
         for _ in range(2):
@@ -364,16 +369,16 @@ async def each_address_reads_its_own(dut: Any) -> None:
             dut.record.value = rng.getrandbits(32 * len(RECORD))
             for table in CAPTURES:
                 getattr(dut, f"{table}_status").value = structs.pack("capture_status_t", {"busy": rng.getrandbits(1)})
-            await write(dut, COMMIT.name, WORD)  # from here on those that are not captured are pending
+            await write(dut, COMMIT.name, WORD)  # from here on the tables that are not being captured are pending
             for address in ADDRESSES:
-                await read(dut, address)  # compared by the checker
+                await read(dut, address)  # the checker compares it
             for table in CAPTURES:
                 getattr(dut, f"{table}_status").value = 0
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def what_shows_as_it_is(dut: Any) -> None:
-    """Each word of the record, and each level, is read as it stands in that clock, and at its own address."""
+    """Read each word of the record and each level at its address, with the value of that cycle."""
     async with checked(dut):
         rng = random.Random(cocotb.RANDOM_SEED)
         for _ in range(2):
@@ -388,7 +393,7 @@ async def what_shows_as_it_is(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(pressure=[0.0, 0.6])
 async def random_traffic(dut: Any, pressure: float) -> None:
-    """Reads, writes and events at random, responses refused with probability `pressure`."""
+    """Drive random reads, writes and events; ready of the responses is low with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     async with checked(dut, lag=5) as checker:
@@ -404,7 +409,7 @@ async def random_traffic(dut: Any, pressure: float) -> None:
 
         def any_data(offset: int) -> int:
             if offset == OFFSET["TABLE_SELECT"] and rng.random() < 0.7:
-                return rng.choice(tables)  # what is behind any other number takes no entries
+                return rng.choice(tables)  # tables of other numbers take no entries
             if offset == OFFSET["TABLE_INDEX"] and rng.random() < 0.7:
                 return rng.getrandbits(3)
             return rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), rng.getrandbits(4), WORD))
@@ -455,5 +460,5 @@ async def random_traffic(dut: Any, pressure: float) -> None:
         for kind, responses in checker.responses.items():
             counts = {response: responses.count(response) for response in Response}
             dut._log.info("%s: %s, %d table writes", kind, counts, len(checker.model.table_writes))
-            assert min(counts.values()) > 10, f"the {kind}s were too much alike: {counts}"
+            assert min(counts.values()) > 10, f"the test is void: the {kind}s were not varied enough: {counts}"
         assert len(checker.model.table_writes) > 5

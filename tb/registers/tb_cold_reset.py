@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A netlist of tactile_depth with unknown registers at power-up: what a cold reset makes of it, at the pins."""
+"""Netlist of tactile_depth with unknown registers at power-up: state after a cold reset, at the pins."""
 
 from __future__ import annotations
 
@@ -48,12 +48,13 @@ async def pending(dut: Any) -> str:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def banks_are_known_after_a_cold_reset(dut: Any) -> None:
-    """Reset alone leaves the banks unknown; with cold_rst every table is in its first bank; later resets leave it."""
+    """Reset: alone it leaves the banks unknown; with cold_rst every table uses its first bank, which later resets
+    keep."""
     for name in INPUTS:
         getattr(dut, name).value = 0
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     await reset(dut, cold=0)
-    assert "X" in (await pending(dut)).upper(), "the banks had a value at power-up: the test sees nothing"
+    assert "X" in (await pending(dut)).upper(), "the test is void: the banks had a value at power-up"
     await reset(dut, cold=1)
     for name in HANDSHAKES:
         assert getattr(dut, name).value.is_resolvable, f"{name} is unknown"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/registers/event_registers.sv against its model, every output in every clock."""
+"""event_registers against tactile_depth.registers.event_registers, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from tactile_depth.registers.register_map import WORD
 from tb import structs
 from tb.registers.register_bench import WHOLE, RegisterBench
 
-COUNTER_ORDER = (  # of the words of `counts`, from the lowest
+COUNTER_ORDER = (  # names of the words of `counts`, from the lowest
     *("FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "DARK_PIXELS", "DEPTH_DROPPED", "RECORDS_LOST", "SATURATIONS"),
 )
 READ = ("STATUS", "INTERRUPT_STATUS", LATENCY, *COUNTERS)
 
 
 class Bench(RegisterBench):
-    """The events."""
+    """Bench of event_registers."""
 
     idle: Mapping[str, int] = dict.fromkeys(
         ("events", "levels", "first_depth_latency", "first_depth_latency_valid", "interrupt_mask"), 0
@@ -64,12 +64,12 @@ class Bench(RegisterBench):
         self.model.reset()
 
     async def happen(self, *events: str, saturations: int = 0, **inputs: Any) -> int:
-        """Run a clock with these events."""
+        """Run a cycle with these events."""
         members = dict.fromkeys(events, 1) | {"saturations": saturations}
         return await self.clock(events=structs.pack("events_t", members), **inputs)
 
     def set_counters(self, **counts: int) -> None:
-        """Put counts into the core and its model: 2^32 events would take too long."""
+        """Put counts into the core and its model, because 2^32 events would take too long."""
         self.model.values.update(counts)
         words = (self.model.values[name] << 32 * n for n, name in enumerate(COUNTER_ORDER))
         self.dut.counts.value = sum(words)
@@ -89,7 +89,7 @@ class Bench(RegisterBench):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def each_event(dut: Any) -> None:
-    """An event sets its bits and counts once; a written 1 clears its bit alone; a level shows as it is."""
+    """Raise each event: it sets its bits and counts once. A written 1 clears only its bit. Levels are read directly."""
     assert {*EVENTS, "saturations"} == set(structs.members("events_t"))
     bench = Bench(dut)
     await bench.start()
@@ -118,7 +118,7 @@ async def each_event(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def an_event_in_the_clock_of_its_clearing(dut: Any) -> None:
-    """It is kept; one in the clock before is cleared."""
+    """Raise an event in the cycle that clears its bit: it is kept. One in the cycle before is cleared."""
     bench = Bench(dut)
     await bench.start()
     for register in ("STATUS", "INTERRUPT_STATUS", "CONTROL"):
@@ -133,7 +133,7 @@ async def an_event_in_the_clock_of_its_clearing(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def counters_stay_at_the_top(dut: Any) -> None:
-    """A counter near its end counts up to all ones, and stays there until it is cleared; every bit is counted."""
+    """Count up to all ones from a value near it, and through every bit: the counter stays there until it is cleared."""
     bench = Bench(dut)
     await bench.start()
     sources: dict[str, dict[str, Any]] = {name: {"events": event} for event, name in EVENT_COUNTERS.items()}
@@ -154,7 +154,7 @@ async def counters_stay_at_the_top(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def counters_count_for_themselves(dut: Any) -> None:
-    """Counters with any words in them count on, whatever the other ones hold."""
+    """Count on from random values: no counter depends on another one."""
     bench = Bench(dut)
     await bench.start()
     for _ in range(100):
@@ -166,7 +166,7 @@ async def counters_count_for_themselves(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def the_last_latency_stays(dut: Any) -> None:
-    """It changes with a valid one alone."""
+    """Change the latency: the register follows only while it is valid."""
     bench = Bench(dut)
     await bench.start()
     for clocks in (0x1234_5678, WORD, 0, 34_567, *(1 << bit for bit in range(32))):
@@ -177,7 +177,7 @@ async def the_last_latency_stays(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def the_interrupt(dut: Any) -> None:
-    """It is high while a bit is set and not masked, a clock late."""
+    """Check irq: high while a bit is set and not masked, one cycle late."""
     bench = Bench(dut)
     await bench.start()
     for event, bit in INTERRUPT_EVENTS.items():
@@ -195,7 +195,7 @@ async def the_interrupt(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def random_events(dut: Any) -> None:
-    """Random events, writes, reads and resets."""
+    """Drive random events, writes, reads and resets."""
     bench = Bench(dut)
     await bench.start()
     await bench.random_clocks((*READ, "STATUS", "INTERRUPT_STATUS", "CONTROL"))
@@ -203,7 +203,7 @@ async def random_events(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def other_offsets(dut: Any) -> None:
-    """An offset that differs in one bit from that of a register is not taken for it."""
+    """Access offsets that differ in one bit from that of a register: they are not taken for it."""
     bench = Bench(dut)
     await bench.start()
     await bench.other_offsets((*READ, "CONTROL"))

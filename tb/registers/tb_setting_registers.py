@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/registers/setting_registers.sv against its model, every output in every clock."""
+"""setting_registers against tactile_depth.registers.setting_registers, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tb.registers.register_bench import WHOLE, RegisterBench
 
 
 class Bench(RegisterBench):
-    """The settings."""
+    """Bench of setting_registers."""
 
     def __init__(self, dut: Any) -> None:
         super().__init__(dut)
@@ -36,7 +36,7 @@ class Bench(RegisterBench):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_values(dut: Any) -> None:
-    """After a reset every setting has the value of the map."""
+    """Reset: every setting has the value of the map."""
     bench = Bench(dut)
     await bench.start()
     for name in SETTINGS:
@@ -48,7 +48,7 @@ async def reset_values(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(name=list(SETTINGS))
 async def every_bit_and_byte(dut: Any, name: str) -> None:
-    """A write sets the bits of its strobed bytes, and no other bit."""
+    """Write single bits and bytes: a write sets the bits of its strobed bytes, and no other bit."""
     bench = Bench(dut)
     await bench.start()
     for strobe in range(16):
@@ -63,7 +63,7 @@ async def every_bit_and_byte(dut: Any, name: str) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def random_writes(dut: Any) -> None:
-    """Random writes, reads and resets."""
+    """Drive random writes, reads and resets."""
     bench = Bench(dut)
     await bench.start()
     await bench.random_clocks(tuple(SETTINGS))
@@ -71,7 +71,7 @@ async def random_writes(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def other_offsets(dut: Any) -> None:
-    """An offset that differs in one bit from that of a register is not taken for it."""
+    """Access offsets that differ in one bit from that of a register: they are not taken for it."""
     bench = Bench(dut)
     await bench.start()
     await bench.other_offsets(tuple(SETTINGS))

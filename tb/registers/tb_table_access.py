@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/registers/table_access.sv against its model, every output in every clock."""
+"""table_access against tactile_depth.registers.table_access, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PARAMETERS |= {"reference": "ReferenceWords", "floor": "FloorWords"}
 
 
 class Bench(RegisterBench):
-    """The access to the tables.
+    """Bench of table_access.
 
     Attributes
     ----------
@@ -32,8 +32,8 @@ class Bench(RegisterBench):
         sizes = {code: int(getattr(dut, PARAMETERS[name]).value) for name, code in TABLES.items()}
         self.model = TableAccess(sizes)
         self.written: list[tuple[int, int, int, int]] = []
-        self.asked = ""  # the register that was read in the clock before
-        self.had_entry: bool | None = None  # of the register last asked
+        self.asked = ""  # the register that was read in the previous cycle
+        self.had_entry: bool | None = None  # word of the register that was read last
         self.asked_low = False
 
     def word(self, name: str) -> int:
@@ -75,12 +75,12 @@ class Bench(RegisterBench):
         self.asked, self.had_entry = "", None
 
     async def choose(self, table: int, index: int) -> None:
-        """Set the index; the inputs name the table from then on."""
+        """Set the index; the inputs select the table from then on."""
         self.idle = {**self.idle, "select": table}
         await self.clock(write=(INDEX, index, WHOLE))
 
     async def ask(self, name: str) -> None:
-        """Read TABLE_HIGH or TABLE_LOW, with an answer that changes in every clock."""
+        """Read TABLE_HIGH or TABLE_LOW, with an answer that changes in every cycle."""
         await self.clock(read_at=name, read=1)
         for _ in range(4):
             await self.clock(table_answer=self.random.getrandbits(64))
@@ -95,7 +95,7 @@ class Bench(RegisterBench):
         }
 
     async def clock(self, write: Any = None, *arguments: Any, **inputs: Any) -> int:
-        """Run a clock; the bus has no write in the clock after a read of a table."""
+        """Run a cycle; the bus has no write in the cycle after a read of a table."""
         return await super().clock(None if self.asked else write, *arguments, **inputs)
 
 
@@ -106,7 +106,7 @@ def built(bench: Bench) -> dict[int, int]:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def entries_in_turn(dut: Any) -> None:
-    """TABLE_LOW moves on, from the last entry to the first; TABLE_HIGH stays, and reads the upper word."""
+    """Access entries in turn: TABLE_LOW increments the index, from the last entry to the first; TABLE_HIGH does not."""
     bench = Bench(dut)
     await bench.start()
     for table, size in built(bench).items():
@@ -128,7 +128,7 @@ async def entries_in_turn(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def neighbours_of_the_last_entry(dut: Any) -> None:
-    """The index runs round after the last entry alone."""
+    """Access the entries around the last one: the index returns to 0 after the last entry only."""
     bench = Bench(dut)
     await bench.start()
     for table, size in built(bench).items():
@@ -145,7 +145,7 @@ async def neighbours_of_the_last_entry(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def refused(dut: Any) -> None:
-    """A write outside of the table, of some bytes, or of a closed table; a read outside of the table."""
+    """Refuse writes outside of the table, of some bytes only, or to a closed table, and reads outside of the table."""
     bench = Bench(dut)
     await bench.start()
     for table, size in bench.model.sizes.items():
@@ -167,7 +167,7 @@ async def refused(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def every_bit_of_index_and_upper_word(dut: Any) -> None:
-    """A write sets the bits of its strobed bytes, and no other bit."""
+    """Write single bits and bytes: a write sets the bits of its strobed bytes, and no other bit."""
     bench = Bench(dut)
     await bench.start()
     for name in (INDEX, HIGH):
@@ -183,7 +183,7 @@ async def every_bit_of_index_and_upper_word(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_reset_in_a_read(dut: Any) -> None:
-    """A table that was asked in the clock before a reset is not read in it."""
+    """Reset one cycle after a read began: the table is not read in the reset."""
     bench = Bench(dut)
     await bench.start()
     table = next(iter(built(bench)))
@@ -199,7 +199,7 @@ async def a_reset_in_a_read(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def random_accesses(dut: Any) -> None:
-    """Random writes, reads, tables and resets."""
+    """Drive random writes, reads, tables and resets."""
     bench = Bench(dut)
     await bench.start()
     await bench.random_clocks((INDEX, HIGH, LOW, LOW, SIZE))
@@ -207,7 +207,7 @@ async def random_accesses(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def other_offsets(dut: Any) -> None:
-    """An offset that differs in one bit from that of a register is not taken for it."""
+    """Access offsets that differ in one bit from that of a register: they are not taken for it."""
     bench = Bench(dut)
     await bench.start()
     await bench.other_offsets((INDEX, HIGH, LOW, SIZE))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks hdl/registers/table_banks.sv against its model, every output in every clock."""
+"""table_banks against tactile_depth.registers.table_banks, every output in every cycle."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def status(**flags: int) -> int:
 
 
 class Bench(RegisterBench):
-    """The banks; the tables behind them follow in the next clock, unless a test holds them."""
+    """Bench of table_banks; the tables follow in the next cycle, unless a test holds them."""
 
     idle: Mapping[str, int] = dict.fromkeys(
         ("frame_start", "cold_rst", "table_in_use", "reference_status", "floor_status"), 0
@@ -80,7 +80,7 @@ class Bench(RegisterBench):
             self.model.bank = 0
 
     async def follow(self) -> None:
-        """Let all tables take the banks that are wanted."""
+        """Let all tables change to their next banks."""
         self.idle = {**self.idle, "table_in_use": self.model.bank}
         await self.clock(read_at=COMMIT.name)
 
@@ -100,7 +100,7 @@ class Bench(RegisterBench):
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def change_overs(dut: Any) -> None:
-    """Committed tables change over with the next frame, are pending until the table has followed, and are closed."""
+    """Commit: tables change over with the next frame, and are pending and closed until the table has followed."""
     bench = Bench(dut)
     await bench.start()
     present = bench.model.present
@@ -110,12 +110,12 @@ async def change_overs(dut: Any) -> None:
         assert await bench.clock(read_at=COMMIT.name) == 0
         await bench.clock(write=(COMMIT.name, WORD & ~ALL | tables, WHOLE))
         assert await bench.clock(read_at=COMMIT.name) == tables & present
-        await bench.clock(write=(COMMIT.name, 0, WHOLE))  # takes nothing back
+        await bench.clock(write=(COMMIT.name, 0, WHOLE))  # cancels nothing
         await bench.clock(frame_start=1)
         assert bench.model.bank == before ^ tables & present
         for _ in range(3):
             assert await bench.clock(read_at=COMMIT.name) == tables & present
-        await bench.clock(write=(COMMIT.name, tables, WHOLE))  # while it is pending: nothing
+        await bench.clock(write=(COMMIT.name, tables, WHOLE))  # no effect while it is pending
         await bench.follow()
         await bench.clock(frame_start=1)
         assert await bench.clock(read_at=COMMIT.name) == 0
@@ -123,7 +123,7 @@ async def change_overs(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def a_frame_that_starts_with_the_commit(dut: Any) -> None:
-    """It still uses the table before."""
+    """Start a frame in the cycle of the commit: it still uses the old table."""
     bench = Bench(dut)
     await bench.start()
     for _ in range(2):
@@ -137,7 +137,7 @@ async def a_frame_that_starts_with_the_commit(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def resets(dut: Any) -> None:
-    """A reset forgets what no frame has taken, and leaves the banks; a cold reset clears them."""
+    """Reset: commits that no frame has taken are dropped, and the banks stay. A cold reset clears the banks."""
     bench = Bench(dut)
     await bench.start()
     present = bench.model.present
@@ -159,7 +159,7 @@ async def resets(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(table=list(CAPTURES))
 async def captures(dut: Any, table: str) -> None:
-    """A start makes a request; a capture closes its table alone, and its end requests the change-over."""
+    """Capture: a start makes a request, the capture closes only its table, and its end commits it."""
     bench = Bench(dut)
     await bench.start()
     register, start, bit = CAPTURES[table], START[table], COMMIT.field(table).mask
@@ -176,7 +176,7 @@ async def captures(dut: Any, table: str) -> None:
     assert await bench.clock(read_at=COMMIT.name) == bench.model.present & ~bit
     await bench.clock(frame_start=1)
     await bench.follow()
-    # A frame that starts with the end of the capture still uses the table before.
+    # A frame that starts with the end of the capture still uses the old table.
     for together in (0, 1):
         before = bench.model.bank
         await bench.clock(write=(register.name, start, WHOLE), frame_start=together, **capturing(busy=1, done=1))
@@ -191,7 +191,7 @@ async def captures(dut: Any, table: str) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def random_writes(dut: Any) -> None:
-    """Random commits, starts, frames, captures and resets."""
+    """Drive random commits, starts, frames, captures and resets."""
     bench = Bench(dut)
     await bench.start()
     await bench.random_clocks((COMMIT.name, COMMIT.name, *(register.name for register in CAPTURES.values())))
@@ -199,7 +199,7 @@ async def random_writes(dut: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def other_offsets(dut: Any) -> None:
-    """An offset that differs in one bit from that of a register is not taken for it."""
+    """Access offsets that differ in one bit from that of a register: they are not taken for it."""
     bench = Bench(dut)
     await bench.start()
     await bench.other_offsets((COMMIT.name, *(register.name for register in CAPTURES.values())))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tactile_depth, driven and watched at its pins.
+"""Bench of tactile_depth: drivers and monitors at its pins.
 
-Whatever a test sends, `Pipeline.check` feeds the models with what the monitor saw on s_axis and compares every code,
-side-band, latency, counter and status bit; `contact` is compared in every clock. Each test begins with a device after a
-reset whose tables are as built.
+`Pipeline.check` feeds the models with the words that the monitor saw on s_axis and compares every code, side-band,
+latency, counter and status bit; `contact` is compared in every cycle. Each test begins with a device after a reset,
+with the tables of its build.
 """
 
 import os
@@ -33,11 +33,11 @@ from tb.tactile_depth.device_tables import Content, DeviceTables
 from tb.tactile_depth.scoreboard import STATUS, Checked, Scoreboard
 
 CONTROL, COMMIT = REGISTERS["CONTROL"], REGISTERS["TABLE_COMMIT"]
-HEAD_CLOCKS = 2  # from the clock of a pixel on the pins to that in which it is the first at the head of the pipeline
+HEAD_CLOCKS = 2  # cycles from a pixel at the pins to the same pixel at the head of the pipeline
 SKID_WORDS = 2  # beats that a stalled output holds
-FLAT = (135, 135, 135)  # a colour of no contact
+FLAT = (135, 135, 135)  # a colour without contact
 RESET_CLOCKS = 3
-RECORD_PROFILES = ("none", "one_in_4", "alternate", "random")  # profiles of a sink of records that lose none
+RECORD_PROFILES = ("none", "one_in_4", "alternate", "random")  # profiles of a sink that loses no record
 Stream = Sequence[Word | None]
 
 
@@ -74,7 +74,7 @@ class Pipeline:
         self.scoreboard = Scoreboard(self.config, self.contact)
 
     async def start(self) -> None:
-        """Start clock and monitors, reset, and write back the tables that the tests before have changed."""
+        """Start clock and monitors, reset, and restore the tables that earlier tests have changed."""
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         cocotb.start_soon(self.contact.watch_contact())
         cocotb.start_soon(self.contact.watch_events())
@@ -82,7 +82,7 @@ class Pipeline:
         await self.reset(RESET_CLOCKS)
         if device_tables.changed:
             await self.tables.restore()
-            await self.send(self.plain())  # takes them into use
+            await self.send(self.plain())  # its first pixel takes the tables into use
             await self.idle()
             device_tables.changed.clear()
             self.disturb(*self.profiles)
@@ -91,12 +91,12 @@ class Pipeline:
             await self.write("TIMEOUT", self.timeout)
 
     def disturb(self, offers: str, accepts: str) -> None:
-        """Begin the profiles of source and sink afresh."""
+        """Restart the profiles of source and sink."""
         self.source.offers = profile(offers, 1)
         self.sink.stall(profile(accepts, 2))
 
     async def reset(self, clocks: int) -> None:
-        """Reset for so many clocks; frames sent before no longer count."""
+        """Reset for a number of cycles; frames sent before are no longer expected."""
         self.source.abort()
         self.dut.rst.value = 1
         await ClockCycles(self.dut.clk, clocks)
@@ -107,7 +107,7 @@ class Pipeline:
         self.scoreboard.reset()
 
     def forget(self) -> None:
-        """Forget what the monitors saw."""
+        """Clear the records of the monitors."""
         if SECOND_CLIENT:
             self.sink.words()
         self.into.forget()
@@ -117,17 +117,18 @@ class Pipeline:
     # Frames.
 
     def frame(self) -> list[Word]:
-        """Words of a frame of random colours."""
+        """Return the words of a frame of random colours."""
         return video((self.random.getrandbits(24) for _ in range(self.pixels)), self.columns)
 
     def plain(self, colour: Sequence[int] = FLAT) -> list[Word]:
-        """Words of a frame of one colour."""
+        """Return the words of a frame of one colour."""
         return video([int(pack(colour))] * self.pixels, self.columns)
 
     def frame_of(self, slopes: np.ndarray) -> list[Word]:
-        """Words of a frame whose slopes are those of the gradient table nearest to `slopes`, (rows, columns, 2).
+        """Return the words of a frame whose slopes are those of the gradient table nearest to `slopes`, (rows, columns,
+        2).
 
-        With flat-fielding, by a reference of 128: of its colours.
+        With flat-fielding the reference is 128.
         """
         bits = self.config.bits_per_channel
         if self.config.flat_field:
@@ -141,26 +142,26 @@ class Pipeline:
         return video(pack(rgb), self.columns)
 
     def pressed(self, slope: float = 0.5) -> list[Word]:
-        """Words of a frame with a pyramid in it: up one side and down the other along both axes."""
+        """Return the words of a frame with a pyramid, whose slopes change their sign in the middle of both axes."""
         along, down = (np.where(np.arange(n) < n // 2, slope, -slope) for n in (self.columns, self.rows))
         return self.frame_of(np.stack(np.meshgrid(along, down), axis=-1))
 
     def places(self, fault: str) -> list[int]:
-        """Positions for a fault: first, last and inner pixels of first, last and inner rows."""
+        """Return positions for a fault: first, last and inner pixels of first, last and inner rows."""
         size, pixels = self.columns, self.pixels
         inner = self.rows // 2 * size
         chosen = (0, 1, size - 2, size - 1, size, inner + 3, inner + size - 1, pixels - size, pixels - 2, pixels - 1)
         return [position for position in chosen if position in positions(fault, self.rows, size)]
 
     def depth_of(self, *frames: Stream) -> np.ndarray:
-        """Depth codes (frames, rows, columns) that whole frames are expected to have."""
+        """Return the expected depth codes (frames, rows, columns) of whole frames."""
         words = [[word.data for word in frame if word is not None] for frame in frames]
         return self.scoreboard.model(words, self.tables.content)[0]
 
     # Traffic.
 
     async def send(self, *streams: Stream) -> None:
-        """Send words, one stream after another; None is a clock of pause."""
+        """Send words, one stream after another; None is a cycle of pause."""
         await self.source.send([word for stream in streams for word in stream])
 
     async def idle(self) -> None:
@@ -168,16 +169,16 @@ class Pipeline:
         for _ in range(400 * self.pixels // 64):
             if not STATUS.unpack(await self.read("STATUS"))["busy"]:
                 return
-        raise AssertionError("busy does not end")
+        raise AssertionError("STATUS.busy does not fall")
 
     async def until(self, reached: Callable[[], object]) -> None:
-        """Wait until something is so, clock by clock."""
+        """Wait until a condition holds, cycle by cycle."""
         while not reached():
             await RisingEdge(self.dut.clk)
 
     async def drain(self) -> None:
         """Wait until every frame has left. The source must be idle."""
-        await RisingEdge(self.dut.clk)  # the monitor may see the last word after the test does
+        await RisingEdge(self.dut.clk)  # the monitor may see the last word later than the test
         frames, _ = self.scoreboard.frames(self.into, self.timeout)
         words = sum(not frame.bad for frame in frames) * self.pixels
         await self.idle()
@@ -188,9 +189,9 @@ class Pipeline:
         await ClockCycles(self.dut.clk, 4 * self.columns)
 
     async def check(self, counters: bool = True, contents: Sequence[Content] | None = None) -> Checked:
-        """Let everything drain, then compare it with the models.
+        """Wait until every frame has left, then compare with the models.
 
-        `contents` is what the tables hold for each frame, where they differ.
+        `contents` holds the content of the tables for each frame, if it changes.
         """
         await self.drain()
         if SECOND_CLIENT:
@@ -212,7 +213,7 @@ class Pipeline:
 
 
 async def started(dut: Any, **arguments: Any) -> Pipeline:
-    """Return the device after a reset, its tables as built."""
+    """Return the device after a reset, with the tables of its build."""
     pipeline = Pipeline(dut, **arguments)
     await pipeline.start()
     return pipeline

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Watches `contact` in every clock and the records of contact events, and compares both with their models."""
+"""Monitor of `contact` in every cycle and of the records of contact events; it compares both with their models."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -30,7 +30,7 @@ class ContactWatch:
     packets : list of list of int
         Records that left, in words.
     takes : iterator of bool
-        When the sink of records takes a word.
+        Profile of the sink of records.
     """
 
     def __init__(self, dut: Any, config: Configuration, takes: Iterator[bool]) -> None:
@@ -41,23 +41,23 @@ class ContactWatch:
         self.registers = RegisterMirror(dut, *SETTINGS, "CONTROL")
         self.raised: list[int] = []
         self.packets: list[list[int]] = []
-        self.settings: list[Settings] = []  # when the first depth of each frame left
-        self.drops: list[tuple[int, bool, int, bool]] = []  # clock, contact, threshold, hold: under drop_frames
+        self.settings: list[Settings] = []  # cycle in which the first depth of each frame left
+        self.drops: list[tuple[int, bool, int, bool]] = []  # cycle, contact, threshold, hold, while drop_frames is set
 
     def forget(self) -> None:
-        """Forget what left."""
+        """Clear the records of what left."""
         self.raised.clear()
         self.packets.clear()
         self.settings.clear()
 
     def setting(self, register: str) -> int:
-        """Return the value of a register that the cores have in this clock."""
+        """Return the value of a register that the cores use in this cycle."""
         word = self.registers.words[register]
         return (word ^ 1 << 31) - (1 << 31) if "THRESHOLD" in register else word
 
     @property
     def depth_bits(self) -> int:
-        """Width of a depth on m_axis."""
+        """Return the width of a depth on m_axis."""
         return 8 * ((self.config.data_width + 7) // 8)
 
     def signed(self, data: Any) -> int:
@@ -70,7 +70,7 @@ class ContactWatch:
         return [self.signed(beat >> lane * self.depth_bits & mask) for lane in range(self.config.lanes)]
 
     async def watch_contact(self) -> None:
-        """Compare `contact` with the model's, which takes the beats and the registers of the clock before."""
+        """Compare `contact` with the model, which takes the beats and the registers of the previous cycle."""
         dut, model, edge = self.dut, self.comparator, RisingEdge(self.dut.clk)
         await edge
         clock, was = 1, False
@@ -86,7 +86,7 @@ class ContactWatch:
             self.registers.clock()
             control = CONTROL.unpack(self.registers.words["CONTROL"])
             hold, threshold = bool(control["hold_contact"]), self.setting("THRESHOLD")
-            if control["drop_frames"]:  # depth that does not leave counts too: see `check_with_drops`
+            if control["drop_frames"]:  # depth that is dropped counts too: see `check_with_drops`
                 self.drops.append((clock, contact, threshold, hold))
                 continue
             assert contact == model.contact, f"contact is {contact} in clock {clock}"
@@ -103,12 +103,13 @@ class ContactWatch:
                 model.beat(depth, bool(user) and not lane, threshold, hold)
 
     def check_with_drops(self, codes: np.ndarray, last_taken: Sequence[int]) -> None:
-        """Compare `contact` where frames were dropped: depth counts when it would leave if nothing stalled.
+        """Compare `contact` where frames were dropped: depth counts in the cycle in which it would leave without a
+        stall.
 
         Parameters
         ----------
         codes : int64 array (frames, rows, columns)
-            Depth of the frames sent while CONTROL.drop_frames was set, none of them malformed.
+            Depth of the frames sent while CONTROL.drop_frames was set, all of them well-formed.
         last_taken : sequence of int
             Clock of the last pixel of each.
         """
@@ -143,7 +144,7 @@ class ContactWatch:
                         words = []
                 dut.m_event_tready.value = int(next(self.takes))
                 await edge
-            assert dut.rst.value or (held is None and not words), "a record broke off"
+            assert dut.rst.value or (held is None and not words), "a record ended early"
 
     def check_events(self, depth: np.ndarray, taken: Sequence[int]) -> None:
         """Compare the record of each frame with the model's.

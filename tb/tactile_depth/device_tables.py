@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tables of tactile_depth: what the device was built with, what its frames use, and how to write them.
+"""Tables of tactile_depth: content of the build, content that frames use, and accesses by registers.
 
-Tables survive a reset, so what a test writes is still there in the next test. `changed` keeps the names of the tables
-that are not as built any more, and every test begins with `restore`, which writes those back.
+Tables survive a reset, so the next test finds the content that a test wrote. `changed` holds the names of the tables
+that differ from the build, and every test begins with `restore`, which writes them back.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from tb.axil import RegisterClient
 COMMIT = REGISTERS["TABLE_COMMIT"]
 ONE_WORD = ("coefficients", "reference", "floor")  # tables whose entries have no upper word
 
-changed: set[str] = set()  # tables of the device that are not as built: the one thing that outlives a test
+changed: set[str] = set()  # tables of the device that differ from the build; only this state outlives a test
 
 
 def one_word(low: np.ndarray) -> np.ndarray:
@@ -36,7 +36,7 @@ def one_word(low: np.ndarray) -> np.ndarray:
 
 
 def reference_entries(gains: np.ndarray) -> np.ndarray:
-    """Return the entries of the reference table from gains (node rows, node columns, 3): a channel 3 follows, of 0."""
+    """Return the entries of the reference table from gains (node rows, node columns, 3), with a fourth channel of 0."""
     return one_word(np.pad(gains, ((0, 0), (0, 0), (0, 1))))
 
 
@@ -55,7 +55,7 @@ class Content:
 
     @classmethod
     def built(cls, config: Configuration) -> Content:
-        """Return the content that the device comes up with."""
+        """Return the content of the build."""
         sensor = synthetic(config.bits_per_channel)
         entries = {}
         if config.gradient_model == "lut":
@@ -69,12 +69,12 @@ class Content:
         return cls(config, entries)
 
     def with_table(self, name: str, entries: np.ndarray) -> Content:
-        """Return this content with another table in place of one."""
+        """Return this content with one table replaced."""
         return Content(self.config, {**self.entries, name: entries.copy()})
 
     @cached_property
     def slopes(self) -> Tables:
-        """Tables of the models that turn colours into slopes."""
+        """Return the tables with which the models convert colours to slopes."""
         gains = None
         if "reference" in self.entries:
             nodes = self.entries["reference"][:, 0].reshape(*self.config.reference_nodes, 4)
@@ -86,7 +86,7 @@ class Content:
 
     @cached_property
     def floor(self) -> np.ndarray | None:
-        """Floor, int64 (node rows, node columns); None in a build without it."""
+        """Return the floor, int64 (node rows, node columns); None in a build without it."""
         floor = self.entries.get("floor")
         return None if floor is None else floor[:, 0].reshape(self.config.reference_nodes)
 
@@ -97,7 +97,7 @@ class DeviceTables:
     Attributes
     ----------
     content : Content
-        What the frames to come use.
+        Content that the next frames use.
     """
 
     def __init__(self, config: Configuration, registers: RegisterClient) -> None:
@@ -105,18 +105,18 @@ class DeviceTables:
         self.content = Content.built(config)
 
     def use(self, name: str, entries: np.ndarray) -> None:
-        """Expect the frames to come to use this table."""
+        """Expect the next frames to use this table."""
         changed.add(name)
         self.content = self.content.with_table(name, entries)
 
     async def restore(self) -> None:
-        """Write what was changed, as built, and commit it: the next frame takes it into use."""
+        """Write the content of the build to the changed tables and commit them: the next frame uses them."""
         for name in sorted(changed):
             await self.write(name, self.content.entries[name])
         await self.registers.write("TABLE_COMMIT", COMMIT.pack(**dict.fromkeys(changed, 1)))
 
     async def write(self, name: str, entries: np.ndarray) -> None:
-        """Write every entry of the bank that no frame uses, one after another, after the commit before is over."""
+        """Write every entry of the free bank in order, after the previous change-over."""
         while await self.registers.read("TABLE_COMMIT"):
             pass
         await self.registers.write("TABLE_SELECT", TABLES[name])
@@ -129,13 +129,13 @@ class DeviceTables:
         assert await self.registers.read("TABLE_INDEX") == 0, "TABLE_INDEX does not wrap at the end of the table"
 
     async def write_entry(self, name: str, index: int, low: int, high: int) -> Response:
-        """Write one entry of the bank that no frame uses; return the response to its lower word."""
+        """Write one entry of the free bank; return the response to its lower word."""
         for register, value in (("TABLE_SELECT", TABLES[name]), ("TABLE_INDEX", index), ("TABLE_HIGH", high)):
             assert await self.registers.write(register, value) == Response.OKAY
         return await self.registers.write("TABLE_LOW", low)
 
     async def read(self, name: str) -> np.ndarray:
-        """Return the entries of the bank that no frame uses, int64 (entries, 2), as signed words."""
+        """Return the entries of the free bank, int64 (entries, 2), as signed words."""
         await self.registers.write("TABLE_SELECT", TABLES[name])
         await self.registers.write("TABLE_INDEX", 0)
         words = []
@@ -145,7 +145,7 @@ class DeviceTables:
         return np.array(words, np.uint32).astype(np.int32).astype(np.int64)
 
     async def commit(self, name: str, entries: np.ndarray | None = None) -> None:
-        """Commit what was written; with `entries` expect the frames to come to use it."""
+        """Commit the table; with `entries` expect the next frames to use them."""
         changed.add(name)
         assert await self.registers.write("TABLE_COMMIT", COMMIT.pack(**{name: 1})) == Response.OKAY
         if entries is not None:

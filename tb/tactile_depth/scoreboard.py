@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scoreboard of tactile_depth: expected frames, counters and status bits, from what the monitor saw on s_axis."""
+"""Scoreboard of tactile_depth: frames, counters and status bits expected from the words seen on s_axis."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Checked:
     faults : list of str
         Faults in their order.
     taken : list of (int, int)
-        Clocks of the first and of the last pixel of each frame, the broken ones included.
+        Cycles of the first and of the last pixel of each frame, the broken ones included.
     first_depths : list of int
-        Clocks in which the first depth of each frame that left stood on the pins.
+        Cycles in which the first depth of each frame was first at the pins.
     """
 
     codes: np.ndarray
@@ -52,7 +52,7 @@ class Checked:
 
 
 class Scoreboard:
-    """Expected values; every frame is compared on all codes, side-bands and latencies.
+    """Expected values, and the comparison of all codes, side-bands and latencies of every frame.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Scoreboard:
     latency : int
         Expected value of FIRST_DEPTH_LATENCY, as measured at the pins.
     dark_level : int
-        Value of the register that the frames to come use.
+        Value of the register that the next frames use.
     """
 
     def __init__(self, config: Configuration, watch: ContactWatch) -> None:
@@ -74,7 +74,7 @@ class Scoreboard:
         self.reset()
 
     def reset(self) -> None:
-        """Expect what a reset leaves."""
+        """Expect the state after a reset."""
         self.counters = dict.fromkeys(COUNTERS, 0)
         self.sticky: set[str] = set()
         self.latency = self.dark_level = 0
@@ -88,7 +88,7 @@ class Scoreboard:
     def model(self, words: Any, contents: Content | Sequence[Content]) -> tuple[np.ndarray, int]:
         """Return the depth codes (frames, rows, columns) of pixel words, and the number of values clipped.
 
-        `contents` is what the tables hold for all frames, or for each.
+        `contents` is the content of the tables, one for all frames or one for each.
         """
         monitor = Monitor()
         each = [contents] * len(words) if isinstance(contents, Content) else contents
@@ -105,7 +105,7 @@ class Scoreboard:
         return guarded.frames, guarded.faults
 
     def depth(self, out: AxisMonitor, count: int) -> np.ndarray:
-        """Return the depth codes (frames, rows, columns) that left, of so many frames, and check their side-bands."""
+        """Return the depth codes (frames, rows, columns) of `count` frames that left, and check their side-bands."""
         beats = out.words
         assert len(beats) == count * self.pixels, f"{len(beats)} beats left, expected those of {count} frames"
         for place, beat in enumerate(beats):
@@ -117,10 +117,10 @@ class Scoreboard:
     def used(
         self, into: AxisMonitor, out: AxisMonitor, candidates: Sequence[Sequence[Content]], timeout: int = 0
     ) -> list[Content]:
-        """Return the content of the tables that each frame used, of those that it may have used.
+        """Return the content of the tables that each frame used, among the candidates of each.
 
-        The pins do not tell the clock in which a stalled frame takes its tables. Where there are several candidates,
-        the whole depth map tells them apart; where none gives the map that left, the first is returned.
+        The pins do not show the cycle in which a stalled frame takes its tables. If there are several candidates, the
+        whole depth map distinguishes them; if none gives the map that left, the first is returned.
         """
         frames, _ = self.frames(into, timeout)
         left = iter(self.depth(out, sum(not frame.bad for frame in frames)))
@@ -138,10 +138,10 @@ class Scoreboard:
     def compare(
         self, into: AxisMonitor, out: AxisMonitor, timeout: int, contents: Content | Sequence[Content], drained: bool
     ) -> Checked:
-        """Compare what left with the models of what was taken, and count it.
+        """Compare the output with the models of the input, and update the expected counters.
 
-        `drained` asserts the latency from the last pixel to the first depth, because no sink stalled before it, and
-        to the last depth of each frame of which no beat waited.
+        `drained` also checks the latency from the last pixel to the first depth, which holds if no sink stalled before
+        it, and to the last depth of each frame of which no beat waited.
         """
         frames, faults = self.frames(into, timeout)
         expected, clipped = self.model([frame.pixels for frame in frames], contents)
@@ -169,18 +169,20 @@ class Scoreboard:
         return Checked(codes, faults, taken, first_depths)
 
     async def check_registers(self, registers: RegisterClient, counters: bool = True) -> None:
-        """Compare counters, status bits, settings and the latency that the hardware counted."""
+        """Compare counters, status bits, settings and the latency that the hardware measured."""
         if counters:
             have = {name: await registers.read(name) for name in self.counters}
             assert have == self.counters, f"counters are {have}, expected {self.counters}"
-        await registers.read("STATUS")  # the last events are in the bits of the next read
+        await registers.read("STATUS")  # the next read has the bits of the last events
         status = STATUS.unpack(await registers.read("STATUS"))
-        assert not status.pop("busy"), "busy after everything left"
+        assert not status.pop("busy"), "STATUS.busy is high after every frame has left"
         assert status.pop("contact") == self.watch.comparator.contact
         assert status.pop("touching") == self.watch.events.touching
         bits = {name for name, value in status.items() if value}
         assert bits == self.sticky, f"sticky bits {bits}, expected {self.sticky}"
         for name in SETTINGS:
-            assert await registers.read(name) == self.watch.setting(name) % 2**32, f"{name} is not what the cores have"
+            assert await registers.read(name) == self.watch.setting(name) % 2**32, (
+                f"{name} differs from the value that the cores use"
+            )
         latency = await registers.read("FIRST_DEPTH_LATENCY")
         assert latency == self.latency, f"FIRST_DEPTH_LATENCY is {latency}, at the pins it was {self.latency}"

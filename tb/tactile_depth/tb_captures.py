@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Captures of tactile_depth: the reference and the floor measured from frames, and dark pixels."""
+"""Captures of tactile_depth: reference and floor measured from frames, and dark pixels."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,13 +23,13 @@ DARK_LEVEL = 50
 
 
 async def capturing(pipeline: Pipeline, register: str) -> bool:
-    """Return whether a capture is under way."""
+    """Return True while a capture runs."""
     return bool(REGISTERS[register].unpack(await pipeline.read(register))["busy"])
 
 
 @case(Level.FORMATS, needs=lambda config: not config.flat_field)
 async def a_capture_without_a_reference_is_refused(dut: Any) -> None:
-    """The build has no flat field."""
+    """Start a capture of the reference in a build without a flat field: it is refused."""
     pipeline = await started(dut)
     assert await pipeline.write("CAPTURE", CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
     assert not await capturing(pipeline, "CAPTURE")
@@ -37,7 +37,7 @@ async def a_capture_without_a_reference_is_refused(dut: Any) -> None:
 
 @case(Level.FORMATS, needs=lambda config: not config.auto_zero)
 async def a_capture_without_a_floor_is_refused(dut: Any) -> None:
-    """The build has no auto-zero."""
+    """Start a capture of the floor in a build without auto-zero: it is refused."""
     pipeline = await started(dut)
     assert await pipeline.write("FLOOR_CAPTURE", FLOOR_CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
     assert not await capturing(pipeline, "FLOOR_CAPTURE")
@@ -79,7 +79,7 @@ async def floor(dut: Any) -> None:
     stream: Sequence[Stream] = frames[0], broken(pipeline.frame(), "row_short", 1, pipeline.columns), *frames[1:]
     more = (pipeline.pressed(pipeline.random.uniform(-0.3, 0.3)) for _ in range(late))
     sending = cocotb.start_soon(pipeline.send(*stream, *more))
-    asked = answered = 0  # clocks of the last read that says busy, and of the first that does not
+    asked = answered = 0  # cycles of the last read with busy set, and of the first without
     while not answered:
         began = into.clock_count
         if await capturing(pipeline, "FLOOR_CAPTURE"):
@@ -108,7 +108,7 @@ async def floor(dut: Any) -> None:
     tables.use("floor", measured(*frames[:2]))
     await pipeline.send(frames[0], frames[1])
     await pipeline.check()
-    # One capture after another, the second as soon as it is let in.
+    # One capture after another, the second as soon as it is accepted.
     start = FLOOR_CAPTURE.pack(start=1)
     for frame in frames[1:]:
         while await pipeline.write("FLOOR_CAPTURE", start) != Response.OKAY:
@@ -128,7 +128,7 @@ async def floor(dut: Any) -> None:
 
 @case(Level.FORMATS, needs=lambda config: config.flat_field)
 async def dark_pixels_are_held(dut: Any) -> None:
-    """Anywhere in a row, and a whole row of them; each is counted."""
+    """Send dark pixels anywhere in a row, and a whole dark row: each is replaced and counted."""
     pipeline = await started(dut)
     words = [word.data for word in pipeline.pressed()]
     for row in range(pipeline.rows):

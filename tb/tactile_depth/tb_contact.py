@@ -14,21 +14,22 @@ from tb.tactile_depth.bench import CONTROL, started
 @case(Level.FORMATS, whole_rows=True)
 @cocotb.parametrize(accepts=up_to({Level.FORMATS: ["none"], Level.WHOLE: ["random"]}))
 async def contact(dut: Any, accepts: str) -> None:
-    """Raised by the deciding beat, cleared by the next frame's first, held by its bit."""
+    """Check `contact`: set by the deciding beat, cleared by the first beat of the next frame, held by its register
+    bit."""
     pipeline = await started(dut, accepts=accepts)
     pressed, flat = pipeline.pressed(), pipeline.plain()
     codes = pipeline.depth_of(pressed, flat)
     flat_peak, peak = int(codes[1].max()), int(codes[0].max())
-    assert flat_peak < peak, "the test is void: pressing is no deeper than not pressing"
+    assert flat_peak < peak, "the test is void: the press is not deeper than the frame without contact"
 
     await pipeline.send(pressed)
     await pipeline.check()
-    assert not pipeline.contact.comparator.contact, "raised by the threshold after reset"
+    assert not pipeline.contact.comparator.contact, "contact was set with the threshold after reset"
 
     await pipeline.write("THRESHOLD", peak)
     await pipeline.send(pressed)
     await pipeline.check()
-    assert not pipeline.contact.comparator.contact, "raised by a depth equal to the threshold"
+    assert not pipeline.contact.comparator.contact, "contact was set by a depth equal to the threshold"
 
     await pipeline.write("THRESHOLD", peak - 1)
     await pipeline.send(pressed)
@@ -50,7 +51,7 @@ async def contact(dut: Any, accepts: str) -> None:
     assert dut.contact.value, "not held"
     await pipeline.write("CONTROL", 0)
     await ClockCycles(dut.clk, 2)
-    assert not dut.contact.value, "still held after hold_contact was cleared"
+    assert not dut.contact.value, "contact is still held after hold_contact was cleared"
     await pipeline.send(flat)
     await pipeline.check()
     assert not dut.contact.value
@@ -62,13 +63,14 @@ async def contact(dut: Any, accepts: str) -> None:
 
 @case()
 async def records_at_the_limits(dut: Any) -> None:
-    """Both thresholds at a depth of the frame and one below it, the least area at that of the frame and one above."""
+    """Set both thresholds to a depth of the frame and one below it, and the least area to that of the frame and one
+    above."""
     pipeline = await started(dut)
     pressed = pipeline.pressed()
     codes = pipeline.depth_of(pressed)
     depths = np.unique(codes)
     chosen = [int(depth) for depth in depths[:: max(1, len(depths) // 4)]]
-    # One threshold stands where it always decides, at once, against what the other says of the frame before.
+    # One threshold always decides at once, against the decision of the other one on the previous frame.
     for name, other, always in (
         ("THRESHOLD", "OFF_THRESHOLD", int(depths[-1])),
         ("OFF_THRESHOLD", "THRESHOLD", int(depths[0])),
@@ -79,7 +81,7 @@ async def records_at_the_limits(dut: Any) -> None:
                 await pipeline.write(name, code)
                 await pipeline.send(pressed, pressed)
                 await pipeline.check(counters=False)
-    # Most depths below 0, then all: their sum is, and at last the peak.
+    # Most depths are below 0, then all: first the sum is negative, at last the peak too.
     for name in ("THRESHOLD", "OFF_THRESHOLD"):
         await pipeline.write(name, -(1 << pipeline.config.data_width - 1))
     await pipeline.send(pipeline.pressed(-0.5))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Malformed frames through tactile_depth: dropped whole, each counted and flagged, and the next good frame is right."""
+"""Malformed frames through tactile_depth: each is dropped whole, counted and flagged, and the next good frame is
+right."""
 
 from itertools import product
 from typing import Any
@@ -20,7 +21,7 @@ TIMEOUT = 60  # clocks
 @case(whole_rows=True)
 @cocotb.parametrize(fault=named(FAULTS), accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
 async def malformed(dut: Any, fault: str, accepts: str) -> None:
-    """A, B, A back to back, B broken: B never leaves nor raises contact, both A come out the same."""
+    """Send A, B, A back to back with B broken: B never leaves nor sets contact, and both A are right."""
     timeout = TIMEOUT if fault == "timed_out" else 0
     pipeline = await started(dut, accepts=accepts, timeout=timeout)
     flat, pressed = pipeline.plain(), pipeline.pressed()
@@ -34,7 +35,7 @@ async def malformed(dut: Any, fault: str, accepts: str) -> None:
         assert checked.faults == [fault], f"{fault} at {position}: {checked.faults}"
         assert len(checked.codes) == 2
         np.testing.assert_array_equal(checked.codes[0], checked.codes[1])
-        assert not pipeline.contact.comparator.contact, f"{fault} at {position} raised contact"
+        assert not pipeline.contact.comparator.contact, f"{fault} at {position} set contact"
 
     bit = STATUS.pack(**{STICKY.get(fault, fault): 1})
     await pipeline.write("STATUS", WORD ^ bit)
@@ -51,10 +52,10 @@ async def malformed(dut: Any, fault: str, accepts: str) -> None:
 @case()
 @cocotb.parametrize(fault=up_to({Level.WHOLE: named(FAULTS[-1:]), Level.LONG: named(FAULTS[:-1])}))
 async def faults_side_by_side(dut: Any, fault: str) -> None:
-    """A broken frame between whole and broken ones: each is counted by itself, and the whole ones are right."""
+    """Send a broken frame between whole and broken ones: each is counted, and the whole ones are right."""
     timeout = TIMEOUT if fault == "timed_out" else 0
     pipeline = await started(dut, timeout=timeout)
-    silent = timeout + pipeline.pixels  # the guard may be filling up the frame before
+    silent = timeout + pipeline.pixels  # the guard may still fill the previous frame
     for before, after in product(("good", "bad"), repeat=2):
         sides: dict[str, Stream] = {
             "good": pipeline.frame(),
@@ -64,14 +65,15 @@ async def faults_side_by_side(dut: Any, fault: str) -> None:
         await pipeline.send(pipeline.frame(), sides[before], middle, sides[after], pipeline.frame())
         checked = await pipeline.check()
         assert len(checked.codes) == 2 + (before == "good") + (after == "good")
-        own = [] if fault == "start_missing" and before == "bad" else [fault]  # the rest of the frame before
+        # Words without a start right after a broken frame belong to that frame.
+        own = [] if fault == "start_missing" and before == "bad" else [fault]
         assert checked.faults == [*["row_short"] * (before == "bad"), *own, *["row_short"] * (after == "bad")]
 
 
 @case(Level.FORMATS, whole_rows=True)
 @cocotb.parametrize(accepts=["none", "random"])
 async def every_fault_in_a_row(dut: Any, accepts: str) -> None:
-    """Broken frames between good ones and right after one another, all in flight together."""
+    """Send broken frames between good ones and one after another, several in flight at once."""
     pipeline = await started(dut, accepts=accepts)
     faults = [fault for fault in FAULTS if fault != "timed_out"]
     streams: list[Stream] = []
@@ -85,7 +87,8 @@ async def every_fault_in_a_row(dut: Any, accepts: str) -> None:
 
 @case()
 async def starts_one_after_another(dut: Any) -> None:
-    """Each start of frame breaks the frame before it; the last of them is kept, its latency its own."""
+    """Send starts of frame one after another: each breaks the frame before it, and the last frame is whole, with its
+    own latency."""
     pipeline = await started(dut)
     for count in (1, 2, 3, 5):
         starts = [word for _ in range(count) for word in pipeline.frame()[:1]]
@@ -95,7 +98,8 @@ async def starts_one_after_another(dut: Any) -> None:
 
 @case()
 async def words_before_the_first_frame(dut: Any) -> None:
-    """Dropped and counted as one; the frame after them is right."""
+    """Send words before the first frame: they are dropped and counted as one fault, and the frame after them is
+    right."""
     pipeline = await started(dut)
     await pipeline.send([word._replace(user=0) for word in pipeline.frame()[:37]], pipeline.frame())
     assert (await pipeline.check()).faults == ["start_missing"]
@@ -103,7 +107,7 @@ async def words_before_the_first_frame(dut: Any) -> None:
 
 @case(whole_rows=True)
 async def silence(dut: Any) -> None:
-    """Without the time-out register a frame is waited for; with it, for as many clocks as it says."""
+    """Pause inside a frame: with TIMEOUT at 0 the pipeline waits for ever, otherwise for that many cycles."""
     pipeline = await started(dut)
     frame = pipeline.frame()
     await pipeline.send(frame[:100], [None] * 10 * pipeline.pixels, frame[100:])
@@ -115,7 +119,7 @@ async def silence(dut: Any) -> None:
     for clocks, waited in ((timeout, True), (timeout + 1, False), (10 * timeout, False)):
         await pipeline.send(frame[:100], [None] * clocks, frame[100:], [None] * 3 * timeout, frame)
         left = len((await pipeline.check()).codes)
-        assert left == 1 + waited, f"{left} frames left after {clocks} silent clocks with TIMEOUT {timeout}"
+        assert left == 1 + waited, f"{left} frames left after {clocks} silent cycles with TIMEOUT {timeout}"
 
 
 @case()
@@ -123,7 +127,7 @@ async def silence(dut: Any) -> None:
     offers=["none", "random"], accepts=up_to({Level.WHOLE: ["alternate", "random"], Level.LONG: ["none"]})
 )
 async def random_streams(dut: Any, offers: str, accepts: str) -> None:
-    """Good and broken frames, stray words and pauses at random."""
+    """Send random streams of good and broken frames, stray words and pauses."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
     rng = pipeline.random
     for _ in range(12):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames through tactile_depth: codes, latencies and intervals under gaps and stalls, at the limits of the words."""
+"""Frames through tactile_depth: codes, latencies and intervals with gaps and stalls, at the limits of the words."""
 
 import json
 import os
@@ -21,11 +21,11 @@ from tb.tactile_depth.scoreboard import STATUS
 
 SOLVER = list(COLUMNS).index(configuration().solver)
 PAIRS = list(product(PROFILES, PROFILES))  # of gaps and stalls
-OFTEN = [("random", "random"), ("random", "one_in_4")]  # pairs that every build is tried with
+OFTEN = [("random", "random"), ("random", "one_in_4")]  # pairs that every build is tested with
 
 
 def half(solver: int) -> list[tuple[str, str]]:
-    """Return every second pair of gaps and stalls: the two solvers together are tried with all of them."""
+    """Return every second pair of gaps and stalls; the two solvers together are tested with all pairs."""
     return [pair for number, pair in enumerate(PAIRS) if (number + number // len(PROFILES)) % 2 == solver]
 
 
@@ -35,9 +35,9 @@ def others(pairs: list[tuple[str, str]], but: list[tuple[str, str]]) -> list[tup
 
 @case(Level.FIRST, whole_rows=True)
 async def the_configuration_is_that_of_the_models(dut: Any) -> None:
-    """Every parameter that the models derive is the device's, but for those that the test of the build replaced.
+    """Compare every parameter that the models derive with the device, except those that the test replaced.
 
-    The pitch is not derived: it belongs to a calibration.
+    The pitch belongs to a calibration and is not derived.
     """
     pipeline = await started(dut)
     derived = top_parameters(pipeline.config) | json.loads(os.environ.get("PARAMETERS", "{}"))
@@ -49,7 +49,7 @@ async def the_configuration_is_that_of_the_models(dut: Any) -> None:
 
 @case(Level.FIRST, whole_rows=True)
 async def one_frame(dut: Any) -> None:
-    """It drains by itself, nothing follows; latencies are those of tactile_depth.latency."""
+    """Send one frame: it drains without a successor, with the latencies of tactile_depth.latency."""
     pipeline = await started(dut)
     await pipeline.send(pipeline.frame())
     await pipeline.check()
@@ -59,7 +59,7 @@ async def one_frame(dut: Any) -> None:
 
 @case(whole_rows=True)
 async def nothing_unknown(dut: Any) -> None:
-    """Handshakes, side-bands and contact are 0 or 1 from the second clock after reset on, valid or not."""
+    """Check that handshakes, side-bands and contact are 0 or 1 from the second cycle after reset on, valid or not."""
     pipeline = await started(dut, accepts="random")
     await RisingEdge(dut.clk)
     sending = cocotb.start_soon(pipeline.send(pipeline.frame()))
@@ -75,7 +75,7 @@ async def nothing_unknown(dut: Any) -> None:
 
 @case(Level.STREAM)
 async def back_to_back(dut: Any) -> None:
-    """One frame every N^2 clocks exactly, and every latency the same."""
+    """Send frames back to back: one leaves exactly every N^2 cycles, and every latency is the same."""
     pipeline = await started(dut)
     frames = 6
     sending = cocotb.start_soon(pipeline.send(*(pipeline.frame() for _ in range(frames))))
@@ -86,7 +86,7 @@ async def back_to_back(dut: Any) -> None:
     await sending
     checked = await pipeline.check()
     (first, _), *_, (_, last) = checked.taken
-    assert last - first == frames * pipeline.pixels - 1, "the input was not taken at one pixel a clock"
+    assert last - first == frames * pipeline.pixels - 1, "the input was not taken at one pixel per cycle"
     latencies = {depth - first for depth, (first, _) in zip(checked.first_depths, checked.taken, strict=True)}
     assert latencies == {first_depth_latency(pipeline.config)}
     intervals = {after - before for before, after in pairwise(checked.first_depths)}
@@ -108,7 +108,7 @@ async def back_to_back(dut: Any) -> None:
     )
 )
 async def gaps_and_stalls(dut: Any, offers: str, accepts: str) -> None:
-    """The same codes, nothing lost. Under stalls enough frames that their ends meet a stalled output too."""
+    """Send frames with gaps and stalls: no code changes or is lost. Some frames end while the output is stalled."""
     pipeline = await started(dut, offers=offers, accepts=accepts)
     await pipeline.send(*(pipeline.frame() for _ in range(2 if accepts == "none" else 5)))
     await pipeline.check()
@@ -116,7 +116,7 @@ async def gaps_and_stalls(dut: Any, offers: str, accepts: str) -> None:
 
 @case(whole_rows=True)
 async def a_sink_that_waits_for_long(dut: Any) -> None:
-    """The input stops; then everything comes, and a frame sent after it is timed as ever."""
+    """Stall the sink for long: the input stops, then every frame leaves, and a later frame has its usual latency."""
     pipeline = await started(dut)
     pipeline.stalled = True
     pipeline.sink.stall(repeat(False))
@@ -136,7 +136,7 @@ async def a_sink_that_waits_for_long(dut: Any) -> None:
 
 @case()
 async def many_frames(dut: Any) -> None:
-    """Ties of every rounding and clips of all that can: random colours."""
+    """Reach ties of every rounding, and clip every value that can clip, with random colours."""
     pipeline = await started(dut)
     await pipeline.send(*(pipeline.frame() for _ in range(MANY)))
     await pipeline.check()
@@ -145,7 +145,8 @@ async def many_frames(dut: Any) -> None:
 @case(Level.FORMATS, whole_rows=True)
 @cocotb.parametrize(accepts=["none", "random"])
 async def saturation(dut: Any, accepts: str) -> None:
-    """A pyramid deeper than full scale: clipped where the model clips, counted, flagged; never wrapped."""
+    """Send a pyramid deeper than full scale: it is clipped where the model clips, counted and flagged, and never
+    wraps."""
     pipeline = await started(dut, accepts=accepts)
     steep = pipeline.pressed(slope=1.0)
     await pipeline.send(steep, pipeline.frame(), steep)
@@ -162,9 +163,9 @@ async def saturation(dut: Any, accepts: str) -> None:
 @case(Level.FORMATS)
 @cocotb.parametrize(taken=[0, 5])
 async def depth_frames_are_dropped(dut: Any, taken: int) -> None:
-    """With drop_frames a sink that stands still costs frames and no time; the next one after it is whole.
+    """Stall the sink with drop_frames set: frames are lost, the input never waits, and the next frame is whole.
 
-    The sink takes about so many words of the first frame.
+    The sink takes about `taken` words of the first frame.
     """
     pipeline = await started(dut)
     frames = [pipeline.plain(), pipeline.plain(), pipeline.pressed(), pipeline.plain()]
@@ -178,10 +179,10 @@ async def depth_frames_are_dropped(dut: Any, taken: int) -> None:
     await pipeline.send(frames[2][pipeline.columns :])
     assert pipeline.into.clock_count - began < 3 * pipeline.pixels + pause + 8, "the input waited"
     await ClockCycles(dut.clk, first_depth_latency(pipeline.config) + pipeline.pixels)
-    assert dut.contact.value, "contact waits for a sink that stands still"
+    assert dut.contact.value, "contact waits for a stalled sink"
     latency = await pipeline.read("FIRST_DEPTH_LATENCY")
-    assert latency == first_depth_latency(pipeline.config), f"{latency}: of a frame that was dropped"
-    assert STATUS.unpack(await pipeline.read("STATUS"))["busy"], "not busy while two depths wait"
+    assert latency == first_depth_latency(pipeline.config), f"{latency} is the latency of a frame that was dropped"
+    assert STATUS.unpack(await pipeline.read("STATUS"))["busy"], "STATUS.busy is low while two depths wait"
     assert await pipeline.read("DEPTH_DROPPED") == 3
     assert STATUS.unpack(await pipeline.read("STATUS"))["depth_dropped"]
     gone = len(pipeline.out.words)
@@ -193,9 +194,9 @@ async def depth_frames_are_dropped(dut: Any, taken: int) -> None:
     await ClockCycles(dut.clk, 4 * pipeline.columns)
     left = [pipeline.contact.signed(beat.data) for beat in pipeline.out.words]
     part = codes[0].flat[: gone + pipeline.held]
-    assert left == [*part.tolist(), *codes[3].flat], "the words that had found room, then a whole frame"
+    assert left == [*part.tolist(), *codes[3].flat], "the words left that fit before the stall, then a whole frame"
     assert await pipeline.read("FRAMES_OUT") == 1
     assert await pipeline.read("FIRST_DEPTH_LATENCY") == latency
-    assert len(pipeline.contact.packets) == len(frames), "each frame leaves its record"
+    assert len(pipeline.contact.packets) == len(frames), "each frame has its record"
     pipeline.contact.check_with_drops(codes, pipeline.into.taken[pipeline.pixels - 1 :: pipeline.pixels])
     await pipeline.reset(2)

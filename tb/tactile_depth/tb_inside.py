@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one test of tactile_depth that sets a register inside: counts that would take too long to reach at the pins."""
+"""Test of tactile_depth that sets a register inside, because its count takes too long to reach at the pins."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from tb.tactile_depth.bench import started
 
 @case(inside=True)
 async def the_clock_comes_round(dut: Any) -> None:
-    """Wherever the count of clocks returns to 0 while a frame is in flight, its latency is that of any other."""
+    """Let the count of cycles return to 0 anywhere while a frame is in flight: the measured latency does not change."""
     pipeline = await started(dut)
     for ahead in (5, pipeline.pixels // 2, pipeline.pixels + 5, first_depth_latency(pipeline.config)):
         dut.u_video.now.value = (1 << 32) - ahead

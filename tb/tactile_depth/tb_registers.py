@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Registers of tactile_depth while frames come and go: no access disturbs a code or a latency."""
+"""Registers of tactile_depth while frames stream: no access disturbs a code or a latency."""
 
 from itertools import repeat
 from typing import Any
@@ -23,21 +23,22 @@ TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
 
 
 def as_sent(config: Configuration) -> bool:
-    """Return whether the build has the gradient table alone: no reference and no floor."""
+    """Return True if the build has the gradient table only, without a reference and without a floor."""
     return not config.flat_field and not config.auto_zero
 
 
 async def busy(pipeline: Pipeline) -> bool:
-    """Return STATUS.busy."""
+    """Read STATUS.busy."""
     return bool(STATUS.unpack(await pipeline.read("STATUS"))["busy"])
 
 
 @case()
 async def busy_while_a_frame_is_in_flight(dut: Any) -> None:
-    """From its first pixel to its last depth, whatever the source pauses; and not before or after."""
+    """Read busy while a frame with pauses streams: it is set from the first pixel to the last depth, and not before or
+    after."""
     pipeline = await started(dut)
     source, out = pipeline.into, pipeline.out
-    polls: list[tuple[int, int, bool]] = []  # clock before, clock after, busy
+    polls: list[tuple[int, int, bool]] = []  # cycle before the read, cycle after it, busy
 
     async def poll() -> None:
         while True:
@@ -53,12 +54,14 @@ async def busy_while_a_frame_is_in_flight(dut: Any) -> None:
         await pipeline.until(lambda: len(out.words) == pipeline.pixels)
         await ClockCycles(dut.clk, 20)
         polling.cancel()
-        await ClockCycles(dut.clk, 20)  # for the read that it had begun
+        await ClockCycles(dut.clk, 20)  # until the read that it had begun has ended
         first, last = source.taken[0], out.taken[-1]
         inside = [value for before, after, value in polls if before >= first and after <= last]
         outside = [value for before, after, value in polls if after <= first or before > last + 1]
         assert len(inside) > 20, len(inside)
-        assert all(inside), f"{len(inside) - sum(inside)} of {len(inside)} reads say that nothing is in flight"
+        assert all(inside), (
+            f"busy is low in {len(inside) - sum(inside)} of {len(inside)} reads while a frame is in flight"
+        )
         assert outside
         assert not any(outside), "busy without a frame"
         polls.clear()
@@ -67,7 +70,7 @@ async def busy_while_a_frame_is_in_flight(dut: Any) -> None:
 
 @case(Level.FORMATS, whole_rows=True)
 async def busy_until_the_last_depth_is_taken(dut: Any) -> None:
-    """A sink that stands still holds back the last depths of a frame."""
+    """Stall the sink at the last depths of a frame: busy stays set until they are taken."""
     pipeline = await started(dut)
     out, before_them = pipeline.out, pipeline.pixels - pipeline.held
     pipeline.sink.stall(len(out.words) < before_them for _ in repeat(None))
@@ -75,14 +78,14 @@ async def busy_until_the_last_depth_is_taken(dut: Any) -> None:
     await pipeline.until(lambda: len(out.words) >= before_them)
     await ClockCycles(dut.clk, 4 * pipeline.columns)
     assert len(out.words) < pipeline.pixels
-    assert await busy(pipeline), "not while the last depths wait"
+    assert await busy(pipeline), "busy is low while the last depths wait"
     pipeline.sink.stall(repeat(True))
     await pipeline.check()
 
 
 @case()
 async def busy_from_the_clock_after_the_first_pixel(dut: Any) -> None:
-    """The address of STATUS is taken before, with and after the first pixel."""
+    """Read STATUS with its address taken before, with and after the first pixel."""
     pipeline = await started(dut)
     after_pixel = {}
     for lead in range(-1, 5):
@@ -104,7 +107,7 @@ async def busy_from_the_clock_after_the_first_pixel(dut: Any) -> None:
 
 @case(Level.FORMATS, whole_rows=True)
 async def interrupts(dut: Any) -> None:
-    """A record and a dropped frame set their bits; `irq` is high while a bit that is set is unmasked."""
+    """Raise the interrupts of a record and of a dropped frame: `irq` is high while a set bit is unmasked."""
     pipeline = await started(dut)
     good, malformed = pipeline.frame(), broken(pipeline.frame(), "row_long", pipeline.columns - 1, pipeline.columns)
 
@@ -129,8 +132,8 @@ async def interrupts(dut: Any) -> None:
 
 @case()
 async def the_register_port_waits(dut: Any) -> None:
-    """Address and word of a write in either order, each taken once; answers stay until they are taken; bytes without a
-    strobe keep what they hold."""
+    """Write with address and word in either order: each is taken once, responses stay until they are taken, and bytes
+    without a strobe keep their value."""
     pipeline = await started(dut)
     pins = {name: getattr(dut, f"s_axil_{name}") for name in ("awready", "wready", "arready", "bvalid", "rvalid")}
     dut.s_axil_bready.value = dut.s_axil_rready.value = 0
@@ -174,7 +177,7 @@ async def the_register_port_waits(dut: Any) -> None:
 @case(whole_rows=True)
 @cocotb.parametrize(accepts=["none", "random"])
 async def written_all_the_time(dut: Any, accepts: str) -> None:
-    """They disturb no code and no latency."""
+    """Write registers all the time: no code and no latency changes."""
     pipeline = await started(dut, offers="random", accepts=accepts)
     running, refused = True, 0
 
@@ -205,7 +208,8 @@ async def written_all_the_time(dut: Any, accepts: str) -> None:
 
 @case(needs=as_sent, whole_rows=True)
 async def written_phase_by_phase(dut: Any) -> None:
-    """Each of them while nothing moves, while a frame comes, fills up, is waited for, leaves and is stalled."""
+    """Write each register while the pipeline is idle, and while a frame enters, is filled up, pauses, leaves and is
+    stalled."""
     pipeline = await started(dut)
     columns, first = pipeline.columns, pipeline.tables.content.entries["gradient"][0].tolist()
 
@@ -222,33 +226,33 @@ async def written_phase_by_phase(dut: Any) -> None:
     await sending
     await write_all()  # before its first depth
     await pipeline.until(lambda: pipeline.out.words)
-    await write_all()  # while it leaves
+    await write_all()  # while the frame leaves
     pipeline.sink.stall(repeat(False))
     await ClockCycles(dut.clk, 4)
     await write_all()
     pipeline.sink.stall(repeat(True))
     await pipeline.idle()
     await pipeline.send(broken(pipeline.frame(), "row_short", 0, columns)[:1])
-    await write_all()  # while it fills up
+    await write_all()  # while the guard fills it up
     await pipeline.check()
 
 
 @case(needs=as_sent, whole_rows=True)
 @cocotb.parametrize(accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
 async def written_in_every_phase(dut: Any, accepts: str) -> None:
-    """Each register at each pixel of a frame, while frames come without a gap: no code and no latency changes."""
+    """Write each register at each pixel of a frame, while frames come without a gap: no code and no latency changes."""
     pipeline = await started(dut, accepts=accepts)
     rng, running = pipeline.random, True
     colours = [[135 + rng.randint(-3, 3) for _ in range(3)] for _ in range(pipeline.pixels)]
     frame = video(pack(colours), pipeline.columns)
     values: dict[str, Any] = dict.fromkeys((*WRITABLE, "GRID"), lambda: rng.getrandbits(32)) | {
-        # As they are: the records of the frames in flight are compared too.
+        # Write the current values, because the records of the frames in flight are compared too.
         "OFF_THRESHOLD": lambda: REGISTERS["OFF_THRESHOLD"].reset,
         "MINIMUM_AREA": lambda: REGISTERS["MINIMUM_AREA"].reset,
         "DEBOUNCE": lambda: REGISTERS["DEBOUNCE"].reset,
-        "TIMEOUT": lambda: rng.randint(2, 300),  # no frame is silent
+        "TIMEOUT": lambda: rng.randint(2, 300),  # no frame pauses
         "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
-        "TABLE_SELECT": lambda: TABLES["gradient"],  # TABLE_LOW is then an entry of the bank that no frame uses
+        "TABLE_SELECT": lambda: TABLES["gradient"],  # TABLE_LOW then writes an entry of the free bank
         "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1, floor=1),  # the build has none of these
         "CAPTURE": lambda: CAPTURE.pack(start=1),  # nor a reference to capture
         "FLOOR_CAPTURE": lambda: FLOOR_CAPTURE.pack(start=1),  # nor a floor

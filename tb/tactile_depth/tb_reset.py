@@ -30,7 +30,7 @@ PHASES = ("mid_frame", "filling", "waiting", "output", "stalled", "full", "idle"
     )
 )
 async def resets(dut: Any, clocks: int, phase: str) -> None:
-    """Registers are as after power-up, but for tables; the next frame is right."""
+    """Reset: registers have their values of power-up, tables stay, and the next frame is right."""
     pipeline = await started(dut)
     await pipeline.write("THRESHOLD", -5)
     await pipeline.write("CONTROL", CONTROL.pack(hold_contact=1))
@@ -63,7 +63,7 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
             value = values[field.name]
             assert value == field.reset, f"{register.name}.{field.name} is {value:#x} after a reset"
     await ClockCycles(dut.clk, pipeline.pixels)
-    assert not pipeline.out.words, "depth left of a frame that was sent before the reset"
+    assert not pipeline.out.words, "a depth left that belongs to a frame from before the reset"
     await pipeline.send(pipeline.frame(), pipeline.frame())
     await pipeline.check()
     assert pipeline.scoreboard.latency == first_depth_latency(pipeline.config)
@@ -71,7 +71,7 @@ async def resets(dut: Any, clocks: int, phase: str) -> None:
 
 @case(needs=lambda config: config.gradient_model == "lut")
 async def a_cold_reset_takes_the_first_bank(dut: Any) -> None:
-    """`cold_rst` with `rst`: frames use the same bank as after the cold reset before; `rst` alone leaves the bank."""
+    """Reset with `cold_rst`: frames use the same bank as after the previous cold reset. `rst` alone keeps the bank."""
     pipeline = await started(dut)
     tables = pipeline.tables
 

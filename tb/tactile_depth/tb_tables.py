@@ -18,17 +18,17 @@ from tb.tactile_depth.device_tables import Content, one_word, reference_entries
 
 COMMIT = REGISTERS["TABLE_COMMIT"]
 BUILT = tuple(Content.built(configuration()).entries)  # names of the tables of this build
-SHORT = [name for name in BUILT if name != "gradient"]  # which are written in a few hundred words
+SHORT = [name for name in BUILT if name != "gradient"]  # tables of a few hundred words
 REWRITES = 5
 
 
 def looks_up(config: Configuration) -> bool:
-    """Return whether slopes come from the gradient table."""
+    """Return True if slopes come from the gradient table."""
     return config.gradient_model == "lut"
 
 
 def looks_up_pixels(config: Configuration) -> bool:
-    """Return whether the colours of the pixels, as sent, choose entries of the gradient table."""
+    """Return True if the colours of the pixels, without a flat field, select entries of the gradient table."""
     return looks_up(config) and not config.flat_field
 
 
@@ -39,7 +39,7 @@ def random_slopes(pipeline: Pipeline, rng: np.random.Generator, fraction: int = 
 
 
 def random_entries(pipeline: Pipeline, name: str, rng: np.random.Generator) -> np.ndarray:
-    """Return random entries of a table, with which depth stays within its range."""
+    """Return random entries of a table that keep depth within its range."""
     config, entries = pipeline.config, pipeline.tables.content.entries[name]
     if name == "gradient":
         return random_slopes(pipeline, rng)
@@ -56,7 +56,7 @@ def random_entries(pipeline: Pipeline, name: str, rng: np.random.Generator) -> n
     name=up_to({Level.FORMATS: named(SHORT), Level.WHOLE: named([name for name in BUILT if name not in SHORT])}),
 )
 async def written(dut: Any, name: str) -> None:
-    """Written and read between frames; with its commit the next frame has the codes of the new table."""
+    """Write and read a table between frames: after its commit the next frame has the codes of the new table."""
     pipeline = await started(dut)
     tables = pipeline.tables
     built = tables.content.entries[name]
@@ -75,12 +75,12 @@ async def written(dut: Any, name: str) -> None:
         after = (await pipeline.check()).codes
         assert await pipeline.read("TABLE_COMMIT") == 0
         assert (after != before).any() == (entries is new)
-        np.testing.assert_array_equal(await tables.read(name), old)  # the bank that was in use before
+        np.testing.assert_array_equal(await tables.read(name), old)  # the bank that was in use until then
 
 
 @case(Level.FORMATS, needs=lambda config: config.auto_zero)
 async def a_floor_at_full_scale(dut: Any) -> None:
-    """Depth that leaves its range is clipped; the floor survives a reset."""
+    """Write a floor at full scale: depth beyond its range is clipped, and the floor survives a reset."""
     pipeline = await started(dut)
     limit = 1 << pipeline.config.data_width - 1
     count = len(pipeline.tables.content.entries["floor"])
@@ -97,14 +97,14 @@ async def a_floor_at_full_scale(dut: Any) -> None:
 
 @case(needs=looks_up_pixels)
 async def committed_at_the_first_pixel(dut: Any) -> None:
-    """The frame whose first pixel is taken around the commit has the codes of one table; the clock says of which."""
+    """Commit around the first pixel of a frame: the frame has the codes of one table, which the cycle decides."""
     pipeline = await started(dut)
     tables, bits, rng = pipeline.tables, pipeline.config.bits_per_channel, pipeline.random
     colour = (200, 40, 90)
     frame = pipeline.plain(colour)
     index = int(sum(channel >> 8 - bits << shift * bits for shift, channel in enumerate(reversed(colour))))
     taken = []
-    # Clocks from the commit to the first pixel; and clocks between that and the second.
+    # Cycles from the commit to the first pixel, and from the first pixel to the second.
     for lead, gap in product(range(-6, 5), (0, 4)):
         entries = np.array(tables.content.entries["gradient"])
         entries[index] = rng.randrange(1 << 8), -rng.randrange(1 << 8)
@@ -131,11 +131,13 @@ async def committed_at_the_first_pixel(dut: Any) -> None:
 @case(needs=looks_up)
 @cocotb.parametrize(offers=["none", "random"], accepts=up_to({Level.WHOLE: ["random"], Level.LONG: ["none"]}))
 async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> None:
-    """Frames without a pause, the whole table written again and again: each frame has the codes of one table, the one
-    whose commit was the last to take effect before its first pixel."""
+    """Rewrite the whole table repeatedly while frames stream back to back.
+
+    Each frame has the codes of one table, the last one committed before its first pixel.
+    """
     pipeline = await started(dut, offers=offers, accepts=accepts)
     tables, rng = pipeline.tables, np.random.default_rng(cocotb.RANDOM_SEED)
-    contents, decided = [tables.content], []  # the tables in their order; clocks of the commits
+    contents, decided = [tables.content], []  # the tables in their order; cycles of the commits
     running = True
 
     async def feed() -> None:
@@ -158,8 +160,8 @@ async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> 
     await feeding
     await pipeline.drain()
 
-    # A frame takes its tables when its first pixel is at the head of the pipeline: without stalls so many clocks after
-    # it was taken, and at the latest when words behind it have no more room before the head.
+    # A frame takes its tables when its first pixel is at the head of the pipeline: without stalls a fixed number of
+    # cycles after it was taken, and at the latest when later words have no more room before the head.
     behind = 0 if accepts == "none" else SKID_WORDS + 1
     candidates = []
     for first in range(0, len(pipeline.into.words), pipeline.pixels):
@@ -168,7 +170,7 @@ async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> 
         candidates.append(contents[certain : possible + 1])
     used = pipeline.scoreboard.used(pipeline.into, pipeline.out, candidates)
     order = [contents.index(content) for content in used]
-    assert order == sorted(order), f"a frame used a table that was in use before: {order}"
+    assert order == sorted(order), f"a frame used an older table than the frame before it: {order}"
     assert set(order) == set(range(len(contents))), f"the test is void: no frame used one of the tables: {order}"
     await pipeline.check(contents=used)
 
@@ -176,7 +178,7 @@ async def rewritten_while_frames_stream(dut: Any, offers: str, accepts: str) -> 
 @case(needs=looks_up)
 @cocotb.parametrize(fraction=[1, 8, 128])
 async def many_frames_of_any_slopes(dut: Any, fraction: int) -> None:
-    """Ties of every rounding and clips of all that can: steep slopes and small ones."""
+    """Reach ties of every rounding, and clip every value that can clip, with steep and small slopes."""
     pipeline = await started(dut)
     entries = random_slopes(pipeline, np.random.default_rng(cocotb.RANDOM_SEED), fraction)
     await pipeline.tables.write("gradient", entries)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of the sine transforms, dst_forward and dst_inverse, against their models.
 
-Checked are codes, latency and saturation counts, with gaps, pauses, extreme words and resets.
+The tests check codes, latency and saturation counts, with gaps, pauses, extreme words and resets.
 """
 
 from typing import Any
@@ -18,7 +18,7 @@ CORES: dict[str, tuple[Any, Any]] = {
     "dst_forward": (dst_forward, dst_forward_latency),
     "dst_inverse": (dst_inverse, dst_inverse_latency),
 }
-CLOCKS_OF_A_BURST_EDGE = 12  # in which a burst begins to enter, or to leave
+CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
 
 
 async def check(dut: Any, words: Any, **behaviour: Any) -> Any:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""corner_turn against its model: places, latency from the last word; gaps between frames, pauses, reset."""
+"""corner_turn against its model: positions, latency from the last word; gaps between frames, pauses, reset."""
 
 from typing import Any
 
@@ -34,7 +34,7 @@ async def any_number_of_rows(dut: Any, rows: int) -> None:
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def reset_in_mid_frame(dut: Any) -> None:
-    """In each clock of a step as rows begin, and as they leave."""
+    """Reset in each cycle of a step as rows begin to enter, and as they leave."""
     size, lanes = parameters(dut, "Size", "Lanes")
     step = size // lanes
     await check(dut, interrupts=with_and_without_en([*range(1, step + 1), *range(size, size + step + 4)]))

@@ -36,6 +36,6 @@ async def bursts(dut: Any, gap: float, pause: float) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_in_mid_burst(dut: Any) -> None:
-    """In each clock of a burst, as it enters and as it leaves."""
+    """Reset in each cycle of a burst, as it enters and as it leaves."""
     size, width = parameters(dut, "Size", "Width")
     await check(dut, uniform((2, size, 1), width), interrupts=range(1, size + size // 2 + 3))

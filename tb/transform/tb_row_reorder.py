@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""row_reorder against its model: places, latency from the last word; gaps inside rows, pauses, reset."""
+"""row_reorder against its model: positions, latency from the last word; gaps inside rows, pauses, reset."""
 
 from typing import Any
 
@@ -50,7 +50,7 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_in_mid_row(dut: Any) -> None:
-    """At each word of a row, and while it leaves."""
+    """Reset at each word of a row, and while the row leaves."""
     (size,) = parameters(dut, "Size")
     await check(dut, interrupts=range(1, size + size // 2))
 
@@ -58,6 +58,6 @@ async def reset_in_mid_row(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
 async def a_frame_begins_afresh(dut: Any, rows: int, words: Any) -> None:
-    """After `rows` rows and `words` words of the frame before."""
+    """Start a frame after `rows` rows and `words` words of an incomplete frame."""
     (size,) = parameters(dut, "Size")
     await check(dut, strays=rows * size + words)

@@ -48,7 +48,7 @@ async def limits_in_every_pairing(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_burst(dut: Any, late: bool) -> None:
-    """In each of the clocks in which a burst begins to enter, or to leave."""
+    """Reset in each cycle in which a burst begins to enter, or to leave."""
     size, width, delay = parameters(dut, "Size", "Width", "Delay")
     first = max(delay + BUTTERFLY, 4) - 3 if late else 1
     await check(dut, uniform((2, size, 2), width), interrupts=range(first, first + 8))

@@ -34,7 +34,7 @@ async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.1, None])
 async def many_bursts(dut: Any, amplitude: float) -> None:
-    """Ties of every rounding, and clips of every one that can."""
+    """Reach ties of every rounding, and clip every value that can clip."""
     size, width = parameters(dut, "Size", "Width")
     shape = (2 * MANY, size, 2)
     await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
@@ -50,7 +50,7 @@ async def limits(dut: Any) -> None:
 @cocotb.test(timeout_time=10, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_burst(dut: Any, late: bool) -> None:
-    """In each of the clocks in which a burst begins to enter, or to leave."""
+    """Reset in each cycle in which a burst begins to enter, or to leave."""
     size, width = parameters(dut, "Size", "Width")
     first = sdf_fft_latency(size) - 3 if late else 1
     await check(dut, uniform((2, size, 2), width), interrupts=range(first, first + 8))

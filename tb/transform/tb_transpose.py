@@ -31,7 +31,7 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
-    """Reset as the first words enter, as the last row enters, as reading begins, and with a third frame half in."""
+    """Reset as the first words enter, as the last row enters, as reading begins, and in the middle of a third frame."""
     (size,) = parameters(dut, "Size")
     first = (size - 1) * size if late else 1
     await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])
@@ -40,5 +40,5 @@ async def reset_in_mid_frame(dut: Any, late: bool) -> None:
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
-    """After part of a frame, and after more than one without a start in between."""
+    """Start a frame after part of another one, and after more than one without a start of frame in between."""
     await check(dut, frames=2, strays=strays)

@@ -49,10 +49,11 @@ async def limits(dut: Any) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize(part=[0, 1])
 async def ties(dut: Any, part: Any) -> None:
-    """A burst of products that drop just half a step, then for each lower bit one of half a step and that bit alone.
+    """Send a burst of products that drop exactly half a step, then for each lower bit one of half a step and that bit
+    alone.
 
-    What they keep is even, so each of those bits decides between down and up. Where the factor's real part is odd
-    there is a word for any rest of the product, whatever the other part of the word.
+    The kept part is even, so each of those bits decides between rounding down and up. If the real part of the factor is
+    odd, there is a word for every remainder of the product, for any other part of the word.
     """
     size, width, drop = parameters(dut, "Size", "InWidth", "Drop")
     half, modulus = 1 << drop - 1, 1 << drop + 1
@@ -71,6 +72,6 @@ async def ties(dut: Any, part: Any) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_in_mid_burst(dut: Any) -> None:
-    """In each clock of a burst, as it enters and as it leaves."""
+    """Reset in each cycle of a burst, as it enters and as it leaves."""
     size, width = parameters(dut, "Size", "InWidth")
     await check(dut, uniform((2, size, 2), width), interrupts=range(1, size + TWIDDLE_MULTIPLY + 2))
