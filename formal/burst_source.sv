@@ -6,6 +6,8 @@
 // `restart` lets a frame begin before the last one is whole, as behind an upset. A frame is whole once its last burst
 // begins.
 
+`default_nettype none
+
 module burst_source #(
   parameter int Size = 8,
   parameter int Rows = 4,
@@ -51,3 +53,5 @@ module burst_source #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // burst_timing: start and frame_start leave with the burst they came with, Latency enabled clocks later, and no others.
 
+`default_nettype none
+
 module burst_timing #(
   parameter int Size    = 8,
   parameter int Latency = 23
@@ -44,3 +46,5 @@ module burst_timing #(
   end
 
 endmodule
+
+`default_nettype wire

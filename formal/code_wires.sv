@@ -2,6 +2,8 @@
 // code_wires: a code from one clock to the register that catches it in another; bits that are `late` show the code before
 // the last edge of the first clock. A bit that has shown its new value keeps it.
 
+`default_nettype none
+
 module code_wires #(
   parameter int Width = 3
 ) (
@@ -31,3 +33,5 @@ module code_wires #(
   end
 
 endmodule
+
+`default_nettype wire

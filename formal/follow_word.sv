@@ -3,6 +3,8 @@
 // of it to its place. `close` is the event in which the latency is counted: the group's first word is due Latency
 // enabled clocks later, and its Words words follow each other. Groups close in the order in which they leave.
 
+`default_nettype none
+
 module follow_word #(
   parameter int Width   = 1,
   parameter int Words   = 8,
@@ -64,3 +66,5 @@ module follow_word #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // lane_source: every legal stream of lanes, for a bench: frames of Rows bursts of Size words, row b in lane b mod Lanes,
 // each Size / Lanes clocks behind the row before. At least as many clocks lie between two frames, and any gaps.
 
+`default_nettype none
+
 module lane_source #(
   parameter int Size  = 16,
   parameter int Rows  = 3,
@@ -47,3 +49,5 @@ module lane_source #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_tactile_depth: the source keeps to AXI4-Stream and the client to AXI4-Lite.
 
+`default_nettype none
+
 module protocol_tactile_depth
   import register_map_pkg::*;
 (
@@ -60,3 +62,5 @@ module protocol_tactile_depth
   assign {counts_s_axil_rdata, counts_s_axil_rresp} = {2{live & s_axil_rvalid}};
 
 endmodule
+
+`default_nettype wire

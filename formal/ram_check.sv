@@ -4,6 +4,8 @@
 // No word is read in the clock that writes it, and (Defined) none before it was written. Power-up is the first clock,
 // which a bench spends in reset: nothing counts before its end.
 
+`default_nettype none
+
 module ram_check #(
   parameter int Depth   = 8,
   parameter int Defined = 1,
@@ -34,3 +36,5 @@ module ram_check #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // raster_counter: where the next pixel is, in raster order and whole frames but for a reset.
 
+`default_nettype none
+
 module raster_counter #(
   parameter int Rows    = 4,
   parameter int Columns = 4
@@ -30,3 +32,5 @@ module raster_counter #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // raster_source: assumes that positions come in raster order, whole frames but for a reset; says where a pixel is.
 
+`default_nettype none
+
 module raster_source #(
   parameter int Rows    = 4,
   parameter int Columns = 4
@@ -19,3 +21,5 @@ module raster_source #(
   always_comb if (in_valid) assume (in_position == position);
 
 endmodule
+
+`default_nettype wire

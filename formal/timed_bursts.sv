@@ -2,6 +2,8 @@
 // timed_bursts: every legal stream of bursts, two to a frame, for a core that sends each Latency enabled clocks after it
 // came: see burst_source and burst_timing. Each bench begins in reset.
 
+`default_nettype none
+
 module timed_bursts #(
   parameter int Size    = 8,
   parameter int Latency = 23
@@ -30,3 +32,5 @@ module timed_bursts #(
   );
 
 endmodule
+
+`default_nettype wire

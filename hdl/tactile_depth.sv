@@ -19,10 +19,10 @@ module tactile_depth
   import stream_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  // Solver 0 spectral, 1 tridiagonal; Neumann 1: zero slope at the edge of the frame, 0: zero depth; Size: columns;
-  // FrameLatency from the last pixel out of the guard to the first depth out of the solver; words and drops in bits.
+  // Tridiagonal 0: spectral solver; Neumann 1: zero slope at the edge, 0: zero depth; Size: columns; Lanes: depths in a
+  // beat; FrameLatency: cycles from the last pixel out of the guard to the first depth out of the solver.
   parameter int Tridiagonal = DefaultTridiagonal, parameter int Neumann = DefaultNeumann,
-  parameter int Rows = DefaultRows, parameter int Size = DefaultSize,
+  parameter int Rows = DefaultRows, parameter int Size = DefaultSize, parameter int Lanes = DefaultLanes,
   parameter int GradientWidth = DefaultGradientWidth, parameter int GradientFraction = DefaultGradientFraction,
   parameter int DataWidth = DefaultDataWidth, parameter int Width = DefaultWidth,
   parameter int CoeffWidth = DefaultCoeffWidth, parameter int FrameLatency = DefaultFrameLatency,
@@ -30,8 +30,7 @@ module tactile_depth
   parameter int ColumnInverseOut = DefaultColumnInverseOut, parameter int RowInverseIn = DefaultRowInverseIn,
   parameter int RowInverseOut = DefaultRowInverseOut, parameter int StoreStyle = DefaultStoreStyle,
   parameter int DivideShiftWidth = DefaultDivideShiftWidth, parameter int DivideDrop = DefaultDivideDrop,
-  // Of the tridiagonal solver; Lanes: depth values per clock.
-  parameter int Lanes = DefaultLanes,
+  // Of the tridiagonal solver.
   parameter int StoreDrop = DefaultStoreDrop, parameter int WordsPerRow = DefaultWordsPerRow,
   parameter int TableWords = DefaultTableWords, parameter int SettledWidth = DefaultSettledWidth,
   parameter int LastShiftWidth = DefaultLastShiftWidth, parameter int MomentDrop = DefaultMomentDrop,

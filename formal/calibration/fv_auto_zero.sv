@@ -8,6 +8,8 @@
 // Assumed: frames in raster order, whole but for a reset; nothing is written or read while a change-over is due (what
 // is then read: fv_gain_map); bus and capture one at a time.
 
+`default_nettype none
+
 module fv_auto_zero #(
   parameter int Rows    = 3,
   parameter int Columns = 4,
@@ -179,3 +181,5 @@ module fv_auto_zero #(
   end
 
 endmodule
+
+`default_nettype wire

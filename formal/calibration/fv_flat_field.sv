@@ -8,6 +8,8 @@
 // Assumed: places in raster order; of each colour the lowest bits alone differ from zero (products of any width are
 // exact).
 
+`default_nettype none
+
 module fv_flat_field #(
   parameter int Meets     = 0,
   parameter int Rows      = 3,
@@ -225,3 +227,5 @@ module flat_field_leaves #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -9,6 +9,8 @@
 //
 // Assumed: frames in raster order, whole but for a reset.
 
+`default_nettype none
+
 module fv_floor_capture #(
   parameter int Rows    = 3,
   parameter int Columns = 4,
@@ -183,3 +185,5 @@ module fv_floor_capture #(
   );
 
 endmodule
+
+`default_nettype wire

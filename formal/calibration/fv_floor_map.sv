@@ -8,6 +8,8 @@
 // Assumed: beats in raster order, whole frames but for a reset; nothing is written while a change-over is due; bus and
 // capture one at a time.
 
+`default_nettype none
+
 module fv_floor_map #(
   parameter int Rows      = 5,
   parameter int Columns   = 8,
@@ -253,3 +255,5 @@ module fv_floor_map #(
   ) u_check_3 (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule
+
+`default_nettype wire

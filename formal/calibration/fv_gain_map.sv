@@ -7,6 +7,8 @@
 // One channel is looked at: all are one generate. Assumed: places in raster order; nothing is written, nor read by
 // the capture, while a change-over is due; bus and capture one at a time.
 
+`default_nettype none
+
 module fv_gain_map #(
   parameter int Rows      = 5,
   parameter int Columns   = 4,
@@ -229,3 +231,5 @@ module fv_gain_map #(
   );
 
 endmodule
+
+`default_nettype wire

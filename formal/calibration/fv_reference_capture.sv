@@ -6,6 +6,8 @@
 //
 // Of the three colours, red; the quotients are left to simulation. Assumed: places in raster order.
 
+`default_nettype none
+
 module fv_reference_capture #(
   parameter int Rows    = 3,
   parameter int Columns = 4,
@@ -129,3 +131,5 @@ module fv_reference_capture #(
   end
 
 endmodule
+
+`default_nettype wire

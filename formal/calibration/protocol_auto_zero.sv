@@ -2,6 +2,8 @@
 // protocol_auto_zero: whole frames of depths, Lanes of them in a beat. Bus and capture use the tables one at a time, neither while a change of
 // bank is due, except for what the bus reads.
 
+`default_nettype none
+
 module protocol_auto_zero #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
@@ -53,3 +55,5 @@ module protocol_auto_zero #(
   assign counts_saturations = live & ~rst & holds;
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_flat_field: that of gain_map, which is inside; here colours go out in place of gains.
 
+`default_nettype none
+
 module protocol_flat_field #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
@@ -54,3 +56,5 @@ module protocol_flat_field #(
   assign {counts_dark, counts_saturations} = {2{live & ~rst & holds}};
 
 endmodule
+
+`default_nettype wire

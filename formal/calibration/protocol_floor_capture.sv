@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_floor_capture: whole frames of depths.
 
+`default_nettype none
+
 module protocol_floor_capture #(
   parameter int Rows    = 128,
   parameter int Columns = 128,
@@ -33,3 +35,5 @@ module protocol_floor_capture #(
   assign {counts_map_write_node, counts_map_write_floor} = {2{live & map_write}};
 
 endmodule
+
+`default_nettype wire

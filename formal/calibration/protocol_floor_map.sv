@@ -2,6 +2,8 @@
 // protocol_floor_map: whole frames of beats in raster order. Bus and capture use the tables one at a time, neither while
 // a change of bank is due, except for what the bus reads.
 
+`default_nettype none
+
 module protocol_floor_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
@@ -58,3 +60,5 @@ module protocol_floor_map #(
   assign counts_table_read_floor = live & read_stands;
 
 endmodule
+
+`default_nettype wire

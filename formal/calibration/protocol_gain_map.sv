@@ -2,6 +2,8 @@
 // protocol_gain_map: whole frames in raster order. Bus and capture use the tables one at a time, neither while a change
 // of bank is due, except for what the bus reads.
 
+`default_nettype none
+
 module protocol_gain_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
@@ -62,3 +64,5 @@ module protocol_gain_map #(
   assign counts_capture_read_gains = captured;
 
 endmodule
+
+`default_nettype wire

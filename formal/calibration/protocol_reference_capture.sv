@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_reference_capture: whole frames in raster order, whatever the memory answers.
 
+`default_nettype none
+
 module protocol_reference_capture #(
   parameter int Rows    = 128,
   parameter int Columns = 128
@@ -29,3 +31,5 @@ module protocol_reference_capture #(
   assign counts_map_read_node = counts & map_read;
 
 endmodule
+
+`default_nettype wire

@@ -5,6 +5,8 @@
 // Whatever block_totals completes (`complete` is free): that it does so with a block's last pixel, and no break in the
 // same slot, is proven of row_sums and block_totals, and of camera_window.
 
+`default_nettype none
+
 module fv_area_average #(
   parameter int Rows    = 3,
   parameter int Columns = 4
@@ -72,3 +74,5 @@ module fv_area_average #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -6,6 +6,8 @@
 // Assumed: a row begins with its first pixel, a frame with a row; the columns of a block end at most Columns times in a
 // row, and as often in every row but the last of a frame that is cut short. ram_check watches the memory.
 
+`default_nettype none
+
 module fv_block_totals #(
   parameter int Columns     = 4,
   parameter int Numerator   = 5,
@@ -162,3 +164,5 @@ module fv_block_totals #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 //
 // The specification counts how far the axis has come, modulo the length of a block; the core counts what is left of it.
 
+`default_nettype none
+
 module fv_block_weights #(
   parameter int Numerator   = 15,
   parameter int Denominator = 4,
@@ -41,3 +43,5 @@ module fv_block_weights #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -7,6 +7,8 @@
 // Bus 1: a transmission is a start, the bits of its entry with a released ninth in each byte, and a stop; SIO_D changes
 // while SIO_C is low, but for start and stop; each level lasts a quarter or more. A reset or restart may break it off.
 
+`default_nettype none
+
 module fv_camera_setup #(
   parameter int Bus               = 0,
   parameter int AddressBytes      = 1,
@@ -201,3 +203,5 @@ module fv_camera_setup #(
   end
 
 endmodule
+
+`default_nettype wire

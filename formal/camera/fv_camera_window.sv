@@ -5,6 +5,8 @@
 // The specification is an automaton on pictures that counts words, not rows, columns and bytes. Nothing is assumed of the
 // source and of en. Settings are small and may change in every clock; a picture has those of the clock before its start.
 
+`default_nettype none
+
 module fv_camera_window #(
   parameter int WordsPerPixel = 1,
   parameter int PixelPairs    = 0,
@@ -149,3 +151,5 @@ module fv_camera_window #(
   end
 
 endmodule
+
+`default_nettype wire

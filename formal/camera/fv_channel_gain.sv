@@ -4,6 +4,8 @@
 //
 // Gains are whole numbers here: rounding is proven of round_saturate. Samples are small, so that nothing saturates.
 
+`default_nettype none
+
 module fv_channel_gain #(
   parameter int Bayer = 1,
   localparam int Bits = 4,
@@ -99,3 +101,5 @@ module fv_channel_gain #(
   end
 
 endmodule
+
+`default_nettype wire

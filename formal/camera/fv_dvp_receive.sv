@@ -6,6 +6,8 @@
 // Room in the queue, and what comes out of it, are free, but that a word stays until it is taken: async_fifo is proven by
 // itself. Both clocks rise whenever they like.
 
+`default_nettype none
+
 module fv_dvp_receive (
   input logic       pclk,
   input logic       vsync,
@@ -107,3 +109,5 @@ module fv_dvp_receive (
   end
 
 endmodule
+
+`default_nettype wire

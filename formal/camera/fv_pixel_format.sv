@@ -5,6 +5,8 @@
 // pixel's own luma and its pair's chroma. Assumed: pixels of a row come in pairs, even columns first; no pixel comes with
 // a break. Nothing is assumed of the other formats.
 
+`default_nettype none
+
 module fv_pixel_format #(
   parameter int Format        = 3,
   parameter int Bits          = 10,
@@ -141,3 +143,5 @@ module fv_pixel_format #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_round_divide: the mean is the nearest integer, ties to even, clipped to 0..255; 10 enabled clocks later.
 
+`default_nettype none
+
 module fv_round_divide #(
   parameter int TotalWidth  = 12,
   parameter int WeightWidth = 2,
@@ -52,3 +54,5 @@ module fv_round_divide #(
   end
 
 endmodule
+
+`default_nettype wire

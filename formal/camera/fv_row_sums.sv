@@ -4,6 +4,8 @@
 // The specification adds up whole pixels from the beginning of the row and takes the difference of what it has at the
 // ends of two blocks, modulo the width of a sum; the core sums block by block. Nothing is assumed but that rows begin.
 
+`default_nettype none
+
 module fv_row_sums #(
   parameter int Numerator   = 5,
   parameter int Denominator = 2,
@@ -106,3 +108,5 @@ module fv_row_sums #(
   end
 
 endmodule
+
+`default_nettype wire

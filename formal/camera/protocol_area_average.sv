@@ -2,6 +2,8 @@
 // protocol_area_average: pixels of the window in raster order, from a frame's start on; a break comes without a pixel and
 // ends its frame. The colours of the word that a break makes do not count.
 
+`default_nettype none
+
 module protocol_area_average #(
   parameter int Rows        = 128,
   parameter int Columns     = 128,
@@ -61,3 +63,5 @@ module protocol_area_average #(
   assign counts_out_pixel = counts_out_valid & out_valid & ~breaks[15];
 
 endmodule
+
+`default_nettype wire

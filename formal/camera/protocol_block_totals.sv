@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_block_totals: whole rows of Columns blocks, of any number, from a frame's start on; totals count with out_valid.
 
+`default_nettype none
+
 module protocol_block_totals #(
   parameter int Columns   = 128,
   parameter int Numerator = 15,
@@ -42,3 +44,5 @@ module protocol_block_totals #(
   assign {counts_out_totals, counts_out_areas} = {2{counts_out_valid & out_valid}};
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_block_weights: any inputs; the outputs count from the first pixel of an axis on.
 
+`default_nettype none
+
 module protocol_block_weights (
   input  logic clk,
   input  logic en,
@@ -14,3 +16,5 @@ module protocol_block_weights (
   assign counts = known | restart;
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // protocol_camera_front_end: the source keeps to AXI4-Stream; any pictures, whole or broken, and any settings. Colours
 // count in no word that ends a frame before its end, which frame_guard drops.
 
+`default_nettype none
+
 module protocol_camera_front_end #(
   parameter int Columns = 128
 ) (
@@ -40,3 +42,5 @@ module protocol_camera_front_end #(
   assign counts_m_axis_tdata = word & m_axis_tlast == (column == 16'(Columns - 1));
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_camera_window: the source keeps to AXI4-Stream; any pictures, whole or broken, and any settings.
 
+`default_nettype none
+
 module protocol_camera_window (
   input  logic        clk,
   input  logic        rst,
@@ -34,3 +36,5 @@ module protocol_camera_window (
   assign {counts_out_row_start, counts_out_frame_start} = {2{pixel & out_inside}};
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_channel_gain: after a reset the first pixel begins a frame; samples and marks count with out_valid.
 
+`default_nettype none
+
 module protocol_channel_gain (
   input  logic clk,
   input  logic rst,
@@ -28,3 +30,5 @@ module protocol_channel_gain (
   assign {counts_out_samples, counts_out_colour, counts_out_row_start, counts_out_frame_start} = {4{pixel}};
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_dvp_receive: all inputs are allowed; outputs count after a reset, the marks of a byte while it is offered.
 
+`default_nettype none
+
 module protocol_dvp_receive (
   input  logic clk,
   input  logic rst,
@@ -24,3 +26,5 @@ module protocol_dvp_receive (
   assign counts_m_axis_tuser = offered;
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // protocol_pixel_format: a break comes without a pixel; pixels of YUYV come in pairs. Samples and marks count with
 // out_valid, the colour of a pixel in RAW formats alone.
 
+`default_nettype none
+
 module protocol_pixel_format #(
   parameter int Format = 0
 ) (
@@ -34,3 +36,5 @@ module protocol_pixel_format #(
   assign counts_out_colour = pixel & (Format == 0);
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_round_divide: no weight is 0; the mean counts once 10 enabled clocks have passed.
 
+`default_nettype none
+
 module protocol_round_divide #(
   parameter int WeightWidth = 8
 ) (
@@ -15,3 +17,5 @@ module protocol_round_divide #(
   settled #(.Clocks(10)) u_settled (.clk, .en, .settled(counts_mean));
 
 endmodule
+
+`default_nettype wire

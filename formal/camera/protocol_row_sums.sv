@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_row_sums: after a reset the first pixel begins a row; sums count where a block ends.
 
+`default_nettype none
+
 module protocol_row_sums (
   input  logic clk,
   input  logic rst,
@@ -25,3 +27,5 @@ module protocol_row_sums (
   assign {counts_out_sums, counts_out_red_columns} = {2{counts_out_ends & out_ends}};
 
 endmodule
+
+`default_nettype wire

@@ -6,6 +6,8 @@
 // new value or that before the last edge of its clock, each bit and each step by itself: the delay of a wire below one
 // period, and a register that catches it in motion. One arbitrary word is followed: `pick` is free.
 
+`default_nettype none
+
 module fv_async_fifo #(
   parameter int Width     = 1,
   parameter int DepthLog2 = 2,
@@ -107,3 +109,5 @@ module fv_async_fifo #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -5,6 +5,8 @@
 // One arbitrary word is followed: `pick` is free, so it may be any. Nothing is assumed of the source, which may even
 // withdraw a word that it offered.
 
+`default_nettype none
+
 module fv_axis_skid #(
   parameter int Width = 1
 ) (
@@ -68,3 +70,5 @@ module fv_axis_skid #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -5,6 +5,8 @@
 // An arbitrary address is watched. Assumed: `change` comes one enabled clock or more behind frame_start; nothing is
 // written while a change-over is due, and no word is read in the clock that writes it.
 
+`default_nettype none
+
 module fv_banked_table #(
   parameter int Width = 1,
   parameter int Depth = 3,
@@ -89,3 +91,5 @@ module fv_banked_table #(
   );
 
 endmodule
+
+`default_nettype wire

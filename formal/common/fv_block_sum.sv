@@ -6,6 +6,8 @@
 //
 // Assumed: frames in raster order, whole but for a reset; after a reset the first begins new sums.
 
+`default_nettype none
+
 module fv_block_sum #(
   parameter int Rows     = 3,
   parameter int Columns  = 4,
@@ -110,3 +112,5 @@ module fv_block_sum #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_burst_counter: position is the number of enabled clocks since the last start, active while that is less than Size.
 
+`default_nettype none
+
 module fv_burst_counter #(
   parameter int Size = 8,
   localparam int PositionWidth = $clog2(Size)
@@ -41,3 +43,5 @@ module fv_burst_counter #(
   always_comb if (started && ended) back_to_back: cover (start);
 
 endmodule
+
+`default_nettype wire

@@ -4,6 +4,8 @@
 // What leaves in the first Delay enabled clocks after a reset is no one's word: a memory that has not been written is
 // read there. Those who use the line look only later, which their own proofs show.
 
+`default_nettype none
+
 module fv_delay_line #(
   parameter int Width = 1,
   parameter int Delay = 5,
@@ -57,3 +59,5 @@ module fv_delay_line #(
   end
 
 endmodule
+
+`default_nettype wire

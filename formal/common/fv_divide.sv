@@ -3,6 +3,8 @@
 //
 // Assumed: the divisor is held from start to done.
 
+`default_nettype none
+
 module fv_divide #(
   parameter int DivisorWidth  = 3,
   parameter int QuotientWidth = 4,
@@ -57,3 +59,5 @@ module fv_divide #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_dot_product: a0 b0 + a1 b1, exact, of the operands of an arbitrary enabled clock, 4 enabled clocks later.
 
+`default_nettype none
+
 module fv_dot_product #(
   parameter int AWidth = 3,
   parameter int BWidth = 2
@@ -46,3 +48,5 @@ module fv_dot_product #(
   end
 
 endmodule
+
+`default_nettype wire

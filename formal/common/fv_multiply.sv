@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_multiply: the exact product of the operands of every enabled clock stands until the next one.
 
+`default_nettype none
+
 module fv_multiply #(
   parameter int AWidth = 5,
   parameter int BWidth = 3
@@ -33,3 +35,5 @@ module fv_multiply #(
   end
 
 endmodule
+
+`default_nettype wire

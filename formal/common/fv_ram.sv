@@ -4,6 +4,8 @@
 // One arbitrary address is watched. Assumed, since ram.sv leaves it open, and proven of every core that uses a ram
 // (ram_check): no word is read in the clock that writes it.
 
+`default_nettype none
+
 module fv_ram #(
   parameter int Width = 1,
   parameter int Depth = 6,
@@ -55,3 +57,5 @@ module fv_ram #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // fv_ramp: an arbitrary word of the ramp is the first and so many steps, log2(Count) enabled clocks after both came; with
 // en low it stands.
 
+`default_nettype none
+
 module fv_ramp #(
   parameter int Width     = 6,
   parameter int StepWidth = 4,
@@ -55,3 +57,5 @@ module fv_ramp #(
   end
 
 endmodule
+
+`default_nettype wire

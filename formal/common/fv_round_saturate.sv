@@ -5,6 +5,8 @@
 // nearer than half a step, or at half a step and is even. There is exactly one such integer for every input, so what
 // holds of an arbitrary integer, should it be the one, holds of all inputs.
 
+`default_nettype none
+
 module fv_round_saturate #(
   parameter int InWidth  = 48,
   parameter int Drop     = 17,
@@ -57,3 +59,5 @@ module fv_round_saturate #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_async_fifo: all inputs are allowed; data count while valid.
 
+`default_nettype none
+
 module protocol_async_fifo (
   input  logic read_valid,
   output logic holds,
@@ -11,3 +13,5 @@ module protocol_async_fifo (
   assign counts_read_data = read_valid;
 
 endmodule
+
+`default_nettype wire

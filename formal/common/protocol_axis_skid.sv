@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_axis_skid: the source keeps to AXI4-Stream; data count while valid.
 
+`default_nettype none
+
 module protocol_axis_skid #(
   parameter int Width = 26
 ) (
@@ -27,3 +29,5 @@ module protocol_axis_skid #(
   assign counts_m_data = live & m_valid;
 
 endmodule
+
+`default_nettype wire

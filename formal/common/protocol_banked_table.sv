@@ -2,6 +2,8 @@
 // protocol_banked_table: `change` comes one enabled clock or more behind frame_start; nothing is written while a
 // change-over is due, no word is read in the clock that writes it; words count while they stand.
 
+`default_nettype none
+
 module protocol_banked_table #(
   parameter int Depth = 256,
   localparam int AddressWidth = $clog2(Depth)
@@ -50,3 +52,5 @@ module protocol_banked_table #(
   end
 
 endmodule
+
+`default_nettype wire

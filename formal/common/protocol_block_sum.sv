@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_block_sum: frames in raster order, whole but for a reset, whatever the memory answers.
 
+`default_nettype none
+
 module protocol_block_sum #(
   parameter int Rows    = 128,
   parameter int Columns = 128
@@ -28,3 +30,5 @@ module protocol_block_sum #(
   assign {counts_write_block, counts_write_sums} = {2{counts & write_en}};
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_burst_counter: any inputs; the position counts while a burst is active.
 
+`default_nettype none
+
 module protocol_burst_counter (
   input  logic clk,
   input  logic rst,
@@ -15,3 +17,5 @@ module protocol_burst_counter (
   assign counts_position = live & active;
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_delay_line: any inputs; out counts once Delay words came in after a reset.
 
+`default_nettype none
+
 module protocol_delay_line #(
   parameter int Delay = 64
 ) (
@@ -19,3 +21,5 @@ module protocol_delay_line #(
   end
 
 endmodule
+
+`default_nettype wire

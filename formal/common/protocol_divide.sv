@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_divide: the divisor is held from start to done; results count with done, quotients that fit alone.
 
+`default_nettype none
+
 module protocol_divide #(
   parameter int DivisorWidth  = 24,
   parameter int QuotientWidth = 25
@@ -32,3 +34,5 @@ module protocol_divide #(
   end
 
 endmodule
+
+`default_nettype wire

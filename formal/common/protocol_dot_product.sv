@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_dot_product: any operands; the sum counts once 4 enabled clocks have passed.
 
+`default_nettype none
+
 module protocol_dot_product (
   input  logic clk,
   input  logic en,
@@ -10,3 +12,5 @@ module protocol_dot_product (
   settled #(.Clocks(4)) u_settled (.clk, .en, .settled(counts_sum));
 
 endmodule
+
+`default_nettype wire

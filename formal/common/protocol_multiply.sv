@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_multiply: any operands; the product counts once 1 enabled clock has passed.
 
+`default_nettype none
+
 module protocol_multiply (
   input  logic clk,
   input  logic en,
@@ -10,3 +12,5 @@ module protocol_multiply (
   settled #(.Clocks(1)) u_settled (.clk, .en, .settled(counts_product));
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_ram: addresses within the memory; no read of the word that is being written.
 
+`default_nettype none
+
 module protocol_ram #(
   parameter int Depth = 16384,
   localparam int AddressWidth = $clog2(Depth)
@@ -17,3 +19,5 @@ module protocol_ram #(
       & (~read_en | {1'b0, read_address} < End) & (~write_en | {1'b0, write_address} < End);
 
 endmodule
+
+`default_nettype wire

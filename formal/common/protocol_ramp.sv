@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_ramp: any words and steps; what leaves counts once log2(Count) enabled clocks have passed.
 
+`default_nettype none
+
 module protocol_ramp #(
   parameter int Count = 4
 ) (
@@ -18,3 +20,5 @@ module protocol_ramp #(
   end
 
 endmodule
+
+`default_nettype wire

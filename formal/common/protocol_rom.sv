@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_rom: addresses within the memory; data count once one enabled clock has passed.
 
+`default_nettype none
+
 module protocol_rom #(
   parameter int Depth = 128,
   localparam int AddressWidth = $clog2(Depth)
@@ -16,3 +18,5 @@ module protocol_rom #(
   settled #(.Clocks(1)) u_settled (.clk, .en(en & holds), .settled(counts_data));
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_beat_sums: sums of every beat, Latency clocks later. Each is compared with a loop over the depths of the beat.
 
+`default_nettype none
+
 module fv_beat_sums #(
   parameter int Width   = 2,
   parameter int Lanes   = 4,
@@ -69,3 +71,5 @@ module fv_beat_sums #(
   end
 
 endmodule
+
+`default_nettype wire

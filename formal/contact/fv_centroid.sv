@@ -4,6 +4,8 @@
 //
 // Assumed: row_sum and area are held from start to done; no sum is more than that of as many largest positions.
 
+`default_nettype none
+
 module fv_centroid #(
   parameter int PositionWidth = 2,
   parameter int AreaWidth     = 3,
@@ -89,3 +91,5 @@ module near_mean #(
   assign near = (error < $signed((Width + 1)'(area)) & -error < $signed((Width + 1)'(area))) | (tie & ~mean[0]);
 
 endmodule
+
+`default_nettype wire

@@ -4,6 +4,8 @@
 //
 // debounce is any constant up to Most; what a larger count does is the same comparison.
 
+`default_nettype none
+
 module fv_contact_debounce #(
   parameter int AreaWidth = 3,
   parameter int Most      = 4
@@ -61,3 +63,5 @@ module fv_contact_debounce #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -6,6 +6,8 @@
 // Whatever frames come, one may begin inside another. That their last depths lie Latency clocks apart is assumed, which
 // frames of so many depths have. Sums, decision, centroid and packets are proven of the cores in it.
 
+`default_nettype none
+
 module fv_contact_events
   import stream_pkg::*;
 #(
@@ -92,3 +94,5 @@ module fv_contact_events
   end
 
 endmodule
+
+`default_nettype wire

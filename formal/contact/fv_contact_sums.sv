@@ -5,6 +5,8 @@
 // Whatever frames come, one may begin inside another; `touching` takes any value in any clock. Sums of rows, columns and
 // depths are left to simulation against the model.
 
+`default_nettype none
+
 module fv_contact_sums
   import stream_pkg::*;
 #(
@@ -126,3 +128,5 @@ module fv_contact_sums
   end
 
 endmodule
+
+`default_nettype wire

@@ -4,6 +4,8 @@
 //
 // New records come in any clock. One bit of an arbitrary word is watched, since words are sent alike.
 
+`default_nettype none
+
 module fv_record_packets #(
   parameter int Words = 3
 ) (
@@ -77,3 +79,5 @@ module fv_record_packets #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -5,6 +5,8 @@
 //
 // Assumed: what leaves first after a reset is the first depth of a frame (frame_output sends whole frames).
 
+`default_nettype none
+
 module fv_threshold_comparator #(
   parameter int Width = 24
 ) (
@@ -60,3 +62,5 @@ module fv_threshold_comparator #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_beat_sums: any inputs; limits and peak count where something is above.
 
+`default_nettype none
+
 module protocol_beat_sums #(
   parameter int Lanes = 8
 ) (
@@ -14,3 +16,5 @@ module protocol_beat_sums #(
   assign {counts_peak, counts_peak_offset, counts_least_offset, counts_greatest_offset} = {4{count != '0}};
 
 endmodule
+
+`default_nettype wire

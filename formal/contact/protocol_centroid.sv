@@ -2,6 +2,8 @@
 // protocol_centroid: row_sum and area are held from start to done; no sum is more than that of as many largest
 // positions; means count with done.
 
+`default_nettype none
+
 module protocol_centroid #(
   parameter int PositionWidth = 7,
   parameter int AreaWidth     = 15,
@@ -41,3 +43,5 @@ module protocol_centroid #(
   end
 
 endmodule
+
+`default_nettype wire

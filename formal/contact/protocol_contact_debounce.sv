@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_contact_debounce: any inputs; began and ended count once there was a frame.
 
+`default_nettype none
+
 module protocol_contact_debounce (
   input  logic clk,
   input  logic rst,
@@ -19,3 +21,5 @@ module protocol_contact_debounce (
   end
 
 endmodule
+
+`default_nettype wire

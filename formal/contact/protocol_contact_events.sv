@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_contact_events: frames as depth_frames allows them.
 
+`default_nettype none
+
 module protocol_contact_events #(
   parameter int Rows    = 128,
   parameter int Columns = 128
@@ -23,3 +25,5 @@ module protocol_contact_events #(
   );
 
 endmodule
+
+`default_nettype wire

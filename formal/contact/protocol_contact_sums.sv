@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_contact_sums: frames as depth_frames allows them; area and sums count while they are valid.
 
+`default_nettype none
+
 module protocol_contact_sums #(
   parameter int Rows    = 128,
   parameter int Columns = 128
@@ -25,3 +27,5 @@ module protocol_contact_sums #(
   );
 
 endmodule
+
+`default_nettype wire

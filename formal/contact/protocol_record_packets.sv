@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_record_packets: any inputs; words of a packet count while they are valid.
 
+`default_nettype none
+
 module protocol_record_packets (
   input  logic clk,
   input  logic rst,
@@ -16,3 +18,5 @@ module protocol_record_packets (
   always_ff @(posedge clk) live <= live | rst;
 
 endmodule
+
+`default_nettype wire

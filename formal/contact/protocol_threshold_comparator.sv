@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_threshold_comparator: the first depth after a reset is the first of a frame.
 
+`default_nettype none
+
 module protocol_threshold_comparator (
   input  logic clk,
   input  logic rst,
@@ -20,3 +22,5 @@ module protocol_threshold_comparator (
   end
 
 endmodule
+
+`default_nettype wire

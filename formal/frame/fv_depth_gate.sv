@@ -7,6 +7,8 @@
 // One arbitrary word is followed: `pick` is free. Frames are of Words words, in successive enabled clocks, with any gaps
 // between them; drop_frames and m_ready move freely.
 
+`default_nettype none
+
 module fv_depth_gate
   import stream_pkg::*;
 #(
@@ -129,3 +131,5 @@ module fv_depth_gate
   end
 
 endmodule
+
+`default_nettype wire

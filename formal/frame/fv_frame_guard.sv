@@ -6,6 +6,8 @@
 //   Idle    between frames                      Open    `count` pixels of a frame taken, nothing wrong
 //   Broken  a fault in the frame: filled up     Dropped between frames behind a fault: words go until a start
 
+`default_nettype none
+
 module fv_frame_guard
   import stream_pkg::*;
 #(
@@ -154,3 +156,5 @@ module fv_frame_guard
   end
 
 endmodule
+
+`default_nettype wire

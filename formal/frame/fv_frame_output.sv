@@ -4,6 +4,8 @@
 // exactly where bursts and frames do not begin as they should. Whatever bursts come; frames are due at least Rows *
 // Columns enabled clocks apart (frame_tags).
 
+`default_nettype none
+
 module fv_frame_output
   import stream_pkg::*;
 #(
@@ -73,3 +75,5 @@ module fv_frame_output
   end
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 // else is ever due; held is high just while there are tags. Pushes come at least Pixels enabled clocks apart, else at
 // any time.
 
+`default_nettype none
+
 module fv_frame_tags #(
   parameter int Width   = 1,
   parameter int Latency = 10,
@@ -72,3 +74,5 @@ module fv_frame_tags #(
   end
 
 endmodule
+
+`default_nettype wire

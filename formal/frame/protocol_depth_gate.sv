@@ -2,6 +2,8 @@
 // protocol_depth_gate: frames of any number of words, in successive enabled clocks; after a reset the first word is a
 // frame's first. A word stays while en is low.
 
+`default_nettype none
+
 module protocol_depth_gate #(
   parameter int Width = 24
 ) (
@@ -39,3 +41,5 @@ module protocol_depth_gate #(
   assign {counts_tap_position, counts_tap_data} = {2{counts & tap_valid}};
 
 endmodule
+
+`default_nettype wire

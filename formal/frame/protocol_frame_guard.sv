@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_frame_guard: the source keeps to AXI4-Stream; any frames, whole or broken.
 
+`default_nettype none
+
 module protocol_frame_guard (
   input  logic        clk,
   input  logic        rst,
@@ -35,3 +37,5 @@ module protocol_frame_guard (
   assign counts_out_bad = pixel & out_frame_end;
 
 endmodule
+
+`default_nettype wire

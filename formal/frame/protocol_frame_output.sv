@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_frame_output: any inputs.
 
+`default_nettype none
+
 module protocol_frame_output (
   input  logic clk,
   input  logic rst,
@@ -16,3 +18,5 @@ module protocol_frame_output (
   assign counts_out_data = counts & out_valid;
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_frame_tags: frames end at least Pixels enabled clocks apart; a push stays while en is low.
 
+`default_nettype none
+
 module protocol_frame_tags #(
   parameter int Pixels = 16384
 ) (
@@ -26,3 +28,5 @@ module protocol_frame_tags #(
   end
 
 endmodule
+
+`default_nettype wire

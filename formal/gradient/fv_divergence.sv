@@ -6,6 +6,8 @@
 // In the first row the line is read before it has been written; that what is read there changes nothing is shown by f
 // itself, with a memory of any contents.
 
+`default_nettype none
+
 module fv_divergence #(
   parameter int Width   = 2,
   parameter int Rows    = 3,
@@ -98,3 +100,5 @@ module fv_divergence #(
   );
 
 endmodule
+
+`default_nettype wire

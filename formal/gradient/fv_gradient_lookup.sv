@@ -7,6 +7,8 @@
 // Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read; the
 // first pixels of two frames do not follow each other.
 
+`default_nettype none
+
 module fv_gradient_lookup #(
   parameter int Width          = 1,
   parameter int BitsPerChannel = 1,
@@ -120,3 +122,5 @@ module fv_gradient_lookup #(
   );
 
 endmodule
+
+`default_nettype wire

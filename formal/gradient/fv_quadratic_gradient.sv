@@ -7,6 +7,8 @@
 // One polynomial is followed: the deviations of the other colours are zero. Assumed, as axil_registers and frame_guard
 // have it: nothing is written while a change-over is due or in the clock of a read; frames are whole.
 
+`default_nettype none
+
 module fv_quadratic_gradient #(
   parameter int Polynomial = 0,
   parameter int Rows       = 2,
@@ -163,3 +165,5 @@ module fv_quadratic_gradient #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_divergence: pixels in raster order; how many rows a frame has is left open.
 
+`default_nettype none
+
 module protocol_divergence #(
   parameter int Columns = 128
 ) (
@@ -41,3 +43,5 @@ module protocol_divergence #(
   assign counts_out_data = counts_out_valid & out_valid;
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // protocol_gradient_lookup: nothing is written while a change of bank is due, or with a read. Frames have two pixels or
 // more. An entry of the table stands 2 clocks after it is asked for.
 
+`default_nettype none
+
 module protocol_gradient_lookup (
   input  logic       clk,
   input  logic       rst,
@@ -42,3 +44,5 @@ module protocol_gradient_lookup (
   assign {counts_out_position, counts_out_gx, counts_out_gy} = {3{counts_out_valid & out_valid}};
 
 endmodule
+
+`default_nettype wire

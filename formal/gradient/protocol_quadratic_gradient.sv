@@ -3,6 +3,8 @@
 // they are is left open. Nothing is written while a change of bank is due, or in the clock of a read. Inputs stay while
 // en is low.
 
+`default_nettype none
+
 module protocol_quadratic_gradient (
   input  logic       clk,
   input  logic       rst,
@@ -60,3 +62,5 @@ module protocol_quadratic_gradient (
   assign {counts_out_position, counts_out_gx, counts_out_gy} = {3{counts_out_valid & out_valid}};
 
 endmodule
+
+`default_nettype wire

@@ -4,6 +4,8 @@
 // burst. No word of the frame before, and none from power-up, enters: the specification has none, and the memory begins
 // with any contents. Rounding is proven of round_saturate.
 
+`default_nettype none
+
 module fv_back_substitution #(
   parameter int Rows  = 3,
   parameter int Size  = 8,
@@ -141,3 +143,5 @@ module fv_back_substitution #(
   bind ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule
+
+`default_nettype wire

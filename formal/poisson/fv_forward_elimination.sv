@@ -4,6 +4,8 @@
 // the last row of column 0 is minus the mean. No word of the frame before, and none from power-up, enters: the
 // specification has none, and the memories begin with any contents. Rounding is proven of round_saturate.
 
+`default_nettype none
+
 module fv_forward_elimination #(
   parameter int Rows    = 3,
   parameter int Size    = 8,
@@ -148,3 +150,5 @@ module fv_forward_elimination #(
   );
 
 endmodule
+
+`default_nettype wire

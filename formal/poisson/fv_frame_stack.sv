@@ -4,6 +4,8 @@
 // one before; frame_start with the first of each lane. Any gaps between bursts, any en, any frame number, and frames
 // that begin before the last one is whole.
 
+`default_nettype none
+
 module fv_frame_stack #(
   parameter int Width       = 1,
   parameter int Rows        = 3,
@@ -84,3 +86,5 @@ module fv_frame_stack #(
   bind ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule
+
+`default_nettype wire

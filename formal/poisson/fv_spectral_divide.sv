@@ -3,6 +3,8 @@
 // enabled clocks later; start and frame_start likewise; p counts from the frame's start. The data are 1, so that what
 // leaves is M 2^S of the ROM word; square.hex says which, for every p and t. Rounding is proven of round_saturate.
 
+`default_nettype none
+
 module fv_spectral_divide #(
   parameter int Size = 4,
   localparam int PositionWidth = $clog2(Size),
@@ -78,3 +80,5 @@ module fv_spectral_divide #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 // which says for every row and position which word that is: base + min(row, settled), in the last row one of its own
 // with its shift.
 
+`default_nettype none
+
 module fv_thomas_table #(
   parameter int Rows           = 6,
   parameter int Size           = 4,
@@ -62,3 +64,5 @@ module fv_thomas_table #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_thomas_table: rows of the frame; what is read counts once 5 enabled clocks have passed.
 
+`default_nettype none
+
 module protocol_thomas_table #(
   parameter int Rows = 128,
   localparam int RowWidth = $clog2(Rows)
@@ -18,3 +20,5 @@ module protocol_thomas_table #(
   assign counts_shift = counts_coefficient;
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // axil_client: on each channel of an AXI4-Lite port, what is offered stays until it is taken.
 
+`default_nettype none
+
 module axil_client #(
   parameter int AddressWidth = 10
 ) (
@@ -33,3 +35,5 @@ module axil_client #(
   );
 
 endmodule
+
+`default_nettype wire

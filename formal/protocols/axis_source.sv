@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // axis_source: what is offered stays until it is taken; nothing is offered in reset and in the clock after it.
 
+`default_nettype none
+
 module axis_source #(
   parameter int Width = 26
 ) (
@@ -19,3 +21,5 @@ module axis_source #(
   assign holds = stays & ~(valid & (rst | was_reset));
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 //
 // A frame may begin inside another; none but the first after a reset may lack its start.
 
+`default_nettype none
+
 module depth_frames #(
   parameter int Rows    = 128,
   parameter int Columns = 128
@@ -37,3 +39,5 @@ module depth_frames #(
   end
 
 endmodule
+
+`default_nettype wire

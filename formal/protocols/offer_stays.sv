@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // offer_stays: a word that was offered and not taken is offered again, unchanged.
 
+`default_nettype none
+
 module offer_stays #(
   parameter int Width = 8
 ) (
@@ -22,3 +24,5 @@ module offer_stays #(
   assign holds = ~waits | rst | (valid && word == waiting);
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_after_reset: anything on the inputs; outputs count once there was a reset.
 
+`default_nettype none
+
 module protocol_after_reset (
   input  logic clk,
   input  logic rst,
@@ -14,3 +16,5 @@ module protocol_after_reset (
   assign counts = live;
 
 endmodule
+
+`default_nettype wire

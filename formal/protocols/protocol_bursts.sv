@@ -4,6 +4,8 @@
 // A frame begins with in_frame_start, at any burst, after less than a frame too; after a reset none has begun. Rows is
 // the most bursts of a frame, 0 if they are not counted. Inputs stay while en is low.
 
+`default_nettype none
+
 module protocol_bursts #(
   parameter int Size = 8,
   parameter int Rows = 0
@@ -52,3 +54,5 @@ module protocol_bursts #(
   end
 
 endmodule
+
+`default_nettype wire

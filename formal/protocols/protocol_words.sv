@@ -4,6 +4,8 @@
 // A frame begins with in_frame_start. It has Rows times Size words, and the next begins after it is whole; a frame may
 // begin at any word if Rows is 0. Inputs stay while en is low.
 
+`default_nettype none
+
 module protocol_words #(
   parameter int Size = 8,
   parameter int Rows = 0
@@ -54,3 +56,5 @@ module protocol_words #(
   end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // raster_places: the place of each pixel of whole frames in raster order; only a reset cuts a frame short.
 
+`default_nettype none
+
 module raster_places #(
   parameter int Rows    = 4,
   parameter int Columns = 4
@@ -26,3 +28,5 @@ module raster_places #(
   end
 
 endmodule
+
+`default_nettype wire

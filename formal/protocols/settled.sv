@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // settled: high once so many clocks with en have passed.
 
+`default_nettype none
+
 module settled #(
   parameter int Clocks = 1
 ) (
@@ -14,3 +16,5 @@ module settled #(
   always_ff @(posedge clk) if (en && !settled) passed <= passed + 8'd1;
 
 endmodule
+
+`default_nettype wire

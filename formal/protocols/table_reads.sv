@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // table_reads: what is read from a table stands two clocks after it is asked for.
 
+`default_nettype none
+
 module table_reads (
   input  logic clk,
   input  logic reset,
@@ -23,3 +25,5 @@ module table_reads (
   end
 
 endmodule
+
+`default_nettype wire

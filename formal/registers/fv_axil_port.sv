@@ -3,6 +3,8 @@
 //
 // Nothing is assumed of the client, the registers or reset.
 
+`default_nettype none
+
 module fv_axil_port
   import register_map_pkg::*;
 (
@@ -96,3 +98,5 @@ module fv_axil_port
   end
 
 endmodule
+
+`default_nettype wire

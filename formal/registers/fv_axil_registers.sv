@@ -4,6 +4,8 @@
 // Nothing is assumed of the master, the pipeline, the tables or reset. The registers of the specification change by
 // what was seen on the ports alone.
 
+`default_nettype none
+
 module fv_axil_registers
   import register_map_pkg::*;
   import stream_pkg::*;
@@ -393,3 +395,5 @@ module fv_axil_registers
   end
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 //
 // One arbitrary table is followed: `pick` is free and constant. Nothing is assumed of writes, frames, tables or resets.
 
+`default_nettype none
+
 module fv_table_banks
   import register_map_pkg::*;
   import stream_pkg::*;
@@ -78,3 +80,5 @@ module fv_table_banks
   end
 
 endmodule
+
+`default_nettype wire

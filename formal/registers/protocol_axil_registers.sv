@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_axil_registers: the client keeps to AXI4-Lite; anything on all other inputs.
 
+`default_nettype none
+
 module protocol_axil_registers
   import register_map_pkg::*;
 (
@@ -38,3 +40,5 @@ module protocol_axil_registers
   assign {counts_s_axil_rdata, counts_s_axil_rresp} = {2{live & s_axil_rvalid}};
 
 endmodule
+
+`default_nettype wire

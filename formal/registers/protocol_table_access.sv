@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_table_access: no access in the clock after a read of a table; no write in a reset, and none that is refused.
 
+`default_nettype none
+
 module protocol_table_access (
   input  logic        clk,
   input  logic        rst,
@@ -26,3 +28,5 @@ module protocol_table_access (
   assign {counts_late_data, counts_late_refused} = {2{live & answered & ~asked}};
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_table_banks: no write in a reset, and none that is refused.
 
+`default_nettype none
+
 module protocol_table_banks (
   input  logic clk,
   input  logic rst,
@@ -16,3 +18,5 @@ module protocol_table_banks (
   assign counts = live;
 
 endmodule
+
+`default_nettype wire

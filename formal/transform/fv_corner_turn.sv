@@ -2,6 +2,8 @@
 // fv_corner_turn: an arbitrary word of an arbitrary lane leaves unchanged with its row, at its place; a row 3 enabled
 // clocks behind its last word; frame_start with the first row of a frame. Any gaps between frames, any en.
 
+`default_nettype none
+
 module fv_corner_turn #(
   parameter int Width = 1,
   parameter int Size  = 8,
@@ -103,3 +105,5 @@ module fv_corner_turn #(
   bind ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // fv_dst_forward: start and frame_start leave with the burst they came with, Latency enabled clocks later, and no
 // others. What becomes of the words is the matter of the cores within, each proven by itself.
 
+`default_nettype none
+
 module fv_dst_forward #(
   parameter int Size    = 8,
   parameter int Latency = 23,
@@ -29,3 +31,5 @@ module fv_dst_forward #(
   );
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 // beside the mode whose number adds up to Size with its own; mode 0 has 0 beside it. start and frame_start with the
 // first of a burst.
 
+`default_nettype none
+
 module fv_mode_pairs #(
   parameter int Width = 1,
   parameter int Size  = 8,
@@ -90,3 +92,5 @@ module fv_mode_pairs #(
   );
 
 endmodule
+
+`default_nettype wire

@@ -2,6 +2,8 @@
 // fv_row_reorder: an arbitrary word leaves at its place, unchanged; a burst 2 enabled clocks behind the last word of
 // its row; frame_start with the burst of a frame's first row. Any gaps, any en, and frames that begin inside a row.
 
+`default_nettype none
+
 module fv_row_reorder #(
   parameter int Width   = 1,
   parameter int Size    = 8,
@@ -84,3 +86,5 @@ module fv_row_reorder #(
   );
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 // b, Delay + 2 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the
 // count of clipped values with it. Rounding itself is proven of round_saturate.
 
+`default_nettype none
+
 module fv_sdf_butterfly #(
   parameter int Width       = 2,
   parameter int Size        = 8,
@@ -136,3 +138,5 @@ module fv_sdf_butterfly #(
   end
 
 endmodule
+
+`default_nettype wire

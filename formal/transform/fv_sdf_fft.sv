@@ -2,6 +2,8 @@
 // fv_sdf_fft: start and frame_start leave with the burst they came with, Latency enabled clocks later, and no others.
 // What becomes of the words is the matter of the cores within, each proven by itself.
 
+`default_nettype none
+
 module fv_sdf_fft #(
   parameter int Size    = 8,
   parameter int Inverse = 0,
@@ -30,3 +32,5 @@ module fv_sdf_fft #(
   );
 
 endmodule
+
+`default_nettype wire

@@ -3,6 +3,8 @@
 // clocks behind the first word of the last row, the others behind it without a pause; frame_start with the first. Any
 // gaps between bursts, any en, any frame number, and frames that begin before the last one is whole.
 
+`default_nettype none
+
 module fv_transpose #(
   parameter int Width      = 1,
   parameter int Size       = 4,
@@ -77,3 +79,5 @@ module fv_transpose #(
   );
 
 endmodule
+
+`default_nettype wire

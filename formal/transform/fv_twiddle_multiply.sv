@@ -3,6 +3,8 @@
 // clocks later; start and frame_start likewise. The words are 1 or j, so that what leaves is the factor itself, and
 // every field of it is seen; the exact product is proven of dot_product, rounding of round_saturate.
 
+`default_nettype none
+
 module fv_twiddle_multiply #(
   parameter int Size     = 8,
   parameter int Block    = 4,
@@ -83,3 +85,5 @@ module fv_twiddle_multiply #(
   end
 
 endmodule
+
+`default_nettype wire

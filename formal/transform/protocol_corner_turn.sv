@@ -4,6 +4,8 @@
 // A frame begins with in_frame_start in lane 0, when no row of the frame before is coming in; after a reset none has
 // begun. It ends with the first step in which no row begins. Inputs stay while en is low.
 
+`default_nettype none
+
 module protocol_corner_turn #(
   parameter int Size  = 8,
   parameter int Lanes = 2
@@ -65,3 +67,5 @@ module protocol_corner_turn #(
   end
 
 endmodule
+
+`default_nettype wire
