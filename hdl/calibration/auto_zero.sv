@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// auto_zero: depth less the floor, what depth reads at its place where nothing touches; Lanes depths in a beat.
+// auto_zero: depth less the zero offset (the floor), which is the depth that is computed while nothing touches.
 //
 //   out = sat( in - floor )
 //
-// The floor is as smooth as what makes it, lights that drift: means of blocks of 2^BlockLog2 by 2^BlockLog2 depths,
-// which gain_map interpolates, with several lanes floor_map. Words there are offset binary, so that they need not know
-// of signs; floor_0.hex has them so at power-up. A node of the table or of the capture is signed, nodes row by row in
-// the order of the stream. Stream in: frames of depth, whole but for a reset. Stream out: the same. Latency: that of
-// gain_map or floor_map, and 1 cycle; a gap or en low changes no depth. `active`: a frame is inside. `saturations`
-// counts the clipped depths of a beat. Banks, bus and capture: see gain_map and floor_map. Bit-accurate model:
-// models/tactile_depth/calibration/auto_zero.py.
+// The floor comes from lights that drift, so it is smooth: a mean for each block of 2^BlockLog2 by 2^BlockLog2 depths,
+// interpolated by gain_map, or with several lanes by floor_map. These hold unsigned words, so the sign bit is inverted
+// on the way in and out, and in floor_0.hex. A node on the bus or from the capture is signed; nodes go row by row in
+// the order of the stream. Stream in: beats of Lanes depths, whole frames but for a reset. Stream out: the same.
+// Latency: that of gain_map or floor_map, and 1 cycle; a gap or en low changes no depth. `active`: a frame is inside.
+// `saturations` counts the clipped depths of a beat. Banks, bus and capture: see gain_map and floor_map. Bit-accurate
+// model: models/tactile_depth/calibration/auto_zero.py.
 
 `default_nettype none
 

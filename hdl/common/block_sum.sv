@@ -3,9 +3,9 @@
 //
 //   sum of a block = all its words in the frames since a first one, modulo 2^SumWidth
 //
-// The sums are in a memory with a word for each block, blocks row by row. A row of a block is added up first, then
-// added to the sum in the memory, or in the block's first row of a first frame to nothing. What lies behind the last
-// whole block of a column belongs to no block.
+// The sums are in a memory with a word for each block, blocks row by row. The words of a block in one row are
+// added up first. Their sum is then added to that in the memory; in the block's first row of a first frame it replaces
+// what is there. Rows below the last whole block belong to no block.
 // Stream in: words of whole frames, raster order, the channels side by side; gaps change no sum. in_first_frame and
 // in_last_frame count with in_frame_start. Latency: the memory is written 4 cycles after the last word of a block's
 // row; write_complete: with it the sum holds the whole block of a last frame. The memory answers 1 cycle after read_en.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // multiply: a b, exact and signed. Latency: 1 cycle.
 //
-// The one place to put a multiplier of the technology: every product of two variables in the design is one of these.
+// Replace this file to use a multiplier of the technology: every product of two variables in the design is one of
+// these.
 // The product register has no reset and one enable, as a DSP block asks; operands may come from a register, a memory or
 // logic, and either may be the wider one.
 // Bit-accurate model: models/tactile_depth/common/multiply.py.

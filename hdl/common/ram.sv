@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ram: simple dual-port memory, one write and one read port, on one clock. Read latency: 1 cycle.
 //
-// The one place to put a memory macro. Nobody reads a word in the cycle that writes it, so what such a read returns is
-// left open. A File (one line per word, $readmemh) gives the contents at power-up.
+// The one place to put a memory macro. A core must not read a word in the cycle that writes it: what such a read
+// returns is undefined. A File (one line per word, $readmemh) gives the contents at power-up.
 // Bit-accurate model: models/tactile_depth/common/ram.py.
 
 `default_nettype none

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // beat_sums: count, sums, limits and peak of the depths of one beat that are above a threshold.
 //
-// The depths of a beat are neighbours in a row; an offset is the place of a depth in it, from 0. Stream in: a beat in
-// every cycle. Stream out: its sums, Latency = log2(Lanes) cycles later, by a tree with a register in each level. Where
-// nothing is above, count, offset_sum and volume are 0, and the others have no meaning.
-// Bit-accurate model: models/tactile_depth/contact/beat_sums.py.
+// The depths of a beat are neighbours in a row; an offset is the position of a depth in it, from 0. Stream in: a beat
+// in every cycle. Stream out: its sums, Latency = log2(Lanes) cycles later, by a tree with a register in each level.
+// Where nothing is above, count, offset_sum and volume are 0, and the others have no meaning. Bit-accurate model:
+// models/tactile_depth/contact/beat_sums.py.
 
 `default_nettype none
 

@@ -8,7 +8,7 @@
 //   timed_out      silence of `timeout` cycles   marked, filled up                           (timeout 0: wait for ever)
 //   start_missing  no tuser where a frame begins dropped up to the next tuser
 //
-// Each fault is one cycle of its output, once a broken frame. What is left of a broken frame on the input is dropped;
+// A fault is high for one cycle, once for each broken frame. What is left of a broken frame on the input is dropped;
 // the filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order;
 // with the last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
 // Bit-accurate model: models/tactile_depth/frame/frame_guard.py.

@@ -4,7 +4,8 @@
 //   z[i] = d[i] - c[i] z[i+1],  z[Rows] = 0
 //
 // Stream in: bursts of Size words d, Rows of them a frame, last row first, to the lanes in turn; with more than one,
-// each row Size / Lanes clocks after the row before. Stream out: the same bursts of z, Width bits. Latency: 8 cycles.
+// each row Size / Lanes clocks after the row before. Stream out: the same bursts of z, Width bits. Latency: 8 cycles;
+// en low: nothing moves.
 // The lanes are a ring: each takes z of the row below from the lane before it, the first from the last. One multiplier
 // for each lane. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
 

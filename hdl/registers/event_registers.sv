@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// event_registers: what happened: sticky bits, counters, the last latency, and the interrupt.
+// event_registers: keeps what happened: sticky bits, counters, the last latency, and the interrupt.
 //
 // A sticky bit of STATUS or INTERRUPT_STATUS is set by its event until a 1 is written to it. A counter counts the
 // clocks in which its event is high, SATURATIONS the values clipped. An event in the clock of a clearing write is kept.

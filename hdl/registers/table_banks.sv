@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// table_banks: says which of its two banks each table uses, and starts captures into the bank that is not in use.
+// table_banks: decides which of its two banks each table uses, and starts captures into the bank that is not in use.
 //
 // A 1 written to TABLE_COMMIT requests that its table change over, which it does with the next frame_start: table_bank
 // changes in that clock. A table takes the change over with the first pixel of its own next frame, or in a reset, and

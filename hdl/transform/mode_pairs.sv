@@ -2,12 +2,12 @@
 // mode_pairs: mode k and mode N - k side by side.
 //
 // Stream in: bursts of Size modes in bit-reversed order. Stream out: the same bursts, with the mirrored mode beside
-// each (mode N is 0). Latency: Size / 2 + 2 cycles.
+// each (mode N is 0). Latency: Size / 2 + 2 cycles; en low: nothing moves.
 //
 // In bit-reversed order the modes of positions 2^m .. 2^(m+1) - 1 are the odd multiples of N / 2^(m+1): N - k stands in
 // the same group, counted from its other end, so its position is that of k with every bit below the leading one
-// inverted. Half a burst is waited for; a memory of one burst serves, since a place is read before the next burst comes
-// to it. Bit-accurate model: models/tactile_depth/transform/mode_pairs.py.
+// inverted. The core waits for half a burst. A memory of one burst is enough, because each position is read before the
+// next burst reaches it. Bit-accurate model: models/tactile_depth/transform/mode_pairs.py.
 
 `default_nettype none
 

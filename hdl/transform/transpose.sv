@@ -8,8 +8,8 @@
 //   MakhoulOut = 1: the words of a column leave in Makhoul order
 //
 // In place: column c of a frame is read in the Size cycles before row c of the next frame can arrive, which is written
-// into the freed places. So rows and columns of the memory change roles from the frame read last. A column is read out
-// wholly before the first word is written over it, so the order inside a column is free.
+// into the positions just read. So rows and columns of the memory change roles from the frame read last. A column is
+// read out wholly before the first word is written over it, so the order inside a column is free.
 // Bit-accurate model: models/tactile_depth/transform/transpose.py.
 
 `default_nettype none

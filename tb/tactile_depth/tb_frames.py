@@ -63,8 +63,8 @@ async def nothing_unknown(dut: Any) -> None:
     pipeline = await started(dut, accepts="random")
     await RisingEdge(dut.clk)
     sending = cocotb.start_soon(pipeline.send(pipeline.frame()))
-    names = "s_axis_tready m_axis_tvalid m_axis_tlast m_axis_tuser contact s_axil_awready s_axil_wready"
-    pins = [getattr(dut, pin) for pin in f"{names} s_axil_bvalid s_axil_arready s_axil_rvalid".split()]
+    names = "s_axis_tready m_axis_tvalid m_axis_tlast m_axis_tuser m_event_tvalid contact irq s_axil_awready"
+    pins = [getattr(dut, pin) for pin in f"{names} s_axil_wready s_axil_bvalid s_axil_arready s_axil_rvalid".split()]
     for _ in range(first_depth_latency(pipeline.config) + pipeline.pixels):
         await RisingEdge(dut.clk)
         for pin in pins:
