@@ -196,7 +196,7 @@ PROOFS: tuple[Proof, ...] = (
     ),
     Proof(
         "flat_field",
-        "beside a pixel's gains, 9 enabled clocks after it came, stand its own colours, valid and place",
+        "beside a pixel's gains, 10 enabled clocks after it came, stand its own colours, valid and place",
         f"every clock reads a node; {WORD_FREE}",
         {"Meets": 1},
         depth=45,
@@ -275,7 +275,7 @@ PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "floor_capture",
-            "2^k frames behind a request, each node written once, 5 clocks behind its block, done after 6; memory as "
+            "2^k frames behind a request, each node written once, 6 clocks behind its block, done after 7; memory as "
             "ram.sv asks; of several lanes all a clock later, depths of a block in a beat added up",
             "two rows of blocks and a cut one, and a single whole one; rows, columns and frames are only counted; a "
             "beat of a block, and of two",

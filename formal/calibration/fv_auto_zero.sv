@@ -15,7 +15,7 @@ module fv_auto_zero #(
   parameter int Columns = 4,
   parameter int Width   = 2,
   parameter int Lanes   = 1,
-  parameter int Latency = 10,
+  parameter int Latency = 11,
   localparam int Nodes = (Rows / 2) * (Columns / 2),
   localparam int NodeWidth = $clog2(Nodes)
 ) (

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_flat_field: what leaves for a pixel is round(I gain / 2^Drop) - Offset, saturated, with the gain that gain_map has
 // for it; a dark pixel takes over what left before it in its row, the first of a row Flat; dark ones and clipped
-// colours are counted once. Valid and place travel along, 12 enabled clocks; while en is low they hold.
+// colours are counted once. Valid and place travel along, 13 enabled clocks; while en is low they hold.
 //
 // In two parts, which share what stands beside each other when the gains come. Meets 1: that is an arbitrary pixel's
-// own colours, valid and place, 9 enabled clocks after it came. Meets 0: whatever stands there, what leaves is right.
+// own colours, valid and place, 10 enabled clocks after it came. Meets 0: whatever stands there, what leaves is right.
 // Assumed: places in raster order; of each colour the lowest bits alone differ from zero (products of any width are
 // exact).
 
@@ -93,7 +93,7 @@ module flat_field_meets (
   input logic [23:0] colours      // blue, green, red
 );
 
-  localparam int ToGain = 9;
+  localparam int ToGain = 10;
 
   logic started = 1'b0;
   always_ff @(posedge clk) started <= 1'b1;

@@ -35,8 +35,8 @@ module fv_floor_capture #(
   input logic [NodeWidth-1:0]    chosen
 );
 
-  localparam int Clocks = 6;  // from the last word to done
-  localparam int ToMap = 5;   // from a block's last word to its floor
+  localparam int Clocks = 7;  // from the last word to done
+  localparam int ToMap = 6;   // from a block's last word to its floor
 
   logic busy, done, map_write;
   logic [NodeWidth-1:0] map_write_node;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_gain_map: every gain is the interpolation, rounded to even, of the nodes of the bank that was named when its frame
-// began; valid and data travel with it, 9 enabled clocks; while en is low all of them hold. An entry that is read is
+// began; valid and data travel with it, 10 enabled clocks; while en is low all of them hold. An entry that is read is
 // that of the bank not in use. In two parts: down a column (Along 0), the weighted sum of two nodes of the row that the
 // pixel is in, of the right bank; along a row (Along 1), gains between any two such sums.
 //
@@ -41,7 +41,7 @@ module fv_gain_map #(
   input logic                 in_data
 );
 
-  localparam int Latency = 9;
+  localparam int Latency = 10;
 
   logic table_in_use, out_valid, out_data, active;
   logic [Width-1:0] table_read_gain;
@@ -56,7 +56,7 @@ module fv_gain_map #(
   raster_counter #(.Rows(Rows), .Columns(Columns)) u_raster (.clk, .rst, .en, .in_valid, .row, .column, .position);
 
   // Pixels on their way: the one that came n enabled clocks ago is in field n - 1.
-  localparam int ToSum = 7;
+  localparam int ToSum = 8;
   localparam int Share = 2 * Block;
   localparam int SumWidth = Width + BlockLog2 + 1;
   logic [8*ToSum-1:0] places_q;  // {row, column}
@@ -164,7 +164,7 @@ module fv_gain_map #(
     logic [7:0] y, x;
     logic [NodeWidth-1:0] node, node_below;
     logic [SumWidth-1:0] weight, first, second, weighted;
-    logic [4*SumWidth-1:0] expected;
+    logic [5*SumWidth-1:0] expected;
     assign {row_2, column_2} = places_q[15:8];
     always_comb begin
       y = clamped(row_2, NodeRows);
@@ -177,14 +177,14 @@ module fv_gain_map #(
       weighted = (SumWidth'(Share) - weight) * first + weight * second;
     end
     logic segment, start;
-    assign segment = valid[5] && ends(places_q[43:40]);
-    assign start = valid[4] && places_q[35:32] == '0;
-    always_ff @(posedge clk) if (en) expected <= {expected[3*SumWidth-1:0], weighted};
+    assign segment = valid[6] && ends(places_q[51:48]);
+    assign start = valid[5] && places_q[43:40] == '0;
+    always_ff @(posedge clk) if (en) expected <= {expected[4*SumWidth-1:0], weighted};
     always_comb begin
       if (started) begin
         when: assert (dut.node_done == (segment || start) && dut.segment_done == segment && !(segment && start));
-        if (segment) of_a_node: assert (sum == expected[3*SumWidth+:SumWidth]);
-        if (start) of_the_first: assert (sum == expected[2*SumWidth+:SumWidth]);
+        if (segment) of_a_node: assert (sum == expected[4*SumWidth+:SumWidth]);
+        if (start) of_the_first: assert (sum == expected[3*SumWidth+:SumWidth]);
         weighed: cover (segment && weight != '0 && sum == SumWidth'(Share - 1) && changed);
       end
     end

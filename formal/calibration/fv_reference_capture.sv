@@ -29,8 +29,8 @@ module fv_reference_capture #(
   input logic [NodeWidth-1:0] chosen
 );
 
-  localparam int Clocks = Nodes * (4 + 3 * (Width + 3)) + 2;  // from the last pixel to done
-  localparam int Summed = 5;                                  // to the last sum in its place
+  localparam int Clocks = Nodes * (5 + 3 * (Width + 3)) + 2;  // from the last pixel to done
+  localparam int Summed = 6;                                  // to the last sum in its place
 
   logic busy, done, map_write, map_read;
   logic [NodeWidth-1:0] map_write_node, map_read_node;

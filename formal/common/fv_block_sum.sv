@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_block_sum: a sum is written 4 clocks behind the last word of a block's row, complete behind the last row of a last
+// fv_block_sum: a sum is written 5 clocks behind the last word of a block's row, complete behind the last row of a last
 // frame, and at no other time; an arbitrary word, the only one that is not zero since the first frame, is added once to
 // its block and to no other; what does nothing but add does so to all. No sum is read before it was written, or in the
 // clock that writes it.
@@ -28,7 +28,7 @@ module fv_block_sum #(
   input logic [BlockWidth-1:0] chosen
 );
 
-  localparam int ToSum = 4;
+  localparam int ToSum = 5;
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);

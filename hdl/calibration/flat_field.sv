@@ -8,7 +8,7 @@
 // its top bit set. It takes over what left for the pixel before it in its row, the first of a row Flat; `dark` is high
 // one cycle for each. Nothing that a dark pixel would clip counts as saturation.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0. Stream out: colours relative to the reference.
-// Latency: 12 cycles. Banks, bus and capture: see gain_map. Bit-accurate model:
+// Latency: 13 cycles. Banks, bus and capture: see gain_map. Bit-accurate model:
 // models/tactile_depth/calibration/flat_field.py.
 
 `default_nettype none

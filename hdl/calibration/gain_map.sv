@@ -6,7 +6,7 @@
 // along rows and columns alike for blocks of b = 2^BlockLog2 pixels; exact, then one rounding half to even.
 // Down a column by a multiplication of each node as it is read, along a row by an accumulator: two nodes a block.
 // Stream in: data of the pixels of whole frames, raster order. Stream out: the same, with the gains {B, G, R} of each
-// pixel. Latency: 9 cycles; a gap in, a gap out.
+// pixel. Latency: 10 cycles; a gap in, a gap out.
 // Gains are held in banked tables. A frame uses the bank that table_bank names with its first pixel, or in reset;
 // table_in_use says which. The other is written and read by the bus (a gain at index 4 node + channel: red 0, green
 // 1, blue 2; a channel that is not there is not written and reads 0) or by the capture (all gains of a node, read one
@@ -57,11 +57,10 @@ module gain_map #(
   output logic                      active           // a pixel is inside
 );
 
-  localparam int Latency = 9;
-  localparam int ToSum = 6;  // stages from the position to the accumulator
+  localparam int Latency = 10;
+  localparam int ToSum = 7;  // stages from the position to the accumulator
   localparam int Half = 1 << (BlockLog2 - 1);
   localparam int ColumnWidth = $clog2(Columns);
-  localparam int RowWidth = $clog2(Rows) + 1;
   localparam int NodeColumnWidth = ColumnWidth - BlockLog2;
   localparam int ShareBits = BlockLog2 + 1;  // 2b is 2^ShareBits
   localparam int SumWidth = Width + ShareBits;
@@ -69,14 +68,14 @@ module gain_map #(
 
   delay_line #(.Width(DataWidth), .Delay(Latency)) u_delay (.clk, .rst, .en, .in(in_data), .out(out_data));
 
-  // Row and column of the pixel. Columns are counted from half a block on, so that a node begins at phase 0; columns
+  // Column of the pixel. Columns are counted from half a block on, so that a node begins at phase 0; columns
   // before the first and behind the last node's centre both count as the last node's: there the gain stands still.
 
   logic [Latency-1:0] valid_q;
-  logic frame_start_q, row_start_q, row_starts, begins, inner, segment;
+  logic frame_start_q, row_start_q, row_starts, row_ended, begins, inner, segment;
   logic [ColumnWidth-1:0] column, shifted;
-  logic [RowWidth-1:0] row, row_shifted;
   logic [NodeColumnWidth-1:0] node;
+  assign row_ended = column == '1;
   assign row_starts = valid_q[0] & row_start_q;
   assign shifted = column - ColumnWidth'(Half);
   assign node = shifted[ColumnWidth-1:BlockLog2];
@@ -86,42 +85,45 @@ module gain_map #(
   assign active = |valid_q;
   assign out_valid = valid_q[Latency-1];
 
-  logic [RowWidth-BlockLog2-1:0] node_row, lower_row;
+  // Rows of the nodes above and below the pixels, and the phase between them: both are the same row above the first
+  // node's centre and below the last node's.
+
+  localparam int NodeRowWidth = NodeRows > 1 ? $clog2(NodeRows) : 1;
+  localparam logic [NodeRowWidth-1:0] LastRow = NodeRowWidth'(NodeRows - 1);
+  logic [NodeRowWidth-1:0] above, below;
   logic [BlockLog2-1:0] row_phase;
-  logic above, below;  // the first node's centre, the last node's
-  assign row_shifted = row - RowWidth'(Half);
-  assign above = row < RowWidth'($unsigned(Half));
-  assign {node_row, row_phase} = row_shifted;
-  assign below = RowWidth'(node_row) + RowWidth'(1) >= RowWidth'($unsigned(NodeRows));
-  always_comb begin
-    lower_row = node_row;
-    if (below) lower_row = (RowWidth - BlockLog2)'(NodeRows - 1);
-    if (above) lower_row = '0;
+  always_ff @(posedge clk) begin
+    if (en && in_valid) begin
+      if (in_frame_start) begin
+        {above, below} <= '0;
+        row_phase <= BlockLog2'(Half);
+      end else if (row_ended) begin
+        row_phase <= row_phase + BlockLog2'(1);
+        if (row_phase == '1) {above, below} <= {below, below == LastRow ? LastRow : below + NodeRowWidth'(1)};
+      end
+    end
   end
 
   // Reads of a row's first node come with its first pixel, those of every other node one cycle after the pixel at the
   // centre of the node before it. So two rows, or two frames, never meet, and at b = 2 a node is read in every cycle.
   // The last node of a frame is used up in the cycle of the next frame's first read.
 
-  logic row_starts_q, segment_q, segment_q2, upper, below_too, reading;
+  logic row_starts_q, segment_q, segment_q2, second, reading;
   logic [NodeColumnWidth-1:0] next_q, next_q2, read_column;
-  logic [RowWidth-BlockLog2-1:0] read_row;
   logic [NodeWidth-1:0] read_node;
-  assign upper = row_starts_q | segment_q2;
-  assign reading = row_starts | segment_q | upper;
-  assign below_too = upper & ~above & ~below;
-  assign read_row = lower_row + (RowWidth - BlockLog2)'(below_too);
+  assign second = row_starts_q | segment_q2;  // the node below
+  assign reading = row_starts | segment_q | second;
   always_comb begin
     read_column = '0;
     if (segment_q) read_column = next_q;
     if (segment_q2) read_column = next_q2;
   end
-  assign read_node = NodeWidth'({read_row, read_column});
+  assign read_node = NodeWidth'({second ? below : above, read_column});
 
   logic [ShareBits-1:0] share;
-  logic [ShareBits:0] weight, weight_q;
+  logic [ShareBits:0] weight, weight_q, weight_q2;
   assign share = {row_phase, 1'b1};  // of the node below: above the first and below the last both are one
-  assign weight = upper ? {1'b0, share} : {1'b1, {ShareBits{1'b0}}} - {1'b0, share};
+  assign weight = second ? {1'b0, share} : {1'b1, {ShareBits{1'b0}}} - {1'b0, share};
 
   // The tables, one for each channel. Capture and bus share the ports of the free bank.
 
@@ -129,7 +131,7 @@ module gain_map #(
   logic [1:0] channel, fetched_channel;
   logic fetched;
   logic [3:0][Width-1:0] free_gains;
-  logic [Channels*Width-1:0] gains;
+  logic [Channels*Width-1:0] gains, gains_q;
   logic [Channels-1:0] in_use;
   assign {table_node, channel} = table_index;
   assign write_node = capture_write ? capture_write_node : table_node;
@@ -148,9 +150,10 @@ module gain_map #(
   end
   assign free_gains[3:Channels] = '0;
 
-  // Stages behind the read.
+  // Stages behind the read: the register behind the memories, the product, the sum.
 
-  logic upper_q, segment_read_q, first_q2, segment_read_q2, node_done, segment_done;
+  logic second_q, second_q2, first_q3, node_done, segment_done;
+  logic [2:0] segment_read_q;
   logic [ToSum-1:0] begins_q, inner_q, start_q;
 
   always_ff @(posedge clk) begin
@@ -158,18 +161,19 @@ module gain_map #(
       valid_q <= {valid_q[Latency-2:0], in_valid};
       if (in_valid) begin
         frame_start_q <= in_frame_start;
-        row_start_q <= in_frame_start | column == '1;
-        {row, column} <= in_frame_start ? '0 : {row, column} + (RowWidth + ColumnWidth)'(1);
+        row_start_q <= in_frame_start | row_ended;
+        column <= in_frame_start ? '0 : column + ColumnWidth'(1);
       end
       row_starts_q <= row_starts;
       {segment_q2, segment_q} <= {segment_q, segment};
       {next_q2, next_q} <= {next_q, node + NodeColumnWidth'(1)};
-      weight_q <= weight;
-      upper_q <= upper;
-      first_q2 <= ~upper_q;
-      {segment_read_q2, segment_read_q} <= {segment_read_q, segment_q2};
-      node_done <= ~first_q2;
-      segment_done <= segment_read_q2;
+      {weight_q2, weight_q} <= {weight_q, weight};
+      gains_q <= gains;
+      {second_q2, second_q} <= {second_q, second};
+      first_q3 <= ~second_q2;
+      segment_read_q <= {segment_read_q[1:0], segment_q2};
+      node_done <= ~first_q3;
+      segment_done <= segment_read_q[2];
       begins_q <= {begins_q[ToSum-2:0], begins};
       inner_q <= {inner_q[ToSum-2:0], inner};
       start_q <= {start_q[ToSum-2:0], row_start_q};
@@ -180,9 +184,9 @@ module gain_map #(
     if (rst) begin
       valid_q <= '0;
       row_starts_q <= 1'b0;
-      upper_q <= 1'b0;
-      first_q2 <= 1'b1;
-      {segment_q2, segment_q, segment_read_q2, segment_read_q} <= '0;
+      {second_q2, second_q} <= '0;
+      first_q3 <= 1'b1;
+      {segment_q2, segment_q, segment_read_q} <= '0;
       {node_done, segment_done} <= '0;
     end
   end
@@ -199,7 +203,7 @@ module gain_map #(
     assign sum = sums[c*SumWidth+:SumWidth];
     logic signed [Width+ShareBits+2:0] product;
     multiply #(.AWidth(Width + 1), .BWidth(ShareBits + 2)) u_product (
-      .clk, .en, .a({1'b0, gains[c*Width+:Width]}), .b({1'b0, weight_q}), .product
+      .clk, .en, .a({1'b0, gains_q[c*Width+:Width]}), .b({1'b0, weight_q2}), .product
     );
     logic unused_signs;
     assign unused_signs = ^product[Width+ShareBits+2:SumWidth];
@@ -217,7 +221,7 @@ module gain_map #(
     always_ff @(posedge clk) begin
       if (en) begin
         // In this form: with the sum first, Yosys 0.70 packs it into a DSP48 with the choice inverted.
-        sums[c*SumWidth+:SumWidth] <= (first_q2 ? '0 : sum) + product[SumWidth-1:0];
+        sums[c*SumWidth+:SumWidth] <= (first_q3 ? '0 : sum) + product[SumWidth-1:0];
         if (node_done) right <= sum;
         if (segment_done) begin
           left <= right;

@@ -5,7 +5,7 @@
 //
 // `request` starts a capture at any time, afresh if it is busy. From the next start of frame on it sums each block and
 // channel over 2^k whole frames, k = log2_frames at that start, at most MaxLog2; in_bad with a frame's last pixel
-// starts it afresh. Then one sequential divider turns each sum into its gain, channel by channel: 4 + 3 (Width + 3)
+// starts it afresh. Then one sequential divider turns each sum into its gain, channel by channel: 5 + 3 (Width + 3)
 // cycles a node. All this in the bank of gain_map that is not in use; `done` is high for one cycle after the last gain
 // is written, and asks for the change-over. While busy nobody else writes that bank, nor asks for a change-over.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that gain_map takes; gaps and en low change no gain.
@@ -50,8 +50,7 @@ module reference_capture
   localparam int QuotientWidth = Width + 1;  // one bit to round by
   localparam int Scale = GainFraction + 1 + 2 * BlockLog2 - QuotientWidth;  // the numerator: 2^(Scale + k + its width)
   localparam int CountWidth = MaxLog2 > 0 ? MaxLog2 : 1;
-  localparam int ReadStep = 2;  // of Fetching; the cycles before it let the last word be written
-  localparam int TakeStep = 3;
+  localparam int ReadStep = 3;  // of Fetching; the cycles before it let the last word be written
 
   typedef enum logic [2:0] {Idle, Armed, Summing, Fetching, Dividing} state_e;
   state_e state;
@@ -95,7 +94,7 @@ module reference_capture
     .done(divided), .quotient, .remainder(unused_remainder), .overflow
   );
 
-  logic fetches, finished;
+  logic fetches, fetched, finished;
   assign fetches = state == Fetching & step == 2'(ReadStep);
   assign finished = gains_valid & divide_node == NodeWidth'(Nodes - 1);
   assign map_read = sum_read | fetches;
@@ -106,6 +105,7 @@ module reference_capture
 
   always_ff @(posedge clk) begin
     step <= step + 2'd1;
+    fetched <= fetches;
     divide_start <= 1'b0;
     gains_valid <= node_ends;
     done <= finished;
@@ -126,7 +126,7 @@ module reference_capture
       step <= '0;
     end
     if (last) divide_node <= '0;
-    if (state == Fetching && step == 2'(TakeStep)) begin
+    if (state == Fetching && fetched) begin
       state <= Dividing;
       word <= map_read_gains;
       channel <= '0;

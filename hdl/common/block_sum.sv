@@ -7,7 +7,7 @@
 // added up first. Their sum is then added to that in the memory; in the block's first row of a first frame it replaces
 // what is there. Rows below the last whole block belong to no block.
 // Stream in: words of whole frames, raster order, the channels side by side; gaps change no sum. in_first_frame and
-// in_last_frame count with in_frame_start. Latency: the memory is written 4 cycles after the last word of a block's
+// in_last_frame count with in_frame_start. Latency: the memory is written 5 cycles after the last word of a block's
 // row; write_complete: with it the sum holds the whole block of a last frame. The memory answers 1 cycle after read_en.
 // Bit-accurate model: models/tactile_depth/common/block_sum.py.
 
@@ -54,10 +54,10 @@ module block_sum #(
 
   // A block's row ends; its sum begins, or is complete.
   logic row_ends, begins, completes;
-  logic [2:0] row_ends_q = '0;  // a cycle before the first reset writes nothing
-  logic [2:0] completes_q;
+  logic [3:0] row_ends_q = '0;  // a cycle before the first reset writes nothing
+  logic [3:0] completes_q;
   logic [1:0] begins_q;
-  logic [BlockWidth-1:0] block, block_q, block_q2, block_q3;
+  logic [BlockWidth-1:0] block, block_q, block_q2, block_q3, block_q4;
   assign row_ends = valid_q & (column & InBlock) == InBlock & row < RowWidth'($unsigned(BlockRows << BlockLog2));
   assign begins = first_frame & row[BlockLog2-1:0] == '0;
   assign completes = last_frame & row[BlockLog2-1:0] == '1;
@@ -65,9 +65,9 @@ module block_sum #(
 
   assign read_en = row_ends_q[0] & ~begins_q[0];
   assign read_block = block_q;
-  assign write_en = row_ends_q[2];
-  assign write_block = block_q3;
-  assign write_complete = row_ends_q[2] & completes_q[2];
+  assign write_en = row_ends_q[3];
+  assign write_block = block_q4;
+  assign write_complete = row_ends_q[3] & completes_q[3];
 
   always_ff @(posedge clk) begin
     valid_q <= in_valid;
@@ -76,10 +76,10 @@ module block_sum #(
       data_q <= in_data;
       if (in_frame_start) {first_frame, last_frame} <= {in_first_frame, in_last_frame};
     end
-    row_ends_q <= {row_ends_q[1:0], row_ends};
+    row_ends_q <= {row_ends_q[2:0], row_ends};
     begins_q <= {begins_q[0], begins};
-    completes_q <= {completes_q[1:0], completes};
-    {block_q3, block_q2, block_q} <= {block_q2, block_q, block};
+    completes_q <= {completes_q[2:0], completes};
+    {block_q4, block_q3, block_q2, block_q} <= {block_q3, block_q2, block_q, block};
     if (rst) begin
       valid_q <= 1'b0;
       row_ends_q <= '0;
@@ -88,8 +88,8 @@ module block_sum #(
 
   for (genvar c = 0; c < Channels; c++) begin : g_channel
     logic [Width-1:0] word;
-    logic [RowSumWidth-1:0] row_sum, row_sum_q;
-    logic [SumWidth-1:0] sum;
+    logic [RowSumWidth-1:0] row_sum, row_sum_q, row_sum_q2;
+    logic [SumWidth-1:0] sum, sum_read;
     assign word = data_q[c*Width+:Width];
     assign write_sums[c*SumWidth+:SumWidth] = sum;
     always_ff @(posedge clk) begin
@@ -97,9 +97,9 @@ module block_sum #(
         row_sum <= ((column & InBlock) == '0 ? '0 : row_sum)
             + (Signed != 0 ? RowSumWidth'($signed(word)) : RowSumWidth'(word));
       end
-      row_sum_q <= row_sum;
-      sum <= (begins_q[1] ? '0 : read_sums[c*SumWidth+:SumWidth])
-          + {{(SumWidth - RowSumWidth) {Signed != 0 & row_sum_q[RowSumWidth-1]}}, row_sum_q};
+      {row_sum_q2, row_sum_q} <= {row_sum_q, row_sum};
+      sum_read <= begins_q[1] ? '0 : read_sums[c*SumWidth+:SumWidth];
+      sum <= sum_read + {{(SumWidth - RowSumWidth) {Signed != 0 & row_sum_q2[RowSumWidth-1]}}, row_sum_q2};
     end
   end
 
@@ -117,7 +117,7 @@ module block_sum #(
     SumWidth_must_be_more_than_Width_plus_ColumnLog2 u_refused ();
   end
   if (Columns < 4) begin : g_refused_4
-    four_words_a_row_are_needed_an_addition_takes_two_clocks u_refused ();
+    four_words_a_row_are_needed_an_addition_takes_three_clocks u_refused ();
   end
 
 endmodule

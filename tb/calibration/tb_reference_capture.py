@@ -10,13 +10,14 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.calibration.reference_capture import reference_capture, reference_capture_clocks
+from tactile_depth.common.block_sum import CYCLES_TO_SUM
 from tactile_depth.configuration import DARKEST_LOG2
 from tb.calibration.capture_bench import request, request_after
 from tb.pixels import pack
 from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, sample, send_apart
 
 PIXELS = 512  # that a test sends, about
-SUM_CLOCKS = 5  # from a pixel to its sum in the memory
+SUM_CLOCKS = CYCLES_TO_SUM + 1  # from a pixel to its sum in the memory
 FIELDS = ["pixel", "position", "bad"]
 
 

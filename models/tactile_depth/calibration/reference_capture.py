@@ -13,7 +13,7 @@ from tactile_depth.configuration import PIXEL_WIDTH, Configuration
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; large blocks reduce it (`largest_log2_frames`)."""
-READ_CLOCKS = 4
+READ_CLOCKS = 5
 """Cycles that the divider takes to read a node: write the node before it, wait for the memory, read, take."""
 
 

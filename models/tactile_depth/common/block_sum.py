@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-CYCLES_TO_SUM = 4
+CYCLES_TO_SUM = 5
 """Cycles from the last word of a block's row to the write of its sum."""
 
 
