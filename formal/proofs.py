@@ -92,19 +92,27 @@ PROOFS: tuple[Proof, ...] = (
         free=("write_ready", "read_valid", "word"),
         clocks=2,
     ),
-    Proof(
-        "threshold_comparator", "contact within one clock of a depth above the threshold, never otherwise", FULL_WIDTH
+    *(
+        Proof(
+            "threshold_comparator",
+            "contact within one clock of a beat with a depth above the threshold, never otherwise",
+            f"{FULL_WIDTH}; of several depths any one decides",
+            {"Lanes": lanes},
+        )
+        for lanes in (1, 4)
     ),
     Proof("beat_sums", "sums, limits and peak of an arbitrary beat, 2 clocks later", "sums are exact at any width"),
     *(
         Proof(
             "contact_sums",
-            "area 2 and sums 3 clocks after a frame's last depth; limits and peak enclose what is above, are attained",
-            "positions are only counted; sums are exact at any width; either order of rows",
-            {"BottomFirst": bottom_first},
+            "area 2 and sums 3 + log2(Lanes) clocks after a frame's last beat; limits and peak enclose what is above, "
+            "are attained",
+            "positions are only counted; sums are exact at any width; either order of rows; of several lanes, sums of a "
+            "beat are proven of beat_sums",
+            {"BottomFirst": bottom_first, "Columns": columns, "Lanes": lanes},
             depth=30,
         )
-        for bottom_first in (0, 1)
+        for bottom_first, columns, lanes in ((0, 3, 1), (1, 3, 1), (0, 4, 2), (1, 4, 2))
     ),
     Proof(
         "contact_debounce",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_contact_sums: area 2 clocks after the last depth of each frame, sums 3; the area counts the depths above the
+// fv_contact_sums: area 2 clocks after the last beat of each frame, sums 3 + log2(Lanes); the area counts the depths above the
 // threshold; limits and peak enclose an arbitrary depth above it, and are attained; the first of equal peaks.
 //
 // Whatever frames come, one may begin inside another; `touching` takes any value in any clock. Sums of rows, columns and
@@ -13,13 +13,14 @@ module fv_contact_sums
   parameter int Width       = 2,
   parameter int Rows        = 2,
   parameter int Columns     = 3,
+  parameter int Lanes       = 1,
   parameter int BottomFirst = 0
 ) (
   input logic                    clk,
   input logic                    rst,
   input logic                    in_valid,
   input logic                    restart,
-  input logic signed [Width-1:0] in_data,
+  input logic [Lanes*Width-1:0]  in_data,
   input logic signed [Width:0]   on_level,
   input logic signed [Width:0]   off_level,
   input logic                    touching,
@@ -28,6 +29,8 @@ module fv_contact_sums
 
   localparam int Pixels = Rows * Columns;
   localparam int AreaWidth = $clog2(Pixels + 1);
+  localparam int ToSums = 3 + $clog2(Lanes);  // clocks from the last beat of a frame
+  localparam int Behind = ToSums - 2;         // clocks from the area to the sums
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
@@ -36,33 +39,49 @@ module fv_contact_sums
   logic [AreaWidth-1:0] area;
   depth_position_t in_position;
   contact_sums_t sums;
-  contact_sums #(.Width(Width), .Rows(Rows), .Columns(Columns), .BottomFirst(BottomFirst)) dut (
+  contact_sums #(
+    .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
+  ) dut (
     .clk, .rst, .in_valid, .in_position, .in_data, .on_threshold(32'(on_level)), .off_threshold(32'(off_level)), .touching,
     .area_valid, .area, .sums_valid, .sums
   );
 
-  logic [3:0] next_place, place;
+  logic [3:0] next_place, place;  // of the first depth of a beat
   assign in_position.frame_start = restart | (next_place == '0);
   assign place = in_position.frame_start ? '0 : next_place;
-  assign in_position.row_end = place % 4'(Columns) == 4'(Columns - 1);
-  assign in_position.frame_end = place == 4'(Pixels - 1);
+  assign in_position.row_end = place % 4'(Columns) == 4'(Columns - Lanes);
+  assign in_position.frame_end = place == 4'(Pixels - Lanes);
 
-  // A depth one clock later, with the thresholds of its frame.
-  logic valid_q, first_q, above;
-  logic signed [Width-1:0] data_q;
+  // A beat one clock later, with the thresholds of its frame.
+  logic valid_q, first_q;
+  logic [Lanes*Width-1:0] data_q;
   logic signed [Width:0] on_q, off_q;
   logic [3:0] place_q;
-  logic [15:0] row_q, column_q;
-  assign above = valid_q & ((Width + 1)'(data_q) > (touching ? off_q : on_q));
+  logic [15:0] row_q;
   assign row_q = BottomFirst != 0 ? 16'(Rows - 1) - 16'(place_q / 4'(Columns)) : 16'(place_q / 4'(Columns));
-  assign column_q = 16'(place_q % 4'(Columns));
 
   // What the frame should come to; an arbitrary depth, row and column of it.
-  logic [2:0] due;
+  logic [ToSums-1:0] due;
   logic [3:0] watched, watched_row, watched_column;
-  logic [AreaWidth-1:0] count, count_q;
+  logic [Lanes-1:0] above, is_watched, in_watched_column;
+  logic signed [Width-1:0] depth, depth_now, depth_q;
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    logic signed [Width-1:0] of_lane;
+    assign of_lane = data_q[lane*Width+:Width];
+    assign above[lane] = valid_q & ((Width + 1)'(of_lane) > (touching ? off_q : on_q));
+    assign is_watched[lane] = place_q + 4'(lane) == watched;
+    assign in_watched_column[lane] = (place_q + 4'(lane)) % 4'(Columns) == watched_column;
+  end
+  logic [AreaWidth-1:0] above_count, count, count_q;
   logic held, held_q, in_row, in_row_q, in_column, in_column_q;
-  logic signed [Width-1:0] depth, depth_q;
+  always_comb begin
+    above_count = '0;
+    depth_now = depth;
+    for (int lane = 0; lane < Lanes; lane++) begin
+      above_count += AreaWidth'(above[lane]);
+      if (is_watched[lane]) depth_now = data_q[lane*Width+:Width];
+    end
+  end
   logic signed [31:0] peak;
   logic [3:0] peak_place;
   assign peak = $signed(sums.peak);
@@ -70,27 +89,29 @@ module fv_contact_sums
       + sums.peak_column);
   assign watched_row = BottomFirst != 0 ? 4'(Rows - 1) - watched / 4'(Columns) : watched / 4'(Columns);
   assign watched_column = watched % 4'(Columns);
+  logic [Behind*(AreaWidth+3+Width)-1:0] later;  // what the sums should say, when they come
+  assign {count_q, held_q, in_row_q, in_column_q, depth_q} = later[(Behind-1)*(AreaWidth+3+Width)+:AreaWidth+3+Width];
 
   always_ff @(posedge clk) begin
     started <= 1'b1;
     if (!started) watched <= chosen;
     if (in_valid) begin
-      next_place <= in_position.frame_end ? '0 : place + 4'd1;
+      next_place <= in_position.frame_end ? '0 : place + 4'(Lanes);
       if (in_position.frame_start) {on_q, off_q} <= {on_level, off_level};
     end
     valid_q <= in_valid & ~rst;
     first_q <= in_position.frame_start;
     data_q <= in_data;
     place_q <= place;
-    due <= {due[1:0], in_valid & in_position.frame_end};
+    due <= {due[ToSums-2:0], in_valid & in_position.frame_end};
     if (valid_q) begin
-      count <= (first_q ? '0 : count) + AreaWidth'(above);
-      held <= place_q == watched ? above : held & ~first_q;
-      in_row <= (above & row_q == 16'(watched_row)) | (in_row & ~first_q);
-      in_column <= (above & column_q == 16'(watched_column)) | (in_column & ~first_q);
-      if (place_q == watched) depth <= data_q;
+      count <= (first_q ? '0 : count) + above_count;
+      held <= is_watched != '0 ? (above & is_watched) != '0 : held & ~first_q;
+      in_row <= (above != '0 & row_q == 16'(watched_row)) | (in_row & ~first_q);
+      in_column <= ((above & in_watched_column) != '0) | (in_column & ~first_q);
+      depth <= depth_now;
     end
-    {count_q, held_q, in_row_q, in_column_q, depth_q} <= {count, held, in_row, in_column, depth};
+    later <= (Behind * (AreaWidth + 3 + Width))'({later, count, held, in_row, in_column, depth});
     if (rst) begin
       next_place <= '0;
       due <= '0;
@@ -101,7 +122,7 @@ module fv_contact_sums
   always_comb begin
     if (started) begin
       area_in_time: assert (area_valid == due[1]);
-      sums_in_time: assert (sums_valid == due[2]);
+      sums_in_time: assert (sums_valid == due[ToSums-1]);
       if (area_valid) area_of_frame: assert (area == count);
       if (sums_valid) begin
         none: assert (count_q != 0 || sums == '0);
@@ -123,7 +144,7 @@ module fv_contact_sums
       end
       some_above: cover (sums_valid && held_q && count_q == AreaWidth'(3) && peak != 32'(depth_q));
       none_above: cover (sums_valid && count_q == 0);
-      next_follows: cover (area_valid && above && first_q);
+      next_follows: cover (area_valid && above != '0 && first_q);
     end
   end
 

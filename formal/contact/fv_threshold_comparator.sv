@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_threshold_comparator: contact rises in the clock after a depth above the threshold leaves, and at no other time.
+// fv_threshold_comparator: contact rises in the clock after a beat with a depth above the threshold leaves, and at no other time.
 // While hold is high it does not fall. Otherwise it is high from such a depth on until the clock after the first depth of
 // the next frame, so it falls in the clock after hold is cleared if this frame has had no depth above the threshold.
 //
@@ -8,19 +8,20 @@
 `default_nettype none
 
 module fv_threshold_comparator #(
-  parameter int Width = 24
+  parameter int Width = 24,
+  parameter int Lanes = 1
 ) (
-  input logic                    clk,
-  input logic                    rst,
-  input logic                    in_valid,
-  input logic                    in_frame_start,
-  input logic signed [Width-1:0] in_data,
-  input logic signed [31:0]      threshold,
-  input logic                    hold
+  input logic                   clk,
+  input logic                   rst,
+  input logic                   in_valid,
+  input logic                   in_frame_start,
+  input logic [Lanes*Width-1:0] in_data,
+  input logic signed [31:0]     threshold,
+  input logic                   hold
 );
 
   logic contact;
-  threshold_comparator #(.Width(Width)) dut (
+  threshold_comparator #(.Width(Width), .Lanes(Lanes)) dut (
     .clk, .rst, .in_valid, .in_frame_start, .in_data, .threshold, .hold, .contact
   );
 
@@ -30,16 +31,22 @@ module fv_threshold_comparator #(
   logic framed;  // a frame has begun since reset
   logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
   assign in_force = in_valid & in_frame_start ? threshold : of_frame;
-  logic signed [33:0] excess;
-  assign excess = 34'(in_data) - 34'(in_force);
+  logic [Lanes-1:0] exceeds;  // depths of the beat above the threshold
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    logic signed [Width-1:0] depth;
+    logic signed [33:0] excess;
+    assign depth = in_data[lane*Width+:Width];
+    assign excess = 34'(depth) - 34'(in_force);
+    assign exceeds[lane] = excess > 0;
+  end
 
   logic fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     framed <= ~rst & (framed | (in_valid & in_frame_start));
     of_frame <= in_force;
-    fired <= ~rst & in_valid & (excess > 0);
-    of_this_frame <= ~rst & (in_valid ? excess > 0 | (of_this_frame & ~in_frame_start) : of_this_frame);
+    fired <= ~rst & in_valid & (exceeds != '0);
+    of_this_frame <= ~rst & (in_valid ? exceeds != '0 | (of_this_frame & ~in_frame_start) : of_this_frame);
     within_frame <= framed & in_valid & ~in_frame_start;
     contact_q <= contact & ~rst;
     hold_q <= hold;

@@ -11,8 +11,9 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from tactile_depth.calibration import floor_map
 from tactile_depth.configuration import Configuration
-from tactile_depth.latency import GAIN_MAP, first_depth_latency, last_pixel_to_first_depth
+from tactile_depth.latency import GAIN_MAP, first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.tactile_depth import top_parameters
 from tactile_depth.transform.sdf_fft import stages
 
@@ -20,7 +21,7 @@ KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
     *("flat_field", "gradient_lookup", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
-    *("auto_zero", "floor_capture"),
+    *("corner_turn", "auto_zero", "floor_capture"),
 )
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/delay_line.sv
 PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through gain_map
@@ -73,12 +74,15 @@ class Cost:
     memories : list of Memory
     first_depth_cycles, last_pixel_cycles : int
         Cycles from the first and from the last pixel of a frame to its first depth.
+    map_cycles : int
+        Cycles from the last pixel of a frame to its last depth.
     """
 
     multipliers: list[Multiplier]
     memories: list[Memory]
     first_depth_cycles: int
     last_pixel_cycles: int
+    map_cycles: int
 
     @cached_property
     def tiles(self) -> int:
@@ -105,7 +109,13 @@ class Cost:
 def cost(config: Configuration) -> Cost:
     """Count the multipliers and memories in the RTL of a configuration."""
     multipliers, memories = _pipeline(top_parameters(config))
-    return Cost(multipliers, memories, first_depth_latency(config), last_pixel_to_first_depth(config))
+    return Cost(
+        multipliers,
+        memories,
+        first_depth_latency(config),
+        last_pixel_to_first_depth(config),
+        last_pixel_to_last_depth(config),
+    )
 
 
 Parts = tuple[list[Multiplier], list[Memory]]
@@ -117,9 +127,12 @@ def _pipeline(p: dict[str, int]) -> Parts:
     divergence = slope + 2
     rows = [
         Memory("row buffers", slope, size, "divergence"),  # the row above
-        Memory("row buffers", divergence, 2 * size, "row_reorder"),  # in and out
-        Memory("row buffers", data, 2 * size, "row_reorder"),
+        Memory("row buffers", divergence, 2 * size, "row_reorder"),
     ]
+    if p["Lanes"] == 1:
+        rows.append(Memory("row buffers", data, 2 * size, "row_reorder"))
+    else:
+        rows += [Memory("row buffers", data, 2 * size, "corner_turn")] * p["Lanes"]
     solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
     return _joined(_colours(p), ([], rows), solver, _floor(p))
 
@@ -143,17 +156,22 @@ def _colours(p: dict[str, int]) -> Parts:
 
 
 def _floor(p: dict[str, int]) -> Parts:
-    """Count the parts of auto_zero.sv and floor_capture.sv: row weights, two banks of floors, sums, delayed depth."""
+    """Count the parts of auto_zero.sv and floor_capture.sv: row weights, two banks of floors, sums, delayed depths."""
     if not p["AutoZero"]:
         return [], []
-    log2, data = p["BlockLog2"], p["DataWidth"]
-    nodes = (p["Rows"] >> log2) * (p["Size"] >> log2)
+    log2, data, lanes = p["BlockLog2"], p["DataWidth"], p["Lanes"]
+    side = floor_map.side(lanes, log2)  # nodes that are written at once
+    words = (p["Rows"] >> log2) * (p["Size"] >> log2) // side
+    if lanes == 1:
+        weight, tables, delay = log2 + 3, 2, GAIN_MAP
+    else:  # each bank is held twice, for the nodes above and for those below
+        weight, tables, delay = log2 + 2, 4, floor_map.latency(lanes, log2)
     memories = [
-        *[Memory("tables", data, nodes, "auto_zero")] * 2,
-        Memory("delay lines", data + DEPTH_MARKS, GAIN_MAP, "auto_zero"),
-        Memory("tables", data + 2 * log2 + p["FloorLog2"], nodes, "floor_capture"),
+        *[Memory("tables", data, words, "auto_zero")] * (tables * side),
+        Memory("delay lines", lanes * data + DEPTH_MARKS, delay, "auto_zero"),
+        Memory("tables", side * (data + 2 * log2 + p["FloorLog2"]), words, "floor_capture"),
     ]
-    return [Multiplier(data + 1, log2 + 3, "auto_zero")], memories
+    return [Multiplier(data + 1, weight, "auto_zero")] * side, memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:
@@ -173,26 +191,32 @@ def _spectral(p: dict[str, int]) -> Parts:
 
 
 def _tridiagonal(p: dict[str, int]) -> Parts:
-    size, rows, data, width, coefficient = p["Size"], p["Rows"], p["DataWidth"], p["Width"], p["CoeffWidth"]
-    words, packed = p["TableWords"], p["WordsPerRow"]
-    one_way = (  # elimination or substitution
-        [Multiplier(width, coefficient)],
-        [
-            Memory("row buffers", width, size),  # the running row
-            Memory("tables", coefficient, words),
-            Memory("tables", (words - 1).bit_length() + p["SettledWidth"], size),
-            Memory("tables", p["LastShiftWidth"] + coefficient, size),
-        ],
-    )
+    size, rows, data, width, lanes = p["Size"], p["Rows"], p["DataWidth"], p["Width"], p["Lanes"]
+    packed = p["WordsPerRow"]
     row_number = (rows - 1).bit_length() + 2  # 1 to rows, signed
-    mean = [Multiplier(width, row_number), Multiplier(width, coefficient)] if p["Neumann"] else []
+    mean = [Multiplier(width, row_number), Multiplier(width, p["CoeffWidth"])] if p["Neumann"] else []
+    bank = Memory("frame stores", data * packed, -(-rows // lanes) * -(-size // packed), "frame_stack")
     return _joined(
         _forward(p),
-        _in("forward_elimination", *one_way),
+        _in("forward_elimination", *_thomas(p, size)),
         _in("forward_elimination", mean, []),
-        ([], [Memory("frame stores", data * packed, rows * -(-size // packed), "frame_stack")]),
-        _in("back_substitution", *one_way),
-        _inverse(p, width),
+        ([], [bank] * lanes),
+        *[_in("back_substitution", *_thomas(p, size // lanes))] * lanes,
+        *[_inverse(p, width)] * lanes,
+    )
+
+
+def _thomas(p: dict[str, int], running: int) -> Parts:
+    """Count the parts of an elimination, or of a lane of the substitution, with so many words of the running row."""
+    width, coefficient, words = p["Width"], p["CoeffWidth"], p["TableWords"]
+    return (
+        [Multiplier(width, coefficient)],
+        [
+            Memory("row buffers", width, running),
+            Memory("tables", coefficient, words),
+            Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Size"]),
+            Memory("tables", p["LastShiftWidth"] + coefficient, p["Size"]),
+        ],
     )
 
 
