@@ -96,10 +96,10 @@ PROOFS: tuple[Proof, ...] = (
         Proof(
             "threshold_comparator",
             "contact within one clock of a beat with a depth above the threshold, never otherwise",
-            f"{FULL_WIDTH}; of several depths any one decides",
-            {"Lanes": lanes},
+            f"{FULL_WIDTH}; of several depths, which are only compared, any one decides",
+            {"Width": width, "Lanes": lanes},
         )
-        for lanes in (1, 4)
+        for width, lanes in ((24, 1), (4, 2))
     ),
     Proof("beat_sums", "sums, limits and peak of an arbitrary beat, 2 clocks later", "sums are exact at any width"),
     *(
@@ -107,8 +107,8 @@ PROOFS: tuple[Proof, ...] = (
             "contact_sums",
             "area 2 and sums 3 + log2(Lanes) clocks after a frame's last beat; limits and peak enclose what is above, "
             "are attained",
-            "positions are only counted; sums are exact at any width; either order of rows; of several lanes, sums of a "
-            "beat are proven of beat_sums",
+            "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
+            "several depths are proven of beat_sums",
             {"BottomFirst": bottom_first, "Columns": columns, "Lanes": lanes},
             depth=30,
         )
