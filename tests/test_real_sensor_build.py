@@ -118,7 +118,7 @@ def test_a_calibration_made_through_a_camera_holds_in_the_rtl(
     views = [view for view in fit.held_out if view.is_whole][:count]
     sampler = grid_sampler("presses", presses.background.shape[:2], (presses.size, presses.size), choice)
     pictures = {press.name: press.image for press in gather(folder).presses}
-    words = np.stack([sampler.words(read_picture(pictures[view.press.name])) for view in views])
+    words = np.stack([sampler.words(read_picture(Path(str(pictures[view.press.name])))) for view in views])
     config = real_sensor(fit.sensor, presses, FULL_WORDS)
     depth = depth_of(runs_on, fit.sensor, config, presses, views, tmp_path / "run", words, choice)
     in_the_model = [score.cap_height for score in scores_of(fit.sensor, presses, views, "quadratic")]

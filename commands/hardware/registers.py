@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make registers`: writes all files that registers/tactile_depth.rdl describes, and the list of sources for FuseSoC.
+"""`make registers`: writes all files that the maps in registers/ describe, and the list of sources for FuseSoC.
 
-Four files are committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by
-peakrdl-cheader, register_map_pkg.sv, because no exporter writes a package that Icarus 11 reads, and the JSON that
-register_map.py reads, because a run then needs no compiler of 40 MB. The Python access layer of peakrdl-python goes to
-build/: it has thousands of lines, most of them its library.
+There are two maps: tactile_depth.rdl of the pipeline, and camera.rdl of the camera front end. Four files of each are
+committed, so that nobody needs these tools to use them: the page by peakrdl-markdown, the C header by peakrdl-cheader,
+a package of SystemVerilog, because no exporter writes one that Icarus 11 reads, and the JSON that register_map.py
+reads, because a run then needs no compiler of 40 MB. The Python access layer of peakrdl-python goes to build/: it has
+thousands of lines, most of them its library.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import wrap as wrapped
@@ -27,16 +29,66 @@ from systemrdl.node import FieldNode, RegNode, RootNode
 from commands.common import variables, wrapper
 from commands.common.repository import ROOT, sources
 
-SOURCE = ROOT / "registers" / "tactile_depth.rdl"
-PACKAGE_MAP = ROOT / "models" / "tactile_depth" / "registers" / "register_map.json"
 FUSESOC = ROOT / "tactile_depth.core"
 LAYER = ROOT / "build" / "registers"
-NAME = SOURCE.stem
-LAYER_NAME = f"{NAME}_registers"  # `tactile_depth` is the package of models
-WRITTEN_BY = f"Written by `make registers` from {SOURCE.relative_to(ROOT)}: change it there."
+LAYER_NAME = "tactile_depth_registers"  # `tactile_depth` is the package of models
 
 
-def compiled(source: Path = SOURCE, inst_name: str | None = None) -> RootNode:
+@dataclass(frozen=True)
+class Map:
+    """A map of registers.
+
+    Attributes
+    ----------
+    name : str
+        Of the .rdl file and of the C header.
+    package : path of the SystemVerilog package
+    data : str
+        File name of the JSON.
+    page : str
+        File name of the page.
+    title : str
+        What the registers are.
+    prefix : str
+        Of names in the package that do not come from a register.
+    """
+
+    name: str
+    package: Path
+    data: str
+    page: str
+    title: str
+    prefix: str = ""
+
+    @property
+    def source(self) -> Path:
+        return ROOT / "registers" / f"{self.name}.rdl"
+
+    @property
+    def written_by(self) -> str:
+        return f"Written by `make registers` from {self.source.relative_to(ROOT)}: change it there."
+
+
+HDL = ROOT / "hdl"
+PIPELINE = Map(
+    "tactile_depth",
+    HDL / "registers" / "register_map_pkg.sv",
+    "register_map.json",
+    "registers.md",
+    "the AXI4-Lite registers",
+)
+CAMERA = Map(
+    "camera",
+    HDL / "camera" / "camera_map_pkg.sv",
+    "camera_map.json",
+    "camera-registers.md",
+    "the AXI4-Lite registers of the camera front end",
+    "camera",
+)
+MAPS = (PIPELINE, CAMERA)
+
+
+def compiled(source: Path = PIPELINE.source, inst_name: str | None = None) -> RootNode:
     """Return the elaborated map, under its own name or under `inst_name`."""
     compiler = RDLCompiler()
     compiler.compile_file(str(source))
@@ -105,8 +157,9 @@ def camel(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-def package(registers: list[dict[str, Any]]) -> str:
-    """Return the text of hdl/registers/register_map_pkg.sv."""
+def package(of: Map, registers: list[dict[str, Any]]) -> str:
+    """Return the text of the SystemVerilog package of a map."""
+    prefix = camel(of.prefix)
     offsets, resets, bits, values = [], [], [], []
     for register in registers:
         name = camel(register["name"])
@@ -125,35 +178,36 @@ def package(registers: list[dict[str, Any]]) -> str:
             for value, code in field["values"].items():
                 values.append(f"localparam int {name}{camel(value)} = {code};")
     settings = [register for register in registers if any(field["setting"] for field in register["fields"])]
+    writable = [register for register in registers if any(field["access"] != "ro" for field in register["fields"])]
+    words = sum(register["name"].startswith("RECORD_") for register in registers)
     sections = {
-        "Byte offsets.": [f"localparam int AddressWidth = {address_width(registers)};", *offsets],
-        "Words of a record of contact.": [
-            f"localparam int RecordWords = {sum(register['name'].startswith('RECORD_') for register in registers)};"
-        ],
+        "Byte offsets.": [f"localparam int {prefix}AddressWidth = {address_width(registers)};", *offsets],
+        "Words of a record of contact.": [f"localparam int RecordWords = {words};"] if words else [],
         "Values after reset that are not zero.": resets,
         "Bits: number of a flag, lowest of a wider field.": bits,
         "Values of a field.": values,
         "Registers that software alone writes, by number, in words of 32 bits, the lowest first.": settings_of(
-            settings
+            prefix, settings
         ),
         "Offsets that can be read, and those that can be written.": [
-            *predicate("is_register", registers),
-            *predicate("is_writable", [r for r in registers if any(f["access"] != "ro" for f in r["fields"])]),
+            *predicate("_".join(filter(None, ("is", of.prefix, "register"))), registers),
+            *predicate("_".join(filter(None, ("is", of.prefix, "writable"))), writable),
         ],
     }
-    body = "\n\n".join("\n".join(f"  {line}" for line in (f"// {title}", *lines)) for title, lines in sections.items())
+    parts = [(f"// {title}", *lines) for title, lines in sections.items() if lines]
+    body = "\n\n".join("\n".join(f"  {line}" for line in part) for part in parts)
     return (
         "// SPDX-License-Identifier: Apache-2.0\n"
-        "// register_map_pkg: offsets, reset values and bits of the AXI4-Lite registers.\n"
+        f"// {of.package.stem}: offsets, reset values and bits of {of.title}.\n"
         "//\n"
-        f"// {WRITTEN_BY}\n\n"
+        f"// {of.written_by}\n\n"
         "`default_nettype none\n\n"
-        f"package register_map_pkg;\n\n{body}\n\nendpackage\n\n"
+        f"package {of.package.stem};\n\n{body}\n\nendpackage\n\n"
         "`default_nettype wire\n"
     )
 
 
-def settings_of(registers: list[dict[str, Any]]) -> list[str]:
+def settings_of(prefix: str, registers: list[dict[str, Any]]) -> list[str]:
     """Return the declarations of number, offset, bits and reset value of each register with settings."""
     words: dict[str, list[str]] = {"Offsets": [], "Masks": [], "Resets": []}
     for register in registers:
@@ -163,11 +217,11 @@ def settings_of(registers: list[dict[str, Any]]) -> list[str]:
         words["Offsets"].append(f"{camel(register['name'])}Offset")
         words["Masks"].append(f"32'h{mask:08x}")
         words["Resets"].append(f"32'h{reset:08x}")
-    lines = [f"localparam int Settings = {len(registers)};"]
+    lines = [f"localparam int {prefix}Settings = {len(registers)};"]
     lines += [f"localparam int {camel(register['name'])}Setting = {n};" for n, register in enumerate(registers)]
     for name, values in words.items():
         listed = ", ".join(reversed(values))
-        lines.append(f"localparam logic [32*Settings-1:0] Setting{name} = {{")
+        lines.append(f"localparam logic [32*{prefix}Settings-1:0] {prefix}Setting{name} = {{")
         lines += [*(f"  {line}" for line in wrapped(listed, 112)), "};"]
     return lines
 
@@ -198,27 +252,29 @@ def fusesoc_core() -> str:
     return re.sub(r"(?<=  rtl:\n    files:\n)( {6}- .*\n)+", files, FUSESOC.read_text())
 
 
-def generated(root: RootNode) -> dict[Path, str]:
-    """Return the text of each committed file that is written from the map or from what is in hdl/."""
-    top = root.top
+def generated(of: Map) -> dict[Path, str]:
+    """Return the text of each committed file that is written from a map."""
+    top = compiled(of.source).top
     registers = [register_of(node) for node in top.registers(unroll=True)]
-    described = {"written_by": WRITTEN_BY, "address_width": address_width(registers), "registers": registers}
+    described = {"written_by": of.written_by, "address_width": address_width(registers), "registers": registers}
     with TemporaryDirectory() as folder:
-        page, header = Path(folder) / "registers.md", Path(folder) / f"{NAME}.h"
-        MarkdownExporter().export(top, str(page), input_files=[str(SOURCE.relative_to(ROOT))])
+        page, header = Path(folder) / of.page, Path(folder) / f"{of.name}.h"
+        MarkdownExporter().export(top, str(page), input_files=[str(of.source.relative_to(ROOT))])
         # Names by position, not by type: a type that is used twice would get a hash for its name.
         CHeaderExporter().export(top, str(header), reuse_typedefs=False, std=CStandard.gnu11)
-        texts = {
-            ROOT / "docs" / page.name: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
-            SOURCE.parent / header.name: f"// SPDX-License-Identifier: Apache-2.0\n// {WRITTEN_BY}\n"
+        return {
+            ROOT / "docs" / of.page: f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n{page.read_text()}",
+            of.source.with_suffix(".h"): f"// SPDX-License-Identifier: Apache-2.0\n// {of.written_by}\n"
             + header.read_text(),
+            ROOT / "models" / "tactile_depth" / "registers" / of.data: json.dumps(described, indent=1) + "\n",
+            of.package: package(of, registers),
         }
-    return texts | {
-        PACKAGE_MAP: json.dumps(described, indent=1) + "\n",
-        ROOT / "hdl" / "registers" / "register_map_pkg.sv": package(registers),
-        wrapper.DEFAULTS: wrapper.package(),
-        FUSESOC: fusesoc_core(),
-    }
+
+
+def written() -> dict[Path, str]:
+    """Return the text of each committed file that is written from the maps, the configuration, or what is in hdl/."""
+    texts = {path: text for of in MAPS for path, text in generated(of).items()}
+    return texts | {wrapper.DEFAULTS: wrapper.package(), FUSESOC: fusesoc_core()}
 
 
 def python_layer(folder: Path) -> None:
@@ -239,8 +295,7 @@ def main() -> None:
 
 def run() -> None:
     """Write every file, and print which have changed."""
-    root = compiled()
-    for path, text in generated(root).items():
+    for path, text in written().items():
         changed = not path.exists() or path.read_text() != text
         path.write_text(text)
         print(f"{'wrote' if changed else 'same '} {path.relative_to(ROOT)}")

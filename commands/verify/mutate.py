@@ -99,6 +99,7 @@ CORES = {
     "camera_setup": Core((1,), "after_reset"),
     "camera_window": Core((1, 2)),
     "camera_front_end": Core((1, 2), flat=False),
+    "camera_registers": Core((1,), "axil_registers", outside=("dropped", "lost"), flat=False),
     "row_reorder": Core((2,), "words"),
     "corner_turn": Core((2,)),
     "divergence": Core((5,)),
@@ -127,7 +128,7 @@ CORES = {
 }
 # Nothing in them to mutate.
 LEFT_OUT = {
-    "register_map_pkg": "constants, which the registers are built of",
+    **dict.fromkeys(("register_map_pkg", "camera_map_pkg"), "constants, which the registers are built of"),
     "default_parameters_pkg": "constants",
     "stream_pkg": "types",
     **dict.fromkeys(repository.UNITS, "a part of tactile_depth"),

@@ -8,6 +8,11 @@ from collections.abc import Mapping
 from formal.entries import FULL_WIDTH, ROUNDING, Proof
 
 CAMERA_PROOFS: tuple[Proof, ...] = (
+    Proof(
+        "camera_registers",
+        "every register as the map has it: words, responses, settings that leave, sticky bits, counters",
+        FULL_WIDTH,
+    ),
     *(
         Proof(
             "block_weights",

@@ -164,6 +164,9 @@ module pixel_format #(
   if (Format < 0 || Format > 3) begin : g_refused_0
     Format_is_0_to_3 u_refused ();
   end
+  if (Phase < 0 || Phase > 3) begin : g_refused_4
+    Phase_is_0_to_3 u_refused ();
+  end
   if (Format == 0 && Bits != 8 && Bits != 10 && Bits != 12) begin : g_refused_1
     Bits_of_RAW_are_8_10_or_12 u_refused ();
   end

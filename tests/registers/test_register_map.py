@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""registers/tactile_depth.rdl: what is written from it is up to date, and C and Python reach the registers by it."""
+"""The maps in registers/: what is written from them is up to date, and C and Python reach the registers by them."""
 
 import shutil
 import subprocess
@@ -12,32 +12,39 @@ from commands.common.repository import ROOT
 from commands.hardware import registers
 from tactile_depth.configuration import Configuration
 from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Live
-from tactile_depth.registers.register_map import ACCESSES, ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD_BITS
+from tactile_depth.registers.register_map import (
+    ACCESSES,
+    ADDRESS_WIDTH,
+    CAMERA_MAP,
+    CAMERA_REGISTERS,
+    MAP,
+    REGISTERS,
+    TABLES,
+    WORD_BITS,
+)
 from tactile_depth.tactile_depth import top_parameters
 
 BUILD = Build(top_parameters(Configuration(columns=32, rows=16, solver="tridiagonal", bits_per_channel=2)))
 RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
 
 
-@pytest.fixture(scope="module")
-def root() -> Any:
-    return registers.compiled()
+MAPS = {registers.PIPELINE: MAP, registers.CAMERA: CAMERA_MAP}
 
 
-def test_written_files_are_up_to_date(root: Any) -> None:
-    for path, text in registers.generated(root).items():
+def test_written_files_are_up_to_date() -> None:
+    for path, text in registers.written().items():
         assert path.read_text() == text, f"{path.relative_to(ROOT)} is not what the map says: run make registers"
 
 
 def test_offsets_are_words_of_their_own() -> None:
-    offsets = [register.offset for register in MAP]
-    assert len(set(offsets)) == len(offsets) == len(REGISTERS)
+    offsets = [register.offset for each in MAPS.values() for register in each]
+    assert len(set(offsets)) == len(offsets) == len(REGISTERS) + len(CAMERA_REGISTERS)
     assert all(offset % (WORD_BITS // 8) == 0 for offset in offsets)
     assert all(0 <= offset < 1 << ADDRESS_WIDTH for offset in offsets)
 
 
 def test_accesses_are_known() -> None:
-    for register in MAP:
+    for register in (*MAP, *CAMERA_MAP):
         assert {field.access for field in register.fields} <= set(ACCESSES), register.name
 
 
@@ -55,7 +62,7 @@ def test_a_table_has_the_bit_of_its_number_in_the_commit_register() -> None:
     assert sorted(TABLES.values()) == list(range(len(TABLES)))
 
 
-@pytest.mark.parametrize("register", MAP, ids=lambda register: register.name)
+@pytest.mark.parametrize("register", [*MAP, *CAMERA_MAP], ids=lambda register: register.name)
 def test_pack_is_the_inverse_of_unpack(register: Any) -> None:
     fields: dict[str, Any] = {field.name: (n + 1) % (1 << field.width) for n, field in enumerate(register.fields)}
     assert register.unpack(register.pack(**fields)) == fields
@@ -68,22 +75,24 @@ def test_a_value_too_large_for_its_field_is_refused() -> None:
         REGISTERS["GRID"].field("cols")
 
 
-def test_the_c_header(tmp_path: Path) -> None:
+@pytest.mark.parametrize("of", MAPS, ids=lambda of: of.name)
+def test_the_c_header(of: registers.Map, tmp_path: Path) -> None:
     """A program that includes it finds every register where the map has it, and every field's bits and reset value."""
     compiler = shutil.which("gcc")
     if compiler is None:
         pytest.skip("gcc is missing: it compiles the C header")
-    checks = [f"sizeof(tactile_depth_t) == {MAP[-1].offset + 4}"]
-    for register in MAP:
-        checks.append(f"offsetof(tactile_depth_t, {register.name}) == {register.offset}")
+    checks = [f"sizeof({of.name}_t) == {MAPS[of][-1].offset + 4}"]
+    for register in MAPS[of]:
+        checks.append(f"offsetof({of.name}_t, {register.name}) == {register.offset}")
         for field in register.fields:
-            prefix = f"TACTILE_DEPTH__{register.name}__{field.name}".upper()
+            prefix = f"{of.name}__{register.name}__{field.name}".upper()
             checks += [f"{prefix}_bm == {field.mask}u", f"{prefix}_bp == {field.low}", f"{prefix}_bw == {field.width}"]
             if field.reset is not None:
                 checks.append(f"{prefix}_reset == {field.reset}u")
     program = tmp_path / "program.c"
     program.write_text(
-        '#include <stddef.h>\n#include "tactile_depth.h"\n'
+        "#include <stddef.h>\n"
+        f'#include "{of.name}.h"\n'
         + "".join(f'static_assert({check}, "");\n' for check in checks)
         + "int main(void) { return 0; }\n"
     )

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map of the AXI4-Lite registers, for models, testbenches and commands.
+"""The maps of the AXI4-Lite registers, for models, testbenches and commands.
 
-The source is registers/tactile_depth.rdl. `make registers` compiles it into the JSON file that is read here, so that a
-run needs no SystemRDL tools. models/tactile_depth/registers/axil_registers.py models the behaviour of the registers.
+The sources are registers/tactile_depth.rdl and registers/camera.rdl. `make registers` compiles them into the JSON files
+that are read here, so that a run needs no SystemRDL tools. models/tactile_depth/registers/axil_registers.py and
+models/tactile_depth/camera/camera_registers.py model the behaviour of the registers.
 """
 
 from __future__ import annotations
@@ -11,9 +12,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
-from pathlib import Path
-
-FILE = Path(__file__).resolve().parent / "register_map.json"
+from typing import Any
 
 WORD_BITS = 32
 WORD = (1 << WORD_BITS) - 1
@@ -133,12 +132,21 @@ class Register:
         return word
 
 
-_READ = json.loads(resources.files(__package__).joinpath(FILE.name).read_text())  # also from a .zip
+def _read(name: str) -> Any:
+    return json.loads(resources.files(__package__).joinpath(name).read_text())  # also from a .zip
 
-ADDRESS_WIDTH: int = _READ["address_width"]  # bits of a byte address
-MAP = tuple(
-    Register(**register | {"fields": tuple(Field(**field) for field in register["fields"])})
-    for register in _READ["registers"]
-)
+
+def _registers(read: Any) -> tuple[Register, ...]:
+    return tuple(
+        Register(**register | {"fields": tuple(Field(**field) for field in register["fields"])})
+        for register in read["registers"]
+    )
+
+
+_PIPELINE = _read("register_map.json")
+ADDRESS_WIDTH: int = _PIPELINE["address_width"]  # bits of a byte address
+MAP = _registers(_PIPELINE)
 REGISTERS = {register.name: register for register in MAP}
 TABLES = REGISTERS["TABLE_SELECT"].field("select").values  # name to code
+CAMERA_MAP = _registers(_read("camera_map.json"))
+CAMERA_REGISTERS = {register.name: register for register in CAMERA_MAP}

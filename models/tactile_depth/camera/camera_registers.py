@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Behavioural model of hdl/camera/camera_registers.sv: the results of reads, and the effects of writes and events.
+
+The model does not count cycles; registers/axil_port.py does. In one cycle a read sees the registers first, then the
+write takes effect, then the events of the cycle before. This order makes setting win over clearing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+
+from tactile_depth.camera.camera_front_end import camera_front_end_parameters, camera_settings
+from tactile_depth.camera.camera_window import FAULTS
+from tactile_depth.camera_configuration import CameraConfiguration
+from tactile_depth.registers.axil_port import Response, offset_of, strobed_bits
+from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, WORD
+from tactile_depth.registers.setting_registers import SettingRegisters
+
+BY_OFFSET = {register.offset: register for register in CAMERA_MAP}
+STATUS, CONTROL = CAMERA_REGISTERS["CAMERA_STATUS"], CAMERA_REGISTERS["CAMERA_CONTROL"]
+COUNTERS = ("CAMERA_DROPPED", "CAMERA_LOST")
+GAINS = ("red_gain", "green_gain", "blue_gain")
+OF_FRONT_END = ("WindowColumns", "WindowRows", "Format", "Bits", "Phase")
+
+
+def camera_registers_parameters(camera: CameraConfiguration) -> dict[str, int]:
+    """Parameters of hdl/camera/camera_registers.sv."""
+    settings, front_end = camera_settings(camera), camera_front_end_parameters(camera)
+    return {
+        "PictureColumns": settings["columns"],
+        "PictureRows": settings["rows"],
+        "WindowX": settings["window_x"],
+        "WindowY": settings["window_y"],
+        "BlackLevel": settings["black_level"],
+        "RedGain": settings["red_gain"],
+        "GreenGain": settings["green_gain"],
+        "BlueGain": settings["blue_gain"],
+        **{name: front_end[name] for name in OF_FRONT_END},
+    }
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Outputs of camera_setup."""
+
+    done: bool = False
+    failed: bool = False
+    entry: int = 0
+    found: int = 0
+
+
+@dataclass
+class CameraRegisters:
+    """State of the registers of one build.
+
+    Attributes
+    ----------
+    parameters : mapping
+        See `camera_registers_parameters`.
+    values : dict
+        Register name to word, as a read returns it, without what `Setup` shows.
+    """
+
+    parameters: Mapping[str, int]
+    values: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        p, named = self.parameters, CAMERA_REGISTERS
+        window = named["CAMERA_WINDOW_SIZE"].pack(columns=p["WindowColumns"], rows=p["WindowRows"])
+        form = named["CAMERA_FORMAT"].pack(pixel_format=p["Format"], phase=p["Phase"], bits=p["Bits"])
+        self.values.update(dict.fromkeys(named, 0) | {"CAMERA_WINDOW_SIZE": window, "CAMERA_FORMAT": form})
+        resets = {
+            "CAMERA_PICTURE": named["CAMERA_PICTURE"].pack(columns=p["PictureColumns"], rows=p["PictureRows"]),
+            "CAMERA_WINDOW": named["CAMERA_WINDOW"].pack(x=p["WindowX"], y=p["WindowY"]),
+            "CAMERA_BLACK_LEVEL": p["BlackLevel"],
+            "CAMERA_RED_GAIN": p["RedGain"],
+            "CAMERA_GREEN_GAIN": p["GreenGain"],
+            "CAMERA_BLUE_GAIN": p["BlueGain"],
+        }
+        self._settings = SettingRegisters(resets, self.values, CAMERA_MAP)
+        self._arrived: tuple[frozenset[str], int] = (frozenset(), 0)
+
+    def reset(self) -> None:
+        """Set every register to its reset value."""
+        self._settings.reset()
+        self.values.update(dict.fromkeys((STATUS.name, *COUNTERS), 0))
+        self._arrived = frozenset(), 0
+
+    @property
+    def settings(self) -> dict[str, int]:
+        """Return the settings of camera_front_end, by the members of `camera_settings_t`."""
+        picture = CAMERA_REGISTERS["CAMERA_PICTURE"].unpack(self.values["CAMERA_PICTURE"])
+        window = CAMERA_REGISTERS["CAMERA_WINDOW"].unpack(self.values["CAMERA_WINDOW"])
+        return {
+            **picture,
+            "window_x": window["x"],
+            "window_y": window["y"],
+            "black_level": self.values["CAMERA_BLACK_LEVEL"],
+            **{gain: self.values[f"CAMERA_{gain.upper()}"] for gain in GAINS},
+        }
+
+    def read(self, address: int, setup: Setup = Setup()) -> tuple[int, Response]:
+        """Return data and response of a read."""
+        register = BY_OFFSET.get(offset_of(address))
+        if register is None:
+            return 0, Response.SLVERR
+        shown = {
+            STATUS.name: STATUS.pack(setup_done=int(setup.done), setup_failed=int(setup.failed)),
+            "CAMERA_SETUP": CAMERA_REGISTERS["CAMERA_SETUP"].pack(entry=setup.entry, found=setup.found),
+        }
+        return self.values[register.name] | shown.get(register.name, 0), Response.OKAY
+
+    def write(self, address: int, data: int, strobe: int = 0xF) -> tuple[Response, bool]:
+        """Return the response of a write, and whether it starts the set-up of the camera afresh."""
+        register = BY_OFFSET.get(offset_of(address))
+        if register is None or not register.writable:
+            return Response.SLVERR, False
+        mask = strobed_bits(strobe)
+        ones = data & mask
+        self._settings.write(register.name, ones, mask)
+        if register is STATUS:
+            self.values[STATUS.name] &= ~ones
+        written = CONTROL.unpack(ones) if register is CONTROL else {}
+        if written.get("clear_counters"):
+            self.values.update(dict.fromkeys(COUNTERS, 0))
+        return Response.OKAY, bool(written.get("restart_setup"))
+
+    def clock(self, faults: Collection[str], frames_lost: int) -> None:
+        """Take the events of one cycle, after the write of that cycle. The registers see them one cycle later.
+
+        Parameters
+        ----------
+        faults : collection of str, of `camera_window.FAULTS`
+        frames_lost : int
+            Frames that dvp_receive gave up.
+        """
+        values, (arrived, lost) = self.values, self._arrived
+        bits = {fault: int(fault in arrived) for fault in FAULTS}
+        values[STATUS.name] |= STATUS.pack(**bits, lost=int(lost > 0))
+        for name, more in zip(COUNTERS, (int(bool(arrived)), lost), strict=True):
+            values[name] = min(values[name] + more, WORD)
+        self._arrived = frozenset(faults), frames_lost
