@@ -288,6 +288,10 @@ def test_a_path_that_cannot_be_written_is_named(tmp_path: Path) -> None:
         load("gelsight-mini").save(tmp_path / "file" / "copy.npz")
     with pytest.raises(InputError, match=r"give the name of an \.npz file"):
         load("gelsight-mini").save(tmp_path / "copy.npy")
+    with pytest.raises(InputError, match=r"cannot be written \(a character that no path can hold\)"):
+        load("gelsight-mini").save("a\0b.npz")
+    with pytest.raises(InputError, match="path is a NoneType"):
+        load("gelsight-mini").save(None)  # type: ignore[arg-type]
 
 
 # Files that are made to harm.

@@ -148,6 +148,28 @@ def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(
     }  # fmt: skip
 
 
+def test_a_folder_with_the_name_of_a_result_is_not_replaced(
+    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = tmp_path / "overview.png" / "mine.txt"
+    mine.parent.mkdir()
+    mine.write_text("mine")
+    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 2
+    reason = "cannot be written (overview.png in it is a folder): remove it or give another"
+    assert capsys.readouterr().err == f"tactile-depth: --out {tmp_path} {reason}\n"
+    assert sorted(tmp_path.rglob("*")) == [mine.parent, mine]
+
+
+def test_a_folder_with_the_name_of_an_earlier_result_stays(tmp_path: Path, inputs: Any, arguments: Any) -> None:
+    pictures = [f"{inputs}/press.png"] * 2
+    assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
+    (tmp_path / "depth_0.ply").unlink()
+    (tmp_path / "depth_0.ply").mkdir()
+    assert main(["depth", pictures[0], "--out", str(tmp_path), *arguments]) == 0
+    assert (tmp_path / "depth_0.ply").is_dir()
+    assert not (tmp_path / "depth_1.ply").exists()
+
+
 def test_the_results_lie_in_the_current_folder_by_default(
     tmp_path: Path, inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -125,6 +125,8 @@ def test_a_batch_is_its_frames_one_by_one(ball: Any, small: Any) -> None:
         _ = batch.contact
     with pytest.raises(TypeError, match="has no frames"):
         _ = small(ball.image)[0]
+    with pytest.raises(TypeError, match="accepted is the number of a frame"):
+        _ = batch[0:2]
 
 
 def test_paths_give_what_arrays_give(tmp_path: Path, ball: Any, small: Any) -> None:
@@ -185,6 +187,25 @@ def drifted(picture: np.ndarray, seed: int) -> Any:
     y, x = np.mgrid[-1:1:240j, -1:1:320j]
     light = 1 + 0.05 * np.stack([x, y, x * y], axis=-1)
     return np.clip(np.rint(picture * light + rng.normal(size=picture.shape)), 0, 255).astype(np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("least", "greatest", "is_central"),
+    [
+        ((1, 5), (22, 26), True),
+        ((0, 5), (22, 26), False),
+        ((1, 4), (22, 26), False),
+        ((1, 5), (23, 26), False),
+        ((1, 5), (22, 27), False),
+    ],
+)
+def test_a_central_contact_lies_within_the_middle_square(
+    small: Any, ball: Any, least: Any, greatest: Any, is_central: bool
+) -> None:
+    """The grid has 24 rows and 32 columns; a contact that reaches the first or last pixel may be cut."""
+    contact = small(ball.image).contact
+    record = contact.record._replace(least=least, greatest=greatest)
+    assert replace(contact, record=record).is_central is is_central
 
 
 @pytest.mark.parametrize("arithmetic", ["chip", "float"])
@@ -282,6 +303,15 @@ def test_hardware_removes_the_tables_of_an_earlier_pipeline_and_nothing_else(
     assert "thomas.hex" not in tables
 
 
+def test_a_folder_with_the_name_of_a_table_is_not_replaced(tmp_path: Path, small: Any) -> None:
+    mine = tmp_path / "thomas.hex" / "mine.txt"
+    mine.parent.mkdir()
+    mine.write_text("mine")
+    with pytest.raises(td.InputError, match=r"cannot be written \(thomas\.hex in it is a folder\): remove it or give"):
+        small.hardware(tmp_path)
+    assert sorted(tmp_path.rglob("*")) == [mine.parent, mine]
+
+
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(td.InputError, match=r"file/hw cannot be written"):
@@ -310,10 +340,14 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
         ({"coefficient_width": 9}, "coefficient_width=9"),
         ({"gain_width": 15}, "gain_width=15"),
         ({"depth_range_mm": float("nan")}, "depth_range_mm=nan"),
+        ({"depth_range_mm": "deep"}, "depth_range_mm=deep: accepted is"),
+        ({"depth_range_mm": 1e-6}, r"depth_range_mm=1e-06: accepted is 0\.0\d+ mm, 0\.0625 of a grid pixel, and more"),
         ({"threshold_mm": 0.0}, "threshold_mm=0.0"),
+        ({"threshold_mm": None}, "threshold_mm=None: accepted is a depth above 0"),
         ({"threshold_mm": 1e3}, "threshold_mm=1000.0"),
         ({"reference": None}, "sample needs a reference"),
         ({"reference": "none.png"}, "none.png: no such file or folder"),
+        ({"reference": 3}, "reference are int: accepted is a uint8 array or a path"),
         ({"reference": np.zeros((240, 321, 3), np.uint8)}, None),
         ({"reference": np.zeros((240, 300, 3), np.uint8)}, "300 x 240 pixels"),
         ({"reference": np.zeros((240, 320), np.uint8)}, r"reference are uint8 \(240, 320\)"),

@@ -174,6 +174,7 @@ def test_bad_arguments_are_named() -> None:
     background = pictures()["background.png"]
     assert "background is missing" in refused(lambda: gather(in_memory()))
     assert "presses: accepted are" in refused(lambda: gather([background], background))  # type: ignore[list-item]
+    assert "presses: accepted are" in refused(lambda: gather(45))  # type: ignore[arg-type]
     assert "the name a stands twice" in refused(lambda: gather(in_memory(name="a"), background))
     assert "background: float64" in refused(lambda: gather(in_memory(), background / 2))
     dark = gather(in_memory(), background // 20)

@@ -193,8 +193,9 @@ def test_a_sensor_is_identified_by_its_lighting(mini: Any, zoom: float) -> None:
         (lambda picture: picture[..., 0], r"the reference is uint8 \(240, 320\)"),
         (lambda picture: picture[:2], r"the reference is uint8 \(2, 320, 3\)"),
         (lambda picture: picture / 255, "the reference is float64"),
+        (lambda picture: "background.png", "the reference is a str: accepted is uint8"),
     ],
-    ids=["grey", "BGR", "upside down", "on its side", "one colour", "two rows", "floats"],
+    ids=["grey", "BGR", "upside down", "on its side", "one colour", "two rows", "floats", "a path"],
 )
 def test_a_picture_of_no_known_sensor_is_not_identified(mini: Any, change: Any, reason: Any) -> None:
     with pytest.raises(InputError, match=reason):

@@ -275,7 +275,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         check_grid(request)
         depth_range_px = deepest(request.rows, request.columns, neumann) * calibration.gradient_limit
     else:
-        depth_range_px = None if depth_range is None else depth_range / calibration.pixel_pitch_mm
+        depth_range_px = None if depth_range is None else calibration.depth_range_px(depth_range)
     return calibration.configuration(
         request.gradient,
         columns=request.columns,

@@ -32,6 +32,7 @@ VARIABLES = {
     r"\bcoefficient_width=": "COEFF_WIDTH=",
     r"\bgain_width=": "GAIN_WIDTH=",
     r"\bgradient_model=": "GRADIENT=",
+    r"\bdepth_range_mm=": "DEPTH_RANGE=",
     r"\blanes=": "LANES=",
     r"\breference=": "REFERENCE=",
     r"\bcamera_size\b": "CAMERA_SIZE",

@@ -1,7 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The only error that a user's input raises, and the only warning."""
 
+from numbers import Real
+
 LONGEST = 1000  # characters
+
+
+def is_number(value: object) -> bool:
+    """Return True for a real number; True and False are none."""
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 class InputError(ValueError):

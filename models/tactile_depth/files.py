@@ -36,17 +36,17 @@ def make(folder: Path, files: Iterable[str] = ()) -> list[Path]:
         The machine failed, with a full disk for example.
     """
     try:
-        if folder.is_symlink() and not folder.exists():
-            raise InputError(f"folder={folder} is a link to {os.readlink(folder)}, which does not exist: give a folder")
+        for part in (folder, *folder.parents):
+            if part.is_symlink() and not part.exists():
+                link = "" if part == folder else f": {part}"
+                raise InputError(
+                    f"folder={folder}{link} is a link to {os.readlink(part)}, which does not exist: give a folder"
+                )
         if folder.exists() and not folder.is_dir():
             raise InputError(f"folder={folder} is a file: give a folder")
         missing = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
-        for name in files:
-            if (folder / name).is_dir():
-                raise InputError(
-                    f"folder={folder} cannot be written ({name} in it is a folder): remove it or give another"
-                )
+        refuse_folders(folder, files)
         with tempfile.TemporaryFile(dir=folder):
             return missing
     except InputError:
@@ -56,6 +56,13 @@ def make(folder: Path, files: Iterable[str] = ()) -> list[Path]:
             raise
         reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
         raise InputError(f"folder={folder} cannot be written ({reason}): give a folder that can") from error
+
+
+def refuse_folders(folder: Path, files: Iterable[str]) -> None:
+    """Raise InputError if one of `files`, which are to be written, is a folder there: replacing it would lose it."""
+    for name in files:
+        if (folder / name).is_dir():
+            raise InputError(f"folder={folder} cannot be written ({name} in it is a folder): remove it or give another")
 
 
 @contextmanager
@@ -83,15 +90,19 @@ def workspace(folder: Path, files: Iterable[str] = ()) -> Iterator[Path]:
 
 
 def replace(work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = ()) -> None:
-    """Move files from `work`, which lies inside `folder`, to `folder`, and remove `obsolete` ones there.
+    """Move files from `work`, which lies inside `folder`, to `folder`, and remove `obsolete` files there.
 
-    When a move fails, or a signal comes, the files that were there before come back.
+    When a move fails, or a signal comes, the files that were there before come back. Folders stay.
 
     Raises
     ------
+    InputError
+        A folder has the name of a file.
     OSError
     """
     fresh = list(names)
+    refuse_folders(folder, fresh)
+    obsolete = [name for name in obsolete if not (folder / name).is_dir()]
     earlier = Path(tempfile.mkdtemp(prefix="earlier-", dir=work))
     moves = [(folder / name, earlier / name) for name in {*fresh, *obsolete} if os.path.lexists(folder / name)]
     moves += [(work / name, folder / name) for name in fresh]

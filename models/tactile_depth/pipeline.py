@@ -19,7 +19,7 @@ from tactile_depth.calibration.reference_capture import largest_log2_frames
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.contact.contact_events import ContactEvents, Settings
-from tactile_depth.errors import InputError
+from tactile_depth.errors import InputError, is_number
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale, read_pictures
 from tactile_depth.gradient.divergence import divergence
@@ -125,8 +125,6 @@ class Pipeline:
         for name, value, accepted in (("arithmetic", arithmetic, ARITHMETICS), ("boundary", boundary, BOUNDARIES)):
             if value not in accepted:
                 raise InputError(f"{name}={value} is unknown: accepted are {', '.join(accepted)}")
-        if depth_range_mm is not None and not 0 < depth_range_mm < math.inf:
-            raise InputError(f"depth_range_mm={depth_range_mm}: accepted is a depth above 0, in mm")
         sensor.require_reference(reference is not None)
         rows, columns = self.grid = default_grid(sensor, solver) if grid is None else grid
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
@@ -138,12 +136,12 @@ class Pipeline:
             model,
             **shape,
             **widths,
-            depth_range_px=None if depth_range_mm is None else depth_range_mm / self.pixel_pitch_mm,
+            depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             auto_zero=zero_offset,
         )
         self.arithmetic = arithmetic
         self.depth_lsb_mm = self.config.depth_lsb_px * self.pixel_pitch_mm
-        if not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
+        if not is_number(threshold_mm) or not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
             raise InputError(
                 f"threshold_mm={threshold_mm}: accepted is a depth above 0 and within the depth range of "
                 f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
@@ -321,7 +319,7 @@ class Pipeline:
     # Pictures.
 
     def _read_reference(self, reference: Pictures) -> np.ndarray:
-        images = reference if isinstance(reference, np.ndarray) else _same_size(reference)
+        images = _same_size(reference) if isinstance(reference, str | Path) else reference
         frames, _ = self._read(images, "reference")
         _power_of_two(len(frames), LARGEST_LOG2, "reference")
         self._camera_sensor.check_lighting(images.reshape(-1, *images.shape[-3:])[0])

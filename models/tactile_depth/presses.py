@@ -263,10 +263,10 @@ def gather(
         listed, notes = read_presses(folder)
         name = folder.resolve().name
     else:
+        if not isinstance(presses, Sequence) or not all(isinstance(press, BallPress) for press in presses):
+            raise InputError("presses: accepted are the path of a folder, or a sequence of BallPress")
         if background is None:
             raise InputError("background is missing: give a picture of the sensor without contact")
-        if not all(isinstance(press, BallPress) for press in presses):
-            raise InputError("presses: accepted are the path of a folder, or a sequence of BallPress")
         listed, name = [_named(press, number) for number, press in enumerate(presses, 1)], "fitted"
     names = [press.name for press in listed]
     if repeated := next((one for one in names if names.count(one) > 1), None):

@@ -112,7 +112,9 @@ class Result:
         return len(self.records)
 
     def __getitem__(self, index: int) -> Result:
-        """Return the result of one frame of several."""
+        """Return the result of one frame of several; `saturations` stays that of all."""
+        if not isinstance(index, int | np.integer):
+            raise TypeError(f"result[{index!r}]: accepted is the number of a frame")
         if self.codes.ndim == 2:
             raise TypeError("the result of a single picture has no frames to choose from")
         arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}

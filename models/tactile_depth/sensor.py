@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactile_depth.camera_configuration import FORMATS
-from tactile_depth.configuration import GRADIENT_MODELS, Configuration
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.configuration import GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
+from tactile_depth.errors import InputError, InputWarning, is_number
 from tactile_depth.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
 if TYPE_CHECKING:
@@ -247,6 +247,16 @@ class Sensor:
             **choices,
         )
 
+    def depth_range_px(self, depth_range_mm: float) -> float:
+        """Return a depth range in pixels of this sensor's grid; raise InputError if the formats cannot be that fine."""
+        smallest = SMALLEST_DEPTH_RANGE_PX * self.pixel_pitch_mm
+        if not (is_number(depth_range_mm) and smallest <= depth_range_mm < math.inf):
+            raise InputError(
+                f"depth_range_mm={depth_range_mm}: accepted is {smallest:.2g} mm, {SMALLEST_DEPTH_RANGE_PX:g} of a "
+                "grid pixel, and more"
+            )
+        return depth_range_mm / self.pixel_pitch_mm
+
     def check(self, config: Configuration, gains_given: bool = False) -> None:
         """Raise InputError unless a configuration agrees with this sensor, because depth would be wrong.
 
@@ -329,6 +339,8 @@ class Sensor:
         InputError
             The sensor has no camera, or the file cannot be written.
         """
+        if not isinstance(path, str | Path):
+            raise InputError(f"path is a {type(path).__name__}: accepted is the path of an .npz file")
         path = Path(path)
         if self.camera is None:
             raise InputError(f"{self.name}: no camera in it: a calibration file names the camera that it holds for")
@@ -361,10 +373,11 @@ class Sensor:
                 np.savez_compressed(file, **{key: value for key, value in arrays.items() if value is not None})
             Path(unfinished).chmod(0o644)
             os.replace(unfinished, path)
-        except OSError as error:
+        except (OSError, ValueError) as error:
             if unfinished:
                 Path(unfinished).unlink(missing_ok=True)
-            raise InputError(f"{path} cannot be written ({error.strerror}): give a path that can") from error
+            reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
+            raise InputError(f"{path} cannot be written ({reason}): give a path that can") from error
 
 
 def lighting(picture: np.ndarray) -> np.ndarray:
@@ -429,6 +442,8 @@ def identify(reference: np.ndarray) -> Sensor:
     InputError
         No built-in calibration has the aspect ratio and the lighting of the picture.
     """
+    if not isinstance(reference, np.ndarray):
+        raise InputError(f"the reference is a {type(reference).__name__}: accepted is uint8 (rows, columns, 3), RGB")
     if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
         raise InputError(
             f"the reference is {reference.dtype} {reference.shape}: accepted is uint8 (rows, columns, 3), RGB"

@@ -183,6 +183,7 @@ BAD_OUT: dict[str, Any] = {
     "300 characters": (lambda t: t / ("x" * 300), "File name too long"),
     "5,000 characters": (lambda t: t.joinpath(*["y" * 200] * 25), "File name too long"),
     "a dangling link": (_link, "is a link to"),
+    "below a dangling link": (lambda t: _link(t) / "out", "link is a link to"),
     "a file": (_file, "is a file: give a folder"),
     "below a file": (lambda t: _file(t) / "out", "Not a directory"),
     "depth.png is a folder": (_holding_a_folder, "depth.png in it is a folder"),

@@ -384,6 +384,7 @@ BAD_INPUT: dict[str, Any] = {
     "gain width and block": lambda t: "GAIN_WIDTH=17 N=512 REFERENCE=flat",
     "width and format": lambda t: "DATA_WIDTH=12 N=512",
     "depth range": lambda t: "DEPTH_RANGE=0",
+    "depth range of a thousandth of a pixel": lambda t: "DEPTH_RANGE=0.001",
     "gaps": lambda t: "GAPS=1",
     "stalls": lambda t: "STALLS=often",
     "repeat": lambda t: "REPEAT=0",
