@@ -245,7 +245,21 @@ def test_a_real_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     data = FOLDER / "gelslam"
     picture, reference = data / "9.500mm" / "12.png", data / "background.png"
     assert main(["depth", str(picture), "--reference", str(reference), "--out", str(tmp_path)]) == 0
-    assert "peak height 0.81 +- 0.05 mm" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "peak height 0.81 +- 0.05 mm" in printed
+    assert "middle square" not in printed
+
+
+@needs_real_data
+def test_a_real_press_beside_the_middle_square_says_that_its_error_was_not_measured(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = FOLDER / "gelslam"
+    picture, reference = data / "9.500mm" / "3.png", data / "background.png"
+    assert main(["depth", str(picture), "--reference", str(reference), "--out", str(tmp_path)]) == 0
+    assert "the contact leaves the middle square, where the error was measured" in capsys.readouterr().out
+    (described,) = json.loads((tmp_path / "report.json").read_text())["pictures"]
+    assert described["contact"]["is_central"] is False
 
 
 # Bad input: one line and exit status 2.

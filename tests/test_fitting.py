@@ -336,6 +336,29 @@ def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real
     assert errors["lut"].spread <= 0.10
 
 
+def test_real_presses_beside_the_middle_square_have_a_larger_error(real: Any) -> None:
+    """On whole pictures; presses that the square cuts are in the fit, and still lose height at the sides."""
+    pipeline = td.Pipeline(td.load("gelsight-mini"), real / "background.png")
+    rows, columns = pipeline.grid
+    ratios: dict[bool, list[float]] = {True: [], False: []}
+    for press in read_presses(real)[0]:
+        result = pipeline(press.image)
+        scale = pipeline.sensor.camera.columns / columns  # type: ignore[union-attr]
+        first = np.array([0.5, 0.5, 0])  # centre of the first pixel
+        x, y, radius = (np.array(press.circle) + first) / scale - first
+        left, right = min(x, columns - 1 - x) - radius, (columns - rows) / 2
+        if min(left, min(y, rows - 1 - y) - radius) < 0:
+            continue  # the edge of the picture cuts it
+        on_grid = GridPress(press.name, x, y, radius, press.ball_radius_px / scale)  # type: ignore[operator]
+        ratios[left >= right].append(on_grid.recovered(result.height_mm / pipeline.pixel_pitch_mm))
+    central, beside = np.array(ratios[True]), np.array(ratios[False])
+    assert (len(central), len(beside)) == (22, 12)
+    # docs/calibrate.md states these numbers.
+    assert (central.mean(), central.std()) == pytest.approx((0.990, 0.054), abs=0.001)
+    assert (beside.mean(), beside.std()) == pytest.approx((0.899, 0.087), abs=0.001)
+    assert (beside.min(), beside.max()) == pytest.approx((0.78, 1.09), abs=0.005)
+
+
 def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> None:
     made: Any = fit_presses(real_presses).sensor
     shipped: Any = td.load("gelsight-mini")

@@ -63,6 +63,13 @@ class Contact:
         row, column = self.record.centroid
         return row / 2**FRACTION, column / 2**FRACTION
 
+    @property
+    def is_central(self) -> bool:
+        """True if the contact lies wholly in the middle square, where `Result.height_error` was measured."""
+        shape, side = self.mask.shape, min(self.mask.shape)
+        bounds = zip(shape, self.record.least, self.record.greatest, strict=True)
+        return all((length - side) // 2 < least <= most < (length + side) // 2 - 1 for length, least, most in bounds)
+
 
 @dataclass(frozen=True)
 class Result:
@@ -92,7 +99,8 @@ class Result:
     fitted_slope : float
         Largest slope in the presses of the calibration.
     height_error : HeightError or None
-        Error of the calibration, measured on presses that were not fitted; None if not measured.
+        Error of the calibration, measured on presses that were not fitted and lay wholly in the picture's middle
+        square; None if not measured. It holds for contacts that are central (`Contact.is_central`).
     """
 
     codes: np.ndarray

@@ -68,6 +68,8 @@ class Camera:
 class HeightError:
     """Error of a calibration, measured on ball presses that were not fitted.
 
+    The presses lay wholly in the picture's middle square.
+
     Attributes
     ----------
     mean : float

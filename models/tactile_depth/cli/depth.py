@@ -38,6 +38,8 @@ UNITS = {
     "subtracted",
     "peak_px, centroid_px": "row, column on the grid",
     "area_mm2": "area above the threshold",
+    "is_central": "the contact lies wholly in the middle square, where calibration_error was measured; null without "
+    "contact",
     "volume_mm3": "sum of the depths above the threshold times the area of a pixel",
 }
 
@@ -104,6 +106,8 @@ def summary(result: Result) -> str:
         parts = [f"peak height {peak:.2f}{spread} mm, contact area {contact.area_mm2:.1f} mm2"]
         if error is None:
             parts.append("error of the calibration not measured")
+        elif not contact.is_central:
+            parts.append("the contact leaves the middle square, where the error was measured; beside it it is larger")
     else:
         parts = [f"no contact above {result.threshold_mm:.3g} mm"]
     for count, what in (
@@ -169,6 +173,7 @@ def _describe(result: Result) -> dict[str, Any]:
             "area_mm2": contact.area_mm2,
             "volume_mm3": contact.volume_mm3,
             "centroid_px": list(contact.centroid_px),
+            "is_central": contact.is_central if contact.touching else None,
         },
         "saturations": result.saturations,
         "dark_pixels": int(result.dark.sum()),
