@@ -19,6 +19,8 @@ FOLDERS = "hdl|models|tb|tests|formal|commands|boards|constraints|registers|docs
 PATH = re.compile(rf"`((?:{FOLDERS})/[\w./-]*)`")
 PLACEHOLDER = re.compile(r"(?:/|_)X\.")  # for the name of any core
 TARGET = re.compile(r"(?:^    |`)make ([a-z-]+)\b", re.MULTILINE)
+# A test that a page names as the measurement of a claim: a part of its name, and its file.
+TEST = re.compile(r"pytest\s+-k\s+(\w+)\s+(tests/[\w/]+\.py)")
 LARGEST_README = (150, 900)  # lines, words
 
 
@@ -40,6 +42,14 @@ class TestPage:
         makefile = (ROOT / "Makefile").read_text()
         targets = re.findall(r"^([a-z-]+):", makefile, re.MULTILINE)
         assert [target for target in named(page, TARGET) if target not in targets] == []
+
+    def test_every_test_that_measures_a_claim_exists(self, page: Path) -> None:
+        missing = [
+            (name, file)
+            for name, file in named(page, TEST)
+            if not re.search(rf"^def test_\w*{name}", (ROOT / file).read_text(), re.MULTILINE)
+        ]
+        assert missing == []
 
 
 def test_the_index_links_every_page() -> None:
