@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The README and the pages of docs/: length, links, paths and make targets that they name."""
 
+import inspect
 import json
 import re
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import tactile_depth as td
 from commands.common import repository
+from commands.common.run_request import ACCEPTED, CAMERA
 from commands.study import architecture
 
 ROOT = repository.ROOT
@@ -63,6 +67,21 @@ def test_the_readme_is_short() -> None:
     lines, words = LARGEST_README
     assert len(readme.splitlines()) <= lines
     assert len(readme.split()) <= words
+
+
+def test_the_page_of_make_sim_lists_every_variable() -> None:
+    page = (ROOT / "docs" / "make-sim.md").read_text()
+    assert [name for name in (*ACCEPTED, *CAMERA) if f"`{name}`" not in page] == []
+
+
+def test_the_page_of_the_python_api_lists_every_argument_and_attribute() -> None:
+    page = (ROOT / "docs" / "python.md").read_text()
+    names = [*inspect.signature(td.Pipeline).parameters, *inspect.signature(td.fit).parameters]
+    for kind in (td.Result, td.Contact):
+        names += [field.name for field in fields(kind)]
+        names += [name for name in vars(kind) if not name.startswith("_")]
+    internal = ("threshold", "fitted_slope")  # in codes and by model: threshold_mm and outside are for users
+    assert [name for name in names if not re.search(rf"\b{name}\b", page) and name not in internal] == []
 
 
 def test_tables_of_the_architecture_are_those_of_the_models() -> None:

@@ -263,7 +263,8 @@ def gather(
         listed, notes = read_presses(folder)
         name = folder.resolve().name
     else:
-        if not isinstance(presses, Sequence) or not all(isinstance(press, BallPress) for press in presses):
+        is_sequence: bool = isinstance(presses, Sequence)
+        if not is_sequence or not all(isinstance(press, BallPress) for press in presses):
             raise InputError("presses: accepted are the path of a folder, or a sequence of BallPress")
         if background is None:
             raise InputError("background is missing: give a picture of the sensor without contact")

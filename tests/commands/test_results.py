@@ -260,6 +260,11 @@ def earlier(
     return out
 
 
+def test_the_page_of_make_sim_lists_every_field_of_the_report(earlier: Any) -> None:
+    page = (ROOT / "docs" / "make-sim.md").read_text()
+    assert [key for key in json.loads((earlier / "report.json").read_text()) if f"`{key}`" not in page] == []
+
+
 NO_SPACE = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "depth.npy")
 HELP = "free disk space, or give a folder on another disk"
 LARGEST_FILE = 65_536  # bytes; 100 frames of 16 x 16 take more
