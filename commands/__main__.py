@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`python -m commands <command> NAME=value ..`: runs a command as make does, with its own exit status.
 
-docs/exit-status.md lists the statuses; make itself knows only 0 and 2.
+docs/exit-status.md lists the statuses; make itself returns only 0 and 2.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ COMMANDS = {command: room for room, commands in ROOMS.items() for command in com
 def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # a path may hold bytes that are no text
+            stream.reconfigure(errors="backslashreplace")  # a path may hold bytes that are not UTF-8
     command = sys.argv[1] if len(sys.argv) > 1 else ""
     if command not in COMMANDS:
         unknown = InputError(f"{command or 'no command'}: unknown command: accepted are {', '.join(sorted(COMMANDS))}")
         print(f"python -m commands: {unknown}", file=sys.stderr)
         sys.exit(variables.BAD_INPUT)
-    with variables.reported(command):  # from here on, because imports take seconds
+    with variables.reported(command):  # inside `stoppable`, because imports take seconds
         sys.argv = sys.argv[1:]
         importlib.import_module(f"commands.{COMMANDS[command]}.{command}").main()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Streams of whole and broken frames for frame_bench, and what must come of them."""
+"""Streams of whole and broken frames for frame_bench, and the results that are expected of them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FOLLOWS = ("at_once", "one_clock", "many_clocks", "broken")
 """Words after a broken frame: a whole one, after so many clocks; or another broken one and then a whole one."""
 STICKY = {"timed_out": "timeout"}  # names of faults and of status bits, where they differ
 
-# As PROFILES of tb/axis.py. `LONGEST`: clocks that each may wait at a time (at random: all but certainly).
+# As PROFILES of tb/axis.py. `LONGEST`: most cycles of one wait (of a random profile: almost certainly).
 PROFILES = {
     "none": bench.turns(0, 0),
     "one_in_4": bench.turns(3, 1),
@@ -43,7 +43,7 @@ LONGEST: dict[str, Any] = {"none": 0, "one_in_4": 1, "alternate": 1, "long": 200
 
 @dataclass(frozen=True)
 class Case:
-    """One break and what follows it."""
+    """One break, and the words that follow it."""
 
     kind: str
     position: int
@@ -52,7 +52,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Command:
-    """An entry of the bench that is no part of the stream."""
+    """Entry of the bench that is no word of the stream."""
 
     entry: int
 
@@ -62,9 +62,10 @@ Stream = list[Item]
 
 
 def cases(rows: int, columns: int, silent: bool) -> list[Case]:
-    """The whole product of break, position and what follows: the breaks that need the time-out register, or the others.
+    """Return the full product of break, position and successor, for the breaks that need the time-out register or the
+    others.
 
-    A whole frame is followed by any number of clocks up to a frame's.
+    After a whole frame come 0 cycles up to the cycles of a frame.
     """
     chosen = [kind for kind in BREAKS if (kind in SILENT) == silent and kind != "whole"]
     out = [
@@ -79,7 +80,7 @@ def cases(rows: int, columns: int, silent: bool) -> list[Case]:
 def batches(
     chosen: Sequence[Case], stalled: bool, timeout: int, size: int = 20
 ) -> Iterator[tuple[str, str, Sequence[Case]]]:
-    """So many cases at a time, each with the profiles of source and sink; the sink's only if it is to stall."""
+    """Yield the cases in groups, each with profiles of the source and, if it stalls, of the sink."""
     sources = [name for name in PROFILES if not timeout or timeout > 2 * LONGEST[name]]
     profiles = list(product(sources, PROFILES if stalled else ["none"]))
     for index in range(0, len(chosen), size):
@@ -87,7 +88,7 @@ def batches(
 
 
 class Attack:
-    """Plays streams on one device."""
+    """Player of streams on one device."""
 
     def __init__(self, simulator: str, config: Configuration, folder: Path, seed: int) -> None:
         self.simulator, self.config, self.folder, self.seed = simulator, config, folder, seed
@@ -98,23 +99,23 @@ class Attack:
         self.slopes = gradient_codes(self.calibration, config)
 
     def frame(self, mean: int, spread: int) -> list[Word]:
-        """A frame of random colours around a grey."""
+        """Return a frame of random colours around a grey."""
         colours = [[mean + self.random.randint(-spread, spread) for _ in range(3)] for _ in range(self.pixels)]
         return video(pack(colours), self.columns)
 
     def model(self, frames: Sequence[Sequence[int]]) -> tuple[np.ndarray, int]:
-        """Depth codes of frames, (frames, rows, columns), and how many values were clipped."""
+        """Return the depth codes of frames, (frames, rows, columns), and the number of values clipped."""
         rgb = unpack(frames).reshape(-1, self.rows, self.columns, 3)
         monitor = Monitor()
         slopes = gradient_lookup(rgb, self.slopes, self.config.bits_per_channel)
         return solve(divergence(slopes, self.config.neumann), self.config, monitor), monitor.saturations.total()
 
     def drain(self) -> int:
-        """Clocks in which everything has left."""
+        """Return a number of cycles in which every frame has left."""
         return first_depth_latency(self.config) + 4 * self.pixels
 
     def play(self, stream: Stream, **arguments: Any) -> tuple[bench.Played, Guarded]:
-        """Play a stream; the model's frames are noted, so that the clocks of their pixels are known."""
+        """Play a stream, with the cycles of the pixels of the model's frames noted."""
         words = [item for item in stream if not isinstance(item, Command)]
         guarded = frame_guard(words, self.rows, self.columns, arguments.get("registers", {}).get("TIMEOUT", 0))
         noted = {place for frame in guarded.frames if not frame.bad for place in (frame.first, frame.last)}
@@ -142,7 +143,7 @@ class Attack:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Counts of an attack in which nothing differed."""
+    """Counts of an attack without a difference."""
 
     cases: int
     kinds: dict[str, int]
@@ -152,14 +153,14 @@ class Outcome:
 
 
 def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: int = 0) -> Outcome:
-    """Play cases, a whole frame A before and after each, and compare everything that is seen.
+    """Play cases, with a whole frame A before and after each, and compare all outputs.
 
-    Broken frames press deep and A does not: with the threshold between, `contact` tells whose depth left.
+    Broken frames show a deep press and A does not. With a threshold between, `contact` shows whose depth left.
     """
     columns, pixels = device.columns, device.pixels
     a, pressed = device.frame(135, 3), device.frame(128, 127)
     codes, _ = device.model([[word.data for word in words] for words in (a, pressed)])
-    assert codes[0].max() < codes[1].max(), "the test is void: contact would not tell the frames apart"
+    assert codes[0].max() < codes[1].max(), "the test is void: contact does not distinguish the frames"
     threshold = (int(codes[0].max()) + int(codes[1].max())) // 2
     stream: Stream = [*a]
     faults: list[str] = []
@@ -167,10 +168,10 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
 
     def append(case: Case, source: str, sink: str, after_broken: bool = False) -> None:
         if case.kind == "waited":
-            silent = timeout - 2 * LONGEST[source]  # it may wait before and after
+            silent = timeout - 2 * LONGEST[source]  # both may wait before and after
         elif sink == "none" and not after_broken:
             silent = timeout + 1
-        else:  # neither clocks in which the sink refuses are silence, nor those of filler
+        else:  # cycles in which the sink stalls, and cycles of filler, are no silence
             silent = 4 * (timeout + after_broken * pixels) + 2 * LONGEST[sink]
         stream.extend(broken(pressed, case.kind, case.position, columns, silent))
         faults.extend(faults_of(case.kind, case.position, columns))
@@ -192,7 +193,7 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
 
     registers = {"THRESHOLD": threshold, "TIMEOUT": timeout}
     played, guarded = device.play(stream, registers=registers)
-    assert guarded.faults == faults, "not the stream it was meant to be"
+    assert guarded.faults == faults, "the stream has other faults than intended"
     outcome = compare(device, played, guarded, threshold, stalled)
     return Outcome(len(chosen), dict(kinds), len(faults), outcome, len(played.codes))
 
@@ -200,7 +201,7 @@ def attack(device: Attack, chosen: Sequence[Case], *, stalled: bool, timeout: in
 def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: int, stalled: bool) -> int:
     """Compare the recording of the bench with the models; return the number of whole frames that left."""
     flagged = [FAULTS[numbers[0]] for letter, numbers in played.events if letter == "f"]
-    assert flagged == guarded.faults, "faults, in their order"
+    assert flagged == guarded.faults, "faults in their order"
     good = [frame for frame in guarded.frames if not frame.bad]
     codes, clipped = device.model([frame.pixels for frame in guarded.frames])
     want = codes[[not frame.bad for frame in guarded.frames]]
@@ -234,7 +235,7 @@ def compare(device: Attack, played: bench.Played, guarded: Guarded, threshold: i
 
 @dataclass(frozen=True)
 class Reset:
-    """A reset of `clocks`, `phase` clocks after the stream began, with the sink as its profile says."""
+    """Reset of `clocks` cycles, `phase` cycles after the stream began, with this profile of the sink."""
 
     phase: int
     clocks: int
@@ -242,18 +243,18 @@ class Reset:
 
 
 def phases(config: Configuration) -> range:
-    """Clocks after the first pixel until every stage holds a frame, and a frame more."""
+    """Return the cycles after the first pixel until every stage holds a frame, plus those of one more frame."""
     return range(1, first_depth_latency(config) + 2 * config.rows * config.columns)
 
 
 def resets(device: Attack, chosen: Sequence[Reset]) -> Outcome:
-    """Reset a stream of whole and broken frames in the given phases; after each, whole frames are right to the end."""
+    """Reset a stream of whole and broken frames in these phases; after each reset all whole frames are right."""
     a, b = device.frame(128, 127), device.frame(128, 127)
     columns = device.columns
     busy = [
         *a,
-        *broken(b, "row_short", device.random.randrange(columns), columns),  # to be filled up
-        *broken(b, "start_early", device.random.randrange(1, columns), columns),  # the next start waits for that
+        *broken(b, "row_short", device.random.randrange(columns), columns),  # the guard fills it up
+        *broken(b, "start_early", device.random.randrange(1, columns), columns),  # the next start waits for the filler
         *(word for _ in range(len(phases(device.config)) // device.pixels + 1) for word in b + a),
     ]
     after = [*a, *b, *[None] * device.drain()]

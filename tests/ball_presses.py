@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ball presses, drawn with known slopes and colours: what the tests of calibrations are given."""
+"""Ball presses drawn with known slopes and colours, for the tests of calibrations."""
 
 import csv
 from functools import cache
@@ -23,14 +23,14 @@ COLUMNS = ["frame", "diameter_mm", "centre_x_px", "centre_y_px", "contact_radius
 
 
 def weakness(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """1 / the lights' strength by position in mm: quadratic, so that the fit can be exact."""
+    """Return 1 / strength of the lights by position in mm: quadratic, so that the fit can be exact."""
     return 1 + 0.03 * x - 0.02 * y + 0.004 * x * x + 0.002 * x * y + 0.006 * y * y
 
 
 def drawn(presses: list[tuple[float, float, float, float]], seed: int) -> np.ndarray:
-    """Picture of balls in the light of the synthetic sensor: uint8 (rows, columns, 3).
+    """Return a picture of balls in the light of the synthetic sensor, uint8 (rows, columns, 3).
 
-    Each press is x, y, contact radius, ball radius in pixels. Around the contact the gel levels out by and by.
+    Each press is x, y, contact radius, ball radius in pixels. Around the contact the gel levels out gradually.
     """
     rows, columns = np.indices(CAMERA, dtype=np.float64)
     slopes = np.zeros((*CAMERA, 2))
@@ -48,7 +48,7 @@ def drawn(presses: list[tuple[float, float, float, float]], seed: int) -> np.nda
 
 
 def places() -> list[tuple[str, float, float, float, float, float]]:
-    """Frame, diameter, x, y, contact radius, ball radius of a set of presses, some cut by the middle square."""
+    """Return frame, diameter, x, y, contact radius and ball radius of presses, some cut by the middle square."""
     chance, rows = np.random.default_rng(5), []
     for index in range(24):
         diameter = list(BALLS)[index % 2]
@@ -59,7 +59,7 @@ def places() -> list[tuple[str, float, float, float, float, float]]:
 
 @cache
 def pictures() -> dict[str, np.ndarray]:
-    """Pictures of `places` by name, and the background."""
+    """Return the pictures of `places` by name, and the background."""
     drawings = {name: drawn([tuple(press)], 2 + index) for index, (name, _, *press) in enumerate(places())}  # type: ignore[list-item]
     return {"background.png": drawn([], 1), **drawings}
 
@@ -84,13 +84,13 @@ def write_folder(folder: Path) -> Path:
 
 
 def read(folder: Path, pitch_mm: float | None = None, **choices: Any) -> GridPresses:
-    """Presses of a folder on the grid."""
+    """Return the presses of a folder on the grid."""
     gathered = gather(folder)
     return to_grid(gathered, camera_pitch_mm(gathered, pitch_mm), **choices)
 
 
 def real_folder() -> Path:
-    """Folder of the real presses; skips the test where they are absent."""
+    """Return the folder of the real presses; skip the test if it is absent."""
     try:
         return data_folder()
     except InputError as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds tb/tb_<core>.py on each simulator. SIM=icarus or SIM=verilator narrows the run to one."""
+"""Fixtures that build and run a testbench on each simulator; SIM=icarus or SIM=verilator selects one."""
 
 import itertools
 import json
@@ -17,6 +17,7 @@ from hypothesis import settings
 
 from commands.common import repository
 from commands.common import simulator as simulation
+from commands.verify import structures
 from tb.stream import CLOCK_NS, REGRESS
 from tests.records import record
 
@@ -25,8 +26,9 @@ POWER_UPS = int(os.environ.get("POWER_UPS", "3"))  # random states to begin from
 STATES_OF_A_BOARD = 8
 QUICK_CLOCKS = 1000
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
+NOTED = os.environ.get(structures.FOLDER)  # `run_tb` writes its arguments there and builds nothing
 
-settings.register_profile("no deadline", deadline=None)  # a busy machine is no failure of a model
+settings.register_profile("no deadline", deadline=None)  # a test of a model must not fail on a busy machine
 settings.load_profile("no deadline")
 
 
@@ -40,6 +42,8 @@ def pytest_configure(config: Any) -> None:
         "because only Verilator counts coverage.",
     )
     config.addinivalue_line("markers", "regress: runs in `make regress` only")
+    for name in simulation.SIMULATORS:
+        config.addinivalue_line("markers", f"{name}: runs in this simulator; set for each test of RTL")
     config.addinivalue_line(
         "markers", "seeds: `make regress` runs it with another seed too, like every RTL test on Icarus"
     )
@@ -67,8 +71,10 @@ def chosen_structures(groups: Any) -> dict[Any, Any]:
     """Return the structures of a mark by simulator, each with its marks."""
     both, verilator, icarus = (groups.get(name, []) for name in ("both", "verilator", "icarus"))
     regress, regress_verilator = (groups.get(name, []) for name in ("regress", "regress_verilator"))
+    every = [*both, *verilator, *icarus, *regress]
+    if NOTED:
+        return {"verilator": [(case, ()) for case in every]}
     if simulation.COVERAGE:
-        every = [*both, *verilator, *icarus, *regress]
         once = [case for index, case in enumerate(every) if case not in every[:index]]
         return {"verilator": [(case, ()) for case in once], "icarus": []}
     late = pytest.mark.regress
@@ -82,16 +88,23 @@ def begins_at_random(item: Any) -> Any:
     """Return whether a test also runs from several random power-up states; see `run_tb`."""
     callspec = getattr(item, "callspec", None)
     first = callspec is not None and all(index == 0 for index in callspec.indices.values())
-    device = item.originalname != "test_a_second_client"  # of a device that has begun so already
-    return first and device and "run_tb" in item.fixturenames and callspec.params["simulator"] == "verilator"  # type: ignore[union-attr]
+    device = item.originalname != "test_a_second_client"  # `test_rtl` runs that device from random states
+    return first and device and "run_tb" in item.fixturenames and item.get_closest_marker("verilator") is not None
 
 
 def pytest_collection_modifyitems(config: Any, items: Any) -> None:
-    """Leave out what only `make regress` runs."""
+    """Leave out what only `make regress` runs; where structures are noted, keep the test that states them."""
     for item in items:
-        if "run_tb" in getattr(item, "fixturenames", ()) and item.callspec.params["simulator"] == "icarus":
+        if "simulator" in getattr(item, "fixturenames", ()):
+            item.add_marker(item.callspec.params["simulator"])
+        if "run_tb" in getattr(item, "fixturenames", ()) and item.get_closest_marker("icarus"):
             item.add_marker("seeds")
     only_power_ups = os.environ.get("ONLY") == "power_ups"
+    if NOTED:
+        own = next(item.originalname for item in items if "run_tb" in item.fixturenames)  # other tests come after it
+        config.hook.pytest_deselected(items=[item for item in items if item.originalname != own])
+        items[:] = [item for item in items if item.originalname == own]
+        return
     chosen: list[Any] = []
     others: list[Any] = []
     for item in items:
@@ -112,7 +125,7 @@ def simulator(request: pytest.FixtureRequest) -> Any:
 
 
 def shortest(results: Any, clocks: int) -> str:
-    """A filter for the tests that took the least simulated time, up to so many clocks in all; one of them at least."""
+    """Return a filter for the tests with the least simulated time, up to `clocks` cycles in all; at least one test."""
     cases = []
     for case in ElementTree.parse(results).getroot().iter("testcase"):
         properties = {entry.get("name"): entry.get("value") for entry in case.iter("property")}
@@ -133,6 +146,31 @@ def first_failure(run_folder: Any, failed: Any, count: int, log: Path) -> Any:
         if failure is not None:
             return f"{failure.get('message')}\n  in {case.get('name')}; {summary}\n{failure.text}"
     return summary
+
+
+def note(
+    toplevel: str,
+    parameters: Any = None,
+    test_module: str | None = None,
+    roms: Any = None,
+    environment: Any = None,
+    files: Any = (),
+) -> None:
+    """Stand in for `run_tb` where structures are noted: write the arguments and the ROM files of the next structure."""
+    assert NOTED is not None
+    assert not files, f"{toplevel}: a bench of SystemVerilog is no structure of a core"
+    Path(NOTED).mkdir(exist_ok=True)
+    folder = Path(NOTED) / str(len(list(Path(NOTED).iterdir())))
+    folder.mkdir()
+    if roms:
+        roms(folder)
+    arguments = {
+        "toplevel": toplevel,
+        "parameters": parameters or {},
+        "test_module": test_module or repository.testbench(toplevel),
+        "environment": environment or {},
+    }
+    (folder / structures.ARGUMENTS).write_text(json.dumps(arguments))
 
 
 @pytest.fixture
@@ -200,4 +238,4 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
             part="power-up states", what=toplevel, simulator=simulator, runs=states, seconds=time.monotonic() - began
         )
 
-    return run
+    return note if NOTED else run

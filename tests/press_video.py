@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws a video of a ball that is pressed in and rolled, with what `tactile-depth live` needs to show it.
+"""Video of a ball that is pressed in and rolled, with the reference and calibration that `tactile-depth live` needs.
 
     python tests/press_video.py FOLDER [FRAMES]
 
@@ -25,7 +25,7 @@ DEEPEST_MM, CIRCLE_MM = 1.4, 3.0
 
 
 def press_frames(drawn: Any = DRAWN) -> Any:
-    """Frames of one turn, uint8 (drawn, 240, 320, 3), RGB."""
+    """Return the frames of one cycle of the motion, uint8 (drawn, 240, 320, 3), RGB."""
     frames = []
     for index in range(drawn):
         turn = 2 * math.pi * index / drawn
@@ -43,7 +43,7 @@ def write_sensor(folder: Path) -> None:
 
 
 def write_video(path: Path, frames: Any, count: int) -> None:
-    """Write so many frames without loss, repeated from the first where there are fewer."""
+    """Write `count` frames without loss; the motion repeats."""
     import cv2
 
     video = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"FFV1"), 30, (CAMERA.columns, CAMERA.rows))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The real presses, where they are at hand: `gelslam/` in the folder that TACTILE_DATA names, or in ../shared/data."""
+"""Real presses: `gelslam/` in the folder that TACTILE_DATA names, or in ../shared/data."""
 
 import os
 from pathlib import Path

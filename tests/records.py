@@ -8,7 +8,7 @@ from typing import Any
 
 
 def record(**figures: Any) -> None:
-    """A line in the file that RECORDS names, if it does."""
+    """Append a line to the file that RECORDS names, if it is set."""
     if "RECORDS" in os.environ:
         with Path(os.environ["RECORDS"]).open("a") as file:
             file.write(json.dumps(figures) + "\n")

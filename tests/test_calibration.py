@@ -64,7 +64,7 @@ def test_synthetic_inverts_the_colour_model_at_bin_centres() -> None:
     centre = np.stack(np.meshgrid(*[np.arange(64) * 4 + 1.5] * 3, indexing="ij"), axis=-1)
     inside = (np.abs(slope) < 0.98).all(axis=-1)  # type: ignore[arg-type]
     residual = (colour - centre)[inside]
-    # What a slope cannot explain is the brightness common to the three lights.
+    # A slope does not explain the brightness that the three lights share.
     np.testing.assert_allclose(residual, residual.mean(axis=-1, keepdims=True).repeat(3, axis=-1), atol=1e-9)
 
 
@@ -294,7 +294,7 @@ def test_a_path_that_cannot_be_written_is_named(tmp_path: Path) -> None:
         load("gelsight-mini").save(None)  # type: ignore[arg-type]
 
 
-# Files that are made to harm.
+# Malicious files.
 
 
 def npy(shape: Any, dtype: str = "<f8", data: Any = b"") -> bytes:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The certificate: its norms are those of the whole linear map, its frames attain them in model and RTL."""
+"""Certificate: its norms equal those of the whole linear map, and its frames attain them in model and RTL."""
 
 import json
 from pathlib import Path
@@ -32,7 +32,7 @@ each_whole = pytest.mark.parametrize("choices", WHOLE, ids=lambda c: "-".join(ma
 
 
 class Words(Monitor):
-    """Every word of every node: (lone samples, words)."""
+    """Words of every node: (single samples, words)."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -43,7 +43,7 @@ class Words(Monitor):
 
 
 def whole_map(config: Configuration) -> tuple[Any, ...]:
-    """Responses of every word to each pixel of the divergence, and of the depth, by running the solver on floats."""
+    """Return the response of every word to each pixel of divergence and of depth, by running the solver on floats."""
     shape = (config.rows, config.columns)
     count = config.rows * config.columns
     monitor = Words()
@@ -52,7 +52,7 @@ def whole_map(config: Configuration) -> tuple[Any, ...]:
 
 
 def over_slopes(words: Any, config: Configuration) -> Any:
-    """Norm of each word over slopes up to the limit, in its codes."""
+    """Return the norm of each word over slopes up to the limit, in its codes."""
     maps = np.moveaxis(words.reshape(config.rows, config.columns, -1), -1, 0)
     norms = [np.abs(slope_response(word, config.neumann)).sum() for word in maps]
     return np.array(norms) * config.gradient_limit / config.gradient_lsb
@@ -74,7 +74,8 @@ def test_slopes_are_the_norms_of_the_whole_map(choices: Any) -> None:
 
 @pytest.mark.parametrize("choices", [choices for choices in WHOLE if not choices.get("neumann")], ids=str)
 def test_depths_are_the_norms_of_the_whole_map(choices: Any) -> None:
-    """By the inverse of the map to depth. The certificate may say a little more: see below."""
+    """Compute norms over depth by the inverse of the map to depth. The certificate may give a slightly larger bound:
+    see below."""
     config = Configuration(**choices)
     words, depth = whole_map(config)
     from_depth = np.linalg.inv(depth)
@@ -84,7 +85,7 @@ def test_depths_are_the_norms_of_the_whole_map(choices: Any) -> None:
         assert node.depths >= bound * (1 - 1e-3), node.name
         if node.name.startswith("row_inverse"):  # not every word's norm over slopes is computed
             assert node.depths <= over_depths.max() * node.form.lsb * (1 + 1e-9), node.name
-        elif not node.name.startswith(("row_forward", "column_forward")):  # ahead of the solve: by the Laplacian
+        elif not node.name.startswith(("row_forward", "column_forward")):  # before the solve: by the Laplacian
             assert node.depths == pytest.approx(bound, rel=1e-9), node.name
 
 
@@ -99,7 +100,7 @@ def test_the_deepest_point_is_where_it_is_looked_for(rows: int, columns: int, ne
 @pytest.mark.parametrize("neumann", [False, True])
 @pytest.mark.parametrize("rows", [8, 21, 32])
 def test_the_bound_of_a_difference_holds_and_is_close(rows: int, neumann: bool) -> None:
-    """The configuration computes it without the whole survey: ideal coefficients, the variation of weights as 2."""
+    """Check the shorter bound of the configuration, with ideal coefficients and the variation of weights taken as 2."""
     config = Configuration(columns=32, rows=rows, solver="tridiagonal", neumann=neumann, coefficient_width=24)
     bound = {node.name: node for node in certify(config)}["forward_elimination.difference"].slopes
     by_slopes = difference_bounds(rows, 32, neumann)[0].max() / config.depth_limit_px
@@ -107,7 +108,7 @@ def test_the_bound_of_a_difference_holds_and_is_close(rows: int, neumann: bool) 
 
 
 def laplacian(z: np.ndarray, neumann: bool) -> Any:
-    """Five-point; the neighbour outside the frame is the mirrored negative, or (Neumann) the pixel itself."""
+    """Return the five-point Laplacian; a neighbour outside is the mirrored negative, or (Neumann) the pixel itself."""
     f = np.zeros_like(z)
     for axis in (-1, -2):
         ends = [np.take(z, [at], axis) * (1 if neumann else -1) for at in (0, -1)]
@@ -118,7 +119,7 @@ def laplacian(z: np.ndarray, neumann: bool) -> Any:
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 @pytest.mark.parametrize("depth_range_px", [0.25, 1.0, 4.0])
 def test_depths_at_their_bounds_saturate_no_node(solver: str, depth_range_px: Any) -> None:
-    """Depths that drive each node furthest, from limit to limit; only the widest slope limit lets them in."""
+    """Drive each node as far as depths within the range can; only the widest slope limit allows such depths."""
     config = Configuration(columns=16, solver=solver, depth_range_px=depth_range_px, gradient_limit=64.0)
     words, depth = whole_map(config)
     from_depth = np.linalg.inv(depth)
@@ -135,9 +136,9 @@ def test_depths_at_their_bounds_saturate_no_node(solver: str, depth_range_px: An
 
 
 def slopes_of_field(z: Any) -> Any:
-    """Slopes (..., 2) whose divergence is the Laplacian of z, zero half a pixel outside.
+    """Return slopes (..., 2) whose divergence is the Laplacian of z, zero half a pixel outside.
 
-    The divergence takes the slope outside as 0, so one at the edge is carried along the whole row.
+    The divergence takes the slope outside as 0, so a slope at the edge continues along the whole row.
     """
     along = [np.diff(z, axis=axis, append=-np.take(z, [-1], axis)) - 2 * np.take(z, [0], axis) for axis in (-1, -2)]
     return np.stack(along, axis=-1)
@@ -145,7 +146,7 @@ def slopes_of_field(z: Any) -> Any:
 
 @pytest.mark.parametrize("solver", [pytest.param("spectral", marks=pytest.mark.regress), "tridiagonal"])
 def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
-    """A calibration with a colour for every pixel of every pattern lets a camera show them."""
+    """Send depths at their bounds to the RTL by a calibration with one colour for every pixel of every pattern."""
     size, bits = 16, 4
     patterns_held = 2 ** (3 * bits) // size**2
     config = Configuration(columns=size, solver=solver, gradient_limit=32.0)
@@ -188,7 +189,8 @@ def test_depths_at_their_bounds_through_rtl(tmp_path: Any, solver: str) -> None:
 
 @pytest.mark.parametrize("depth_range_px", [1.0, 2.0])
 def test_a_shallow_range_holds_the_steepest_slopes_that_stay_in_it(depth_range_px: Any) -> None:
-    """Steep and shallow at once: what comes into the elimination is then larger than any mode of the depth."""
+    """Combine steep slopes and a shallow range: the input of the elimination is then larger than any mode of the
+    depth."""
     config = Configuration(columns=32, solver="tridiagonal", depth_range_px=depth_range_px)
     node = {node.name: node for node in certify(config)}["row_forward.phase.re"]
     slopes = np.sign(slope_response(node.response, False))
@@ -232,7 +234,7 @@ def test_no_derived_format_saturates_within_the_range(
 
 
 def test_every_node_has_its_format() -> None:
-    """Widths as the model saturates to: a full-scale frame clips at them."""
+    """Compare widths with the model: a full-scale frame clips at them."""
     for choices in WHOLE:
         config = Configuration(**choices)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `tactile-depth depth`: what it writes is what the package computes, and bad input is one line."""
+"""Command `tactile-depth depth`: its files hold the results of the package, and bad input gives one line."""
 
 import json
 import resource
@@ -27,7 +27,7 @@ WAIT_S = 60
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Pictures of the sample, its background and its calibration, as files."""
+    """Return pictures of the sample, its background and its calibration, as files."""
     folder = tmp_path_factory.mktemp("inputs")
     sample = td.sample("ball")
     sample.sensor.save(folder / "sensor.npz")
@@ -47,7 +47,7 @@ def expected(inputs: Any, **choices: Any) -> Any:
 
 
 def read_ply(path: Path) -> tuple[Any, ...]:
-    """Vertices and faces of a binary mesh, read by what its header says."""
+    """Return vertices and faces of a binary mesh, read as its header describes."""
     header, _, body = path.read_bytes().partition(b"end_header\n")
     counts = {line.split()[1]: int(line.split()[2]) for line in header.decode().splitlines() if "element" in line}
     assert b"format binary_little_endian 1.0" in header
@@ -57,7 +57,7 @@ def read_ply(path: Path) -> tuple[Any, ...]:
     return vertices, faces
 
 
-# What it writes.
+# Files.
 
 
 def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, arguments: Any) -> None:
@@ -189,12 +189,13 @@ def test_nothing_is_written_when_one_picture_is_bad(
     assert f"tactile-depth: {narrow}: pictures: 100 x 240 pixels" in capsys.readouterr().err
 
 
-# Which calibration.
+# Choice of the calibration.
 
 
 @pytest.fixture(scope="module")
 def mini(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """A picture without contact of the sensor gelsight-mini, as its calibration knows it, and three others."""
+    """Return a picture without contact of the sensor gelsight-mini, drawn by its calibration, and three other
+    pictures."""
     folder = tmp_path_factory.mktemp("mini")
     picture = np.kron(td.load("gelsight-mini").lighting * 90, np.ones((60, 80, 1))).clip(0, 255).astype(np.uint8)  # type: ignore[operator]
     Image.fromarray(picture).save(folder / "background.png")
@@ -318,7 +319,7 @@ def test_an_interruption_ends_with_130(
 
 
 def started(words: list[str], **options: Any) -> Any:
-    """Start the command, with signals as a terminal leaves them."""
+    """Start the command with the default handling of signals."""
 
     def defaults() -> None:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -348,7 +349,7 @@ def test_a_signal_removes_the_draft(tmp_path: Path, inputs: Any, arguments: Any,
 
 
 def test_a_file_that_does_not_fit_ends_with_3(tmp_path: Path, inputs: Any, arguments: Any) -> None:
-    """The system refuses to write files above a size, as it does on a full disk."""
+    """Limit the size of files, which acts like a full disk."""
     words = ["depth", f"{inputs}/press.png", "--out", f"{tmp_path}/out", *arguments]
     process = started(words, RLIMIT_FSIZE=1000)
     _, errors = process.communicate(timeout=WAIT_S)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The configuration: formats just hold what the bounds allow, bad choices are refused, no number drifts."""
+"""Configuration: formats hold the bounds without a spare bit, bad choices are refused, and recorded numbers are
+unchanged."""
 
 import re
 from pathlib import Path
@@ -29,7 +30,7 @@ from tactile_depth.transform.transpose import transpose
 
 
 class Nodes(Monitor):
-    """Keeps what passes the nodes of a model fed with floats."""
+    """Recorder of the values at the nodes of a model that computes with floats."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -49,16 +50,16 @@ def responses(size: Any) -> Any:
 
 
 def step(response: Any) -> Any:
-    """Response to a slope: it enters the divergence here with +, in the next word with -."""
+    """Return the response to a slope, which enters the divergence here with + and in the next word with -."""
     return -np.diff(response, axis=0, append=0)
 
 
 def slope_patterns(size: int) -> Any:
-    """Signs of slopes (2, N, N, 2) that attain the bounds of the row and of the column transform."""
+    """Return signs of slopes (2, N, N, 2) that attain the bounds of the row and of the column transform."""
     forward, _, modes = responses(size)
     worst = np.argmax(np.abs(step(forward)).sum(axis=0) + 2 * np.abs(forward).sum(axis=0))
     along, down = np.sign(step(forward)[:, worst]), np.sign(forward[:, worst])
-    alternate = np.resize([1, -1], size)[:, None]  # each row takes gy of the row above away
+    alternate = np.resize([1, -1], size)[:, None]  # each row subtracts gy of the row above
     row = np.stack((alternate * along, alternate * down), axis=-1)
 
     length, steps = np.abs(forward).sum(axis=0), np.abs(step(forward)).sum(axis=0)
@@ -71,7 +72,7 @@ def slope_patterns(size: int) -> Any:
 
 
 def depth_patterns(size: int) -> Any:
-    """Signs of depth fields (3, N, N) that attain the bounds of the inverse column and row transforms."""
+    """Return signs of depth fields (3, N, N) that attain the bounds of the inverse column and row transforms."""
     _, inverse, modes = responses(size)
     m = modes[:, np.argmax(np.abs(modes).sum(axis=0))]
     c = inverse[:, np.argmax(np.abs(inverse).sum(axis=0))]
@@ -95,7 +96,7 @@ def largest(nodes: Any, core: str) -> Any:
 
 
 def laplacian(z: np.ndarray) -> Any:
-    """Five-point, zero half a pixel outside the frame: the neighbour out there is the mirrored negative."""
+    """Return the five-point Laplacian, zero half a pixel outside: a neighbour outside is the mirrored negative."""
     f = np.zeros_like(z)
     for axis in (-1, -2):
         first, last = np.take(z, [0], axis), np.take(z, [-1], axis)
@@ -142,7 +143,8 @@ def test_depths_attain_their_bounds(size: int) -> None:
 
 @each_choice
 def test_slopes_at_their_bounds_saturate_no_forward_node(choices: Any) -> None:
-    """Depth may leave its range on them, so what lies behind the divide is not meant."""
+    """Attain the bounds over slopes: no forward node saturates. Depth may exceed its range, so later nodes do not
+    count."""
     config = Configuration(**choices)
     slopes = slope_patterns(config.columns).astype(np.int64) * (2 ** (config.gradient.width - 1) - 1)
     monitor = Monitor()
@@ -162,13 +164,13 @@ def test_slopes_at_their_bounds_saturate_no_forward_node(choices: Any) -> None:
     ids=lambda c: "-".join(map(str, c.values())),
 )
 def test_depths_at_their_bounds_saturate_no_node(choices: Any) -> None:
-    """From limit to limit within a pixel: only the widest slope limit lets such a field in."""
+    """Attain the bounds over depth: no node saturates. Only the widest slope limit allows such fields."""
     config = Configuration(gradient_limit=64.0, **choices)
     assert not saturations(config.depth_range_px * depth_patterns(config.columns), config)
 
 
 def bump(config: Any, share: Any) -> Any:
-    """The lowest mode, with a peak of this share of the depth range."""
+    """Return the lowest mode, with a peak of this fraction of the depth range."""
     wave = np.sin(np.pi * (2 * np.arange(config.columns) + 1) / (2 * config.columns))
     return share * config.depth_range_px * np.outer(wave, wave) / wave.max() ** 2
 
@@ -251,7 +253,7 @@ def test_the_width_that_an_error_asks_for_is_accepted() -> None:
 
 
 def defaults(path: Any) -> dict[Any, Any]:
-    """Parameters of the module in a file, by name."""
+    """Return the parameters of the module in a file, by name."""
     head = re.search(r"#\((.*?)\n\)", (ROOT / path).read_text(), re.DOTALL)[1]  # type: ignore[index]
     declared = re.findall(r"^\s*parameter int (\w+)\s*=\s*(-?\d+)", head, re.MULTILINE)
     return {name: int(value) for name, value in declared}

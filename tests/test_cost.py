@@ -51,7 +51,7 @@ INSTANCES = {  # in the units and solvers
 
 
 def elaborated(config: Configuration, folder: Path) -> Any:
-    """Cells of the whole pipeline, by name."""
+    """Return the cells of the whole pipeline, by name."""
     write_roms(folder, synthetic(config.bits_per_channel), config)
     names = []
     for path in repository.sources():
@@ -75,7 +75,7 @@ def core_of(cell: str, lanes: int) -> str:
 
 
 def operand_width(bits: Any) -> int:
-    """Without the copies of its sign by which an operand was widened to the product."""
+    """Return the width of an operand without copies of its sign."""
     while len(bits) > 1 and bits[-1] == bits[-2]:
         bits = bits[:-1]
     return len(bits)

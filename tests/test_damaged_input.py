@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Readers of files on damaged input: each gives a valid result, or an InputError of one line.
+"""Readers of files on damaged input: each returns a valid result or raises an InputError of one line.
 
-Hypothesis makes the damage. `make regress` tries EXAMPLES times FULL of each kind, `make test` EXAMPLES.
+Hypothesis damages the files. `make test` tries EXAMPLES of each kind, `make regress` FULL times as many.
 """
 
 import csv

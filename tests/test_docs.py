@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The README and the pages of docs/: length, links, paths and make targets that they name."""
+"""README and pages of docs/: length, links, and the paths and make targets that they name."""
 
 import inspect
 import json
@@ -94,7 +94,7 @@ def test_the_architecture_names_every_core_of_the_top() -> None:
     assert [core for core in cores if f"`{core}`" not in text and core != "tactile_depth"] == []
 
 
-HANDSHAKES = {  # waveform: what says that a word is there, what takes it, and what belongs to it
+HANDSHAKES = {  # by waveform: signals of valid and ready, and the signals of the word
     "video": ("tvalid", "tready", ("tdata", "tuser", "tlast")),
     "depth": ("m_axis_tvalid", "m_axis_tready", ("m_axis_tdata", "m_axis_tuser")),
     "records": ("m_event_tvalid", "m_event_tready", ("m_event_tdata", "m_event_tlast")),
@@ -103,7 +103,7 @@ HANDSHAKES = {  # waveform: what says that a word is there, what takes it, and w
 
 
 def values(wave: str) -> list[str]:
-    """Return the value of a WaveDrom signal in each cycle; each item of data has a value of its own."""
+    """Return the value of a WaveDrom signal in each cycle; each item of data is one value."""
     out: list[str] = []
     for cycle, letter in enumerate(wave):
         out.append(out[-1] if letter == "." else f"{letter}{cycle}" if letter in "345|" else letter)
@@ -112,7 +112,7 @@ def values(wave: str) -> list[str]:
 
 @pytest.mark.parametrize("name", HANDSHAKES)
 def test_a_waveform_keeps_the_rules_of_its_stream(name: str) -> None:
-    """A word stays until it is taken; in the cycle after that there is another, or none."""
+    """Check that a word stays until it is taken, and that the next cycle has another word or none."""
     drawn = json.loads((ROOT / "docs" / "waves" / f"{name}.json").read_text())["signal"]
     waves = {signal["name"]: values(signal["wave"]) for signal in drawn}
     offered, takes, fields = HANDSHAKES[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that a core cannot be built with stop it before it runs, by its own word."""
+"""Invalid parameters of a core stop its elaboration with a message of the core."""
 
 import subprocess
 import sys
@@ -90,7 +90,7 @@ TOOLS = ("icarus", "slang", "verilator")
 
 
 def refused(tool: str, core: str, change: str) -> str:
-    """Return the message with which a tool refuses to elaborate a core, "" if it does not."""
+    """Return the message with which a tool refuses to elaborate a core, "" if it accepts."""
     sources = [str(path) for path in repository.sources()]
     if tool == "icarus":
         command = ["iverilog", "-g2012", "-t", "null", "-s", core, *(f"-P{core}.{word}" for word in change.split())]
@@ -109,11 +109,11 @@ def refused(tool: str, core: str, change: str) -> str:
         for core, changes in INVALID.items()
         for index, change in enumerate(changes)
         for tool in TOOLS
-        if tool == "icarus" or '"' not in change  # a text: the runners quote it in other ways
+        if tool == "icarus" or '"' not in change  # a text parameter, which each runner quotes in its own way
     ],
 )
 def test_an_invalid_parameter_is_refused(tool: str, core: str, change: str) -> None:
-    """The message names the rule, or the tool stops earlier at what follows from the parameter."""
+    """Refuse an invalid parameter: the message names the rule, or the tool stops earlier at a consequence."""
     for simulation in simulator.SIMULATORS:
         simulator.check(simulation)
     output = refused(tool, core, change).lower()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every example runs, and the notebook of real presses shows what it showed when it was committed."""
+"""Examples: every one runs, and the notebook of real presses gives the committed outputs."""
 
 import json
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The stream contract of tactile_depth under attack: every break at every position, resets in every phase.
+"""Stream contract of tactile_depth: every break at every position, resets in every phase.
 
 Icarus is a hundred times slower than Verilator, so `make test` takes a sample and `make regress` (REGRESS=1) the rest:
 
@@ -49,7 +49,7 @@ def device(simulator: str, tmp_path: Path) -> Any:
 
 
 def chosen(simulator: str, grid: Any, stalled: bool, silent: bool) -> Any:
-    """Cases in an order of their own for each device."""
+    """Return the cases in a random order that differs for each device."""
     rng = random.Random(f"{SEED} {simulator} {grid.removesuffix('-neumann')} {silent}")
     config = Configuration(**GRIDS[grid])
     out = cases(config.rows, config.columns, silent)
@@ -100,7 +100,7 @@ def test_resets_in_every_phase(device: Any, simulator: str, grid: Any) -> None:
 @pytest.mark.parametrize("simulator", ["verilator"], indirect=True)
 @pytest.mark.parametrize("solver", ["tridiagonal", "spectral"])
 def test_a_sample_at_128(device: Any, simulator: Any, solver: Any) -> None:
-    """Whole frames of 16,384 pixels: each kind of break at a place drawn for it, and resets."""
+    """Send whole frames of 16,384 pixels, with each kind of break at a random position, and resets."""
     config, rng = Configuration(columns=128, solver=solver), random.Random(SEED)
     for stalled, silent in ((False, False), (True, False), (False, True)):
         began = time.monotonic()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""fit and evaluate: on presses drawn with known slopes and colours, and on real ones."""
+"""fit and evaluate on presses drawn with known slopes and colours, and on real presses."""
 
 import math
 from dataclasses import replace
@@ -82,14 +82,14 @@ def real_presses(real: Any) -> Any:
     return read(real)
 
 
-# The fit, where the truth is known.
+# The fit of drawn presses, whose slopes are known.
 
 
 def test_the_quadratics_of_the_lights_are_recovered(presses: Any, fitted: Any) -> None:
     coefficients, _ = fit_quadratic(fitted, presses.grid_pitch_mm)
     terms = quadratic_terms(GRID, GRID, presses.grid_pitch_mm)
     by_colour = np.einsum("ant,rct->rcan", coefficients, terms)
-    # Three colours span two slopes: of the coefficients only what they make of the lights' directions can be known.
+    # Three colours span two slopes, so coefficients are known only along the directions of the lights.
     response = by_colour @ (SENSITIVITY * LIGHTS)
     want = weakness(terms[..., 1], terms[..., 2])[..., None, None] * np.eye(2)
     middle = np.hypot(terms[..., 1], terms[..., 2]) < 5
@@ -130,7 +130,7 @@ def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fitted: Any) -> None
         for value in (lambda view: view.press.slopes(GRID), lambda view: view.codes >> 4)
     )
     index = np.ravel_multi_index(tuple(codes.T), (16, 16, 16))
-    steep = np.hypot(*truth.T) > 0.35  # colours that nothing at rest has
+    steep = np.hypot(*truth.T) > 0.35  # colours that no frame without contact has
     busiest = np.bincount(index[steep]).argmax()
     at = np.unravel_index(busiest, (16, 16, 16))
     assert is_filled[at]
@@ -150,7 +150,7 @@ def test_a_press_moves_to_where_its_ball_is() -> None:
     assert abs(far.x - 20) <= FURTHEST_SHIFT * 14 + 1e-9  # no further than that
 
 
-# The sensor that comes of it.
+# The fitted sensor.
 
 
 def test_a_sensor_knows_what_it_was_fitted_to(sensor: Any, presses: Any) -> None:
@@ -266,7 +266,7 @@ def test_the_table_of_an_evaluation_holds_every_press(sensor: Any, folder: Path)
 
 
 def test_larger_pictures_of_the_same_camera_give_nearly_the_same(sensor: Any, folder: Path, tmp_path: Path) -> None:
-    """Twice as large, on a grid twice as fine."""
+    """Fit pictures of twice the size, on a grid twice as fine."""
     twice = tmp_path / "twice"
     twice.mkdir()
     for name, picture in pictures().items():
@@ -325,7 +325,8 @@ def test_every_whole_real_press_held_out_in_turn(real_presses: Any) -> None:
 
 
 def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real: Any) -> None:
-    """The table's radii are whole pixels; half a pixel in 26 is 4 % of the height of a cap."""
+    """Measure by the circles in the pictures, because the table has radii in whole pixels, and half a pixel in 26 is 4
+    % of the height of a cap."""
     evaluation = fit_presses(read(real, find_circles=True)).evaluation
     errors = {model: evaluation.height_error(model) for model in MODELS}
     assert len(evaluation.presses) >= 10
@@ -378,8 +379,11 @@ def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> Non
 
 @pytest.mark.parametrize("model", ["lut", "quadratic"])
 def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(real_presses: Any, model: Any) -> None:
-    """Lights up to 11 % weaker and 9 % stronger across the gel; Neumann, bit-accurate. Of the reference, of the floor,
-    of one behind the other; heights come back with that of the reference."""
+    """Change the lights by -11 % to +9 % across the gel, then capture the reference, the floor, or both (Neumann,
+    bit-accurate).
+
+    Every capture restores the floor; heights are restored by a capture of the reference.
+    """
     presses, size, no_contact = real_presses, real_presses.size, real_presses.background_on_grid
     held_out = held_out_presses(presses)[1]
     sensor = replace(td.load("gelsight-mini"), pixel_pitch_mm=presses.grid_pitch_mm, reference=no_contact)
@@ -403,7 +407,7 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
     assert depth_mm(drifted(no_contact), before).std() > 0.1  # measured: 0.14 (lut), 0.31 mm
     at_rest = depth_mm(drifted(no_contact), captured)
     assert at_rest.std() < 0.007  # measured: 0.0020, 0.0062 mm
-    # The floor measured in place of the reference, and behind it.
+    # The floor captured instead of the reference, and after it.
     alone = captured_floor(depth_codes(drifted(no_contact), before)[None], config)
     both = captured_floor(depth_codes(drifted(no_contact), captured)[None], config)
     assert depth_mm(drifted(no_contact), before, alone).std() < 0.01  # measured: 0.0057, 0.0084 mm
@@ -416,13 +420,14 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
     as_calibrated = [score.cap_height for score in scores_of(sensor, presses, held_out, model)]
     for balls in (caps(captured), caps(captured, both)):
         assert np.abs(balls - as_calibrated).max() < 0.02
-    # Without a capture the floor comes back, but colours stay off: measured 0.123 (lut), 0.023.
+    # A capture of the floor alone leaves the error of colours: measured 0.123 (lut), 0.023.
     off = np.abs(caps(before, alone) - as_calibrated).max()
     assert off < (0.03 if model == "quadratic" else 0.15)
 
 
 def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real: Any) -> None:
-    """In a window of 128 camera pixels, its centre 14 from the edge against in the middle; Neumann, bit-accurate."""
+    """Compare a contact 14 pixels from the edge of a window of 128 with the same contact in the middle (Neumann,
+    bit-accurate)."""
     window, from_edge = 128, 14
     config = Configuration(columns=window, solver="tridiagonal", neumann=True, gradient_limit=2.0)
     limit = (1 << config.gradient.width - 1) - 1

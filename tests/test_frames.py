@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames: the way from files to the grid, and errors for bad ones."""
+"""Frames: from files to the grid, and errors for bad files."""
 
 import struct
 import tracemalloc
@@ -88,7 +88,7 @@ def test_many_images_are_averaged_as_one_by_one() -> None:
 
 
 def test_averages_are_the_exact_quotients() -> None:
-    """Sums of whole numbers have no rounding: each average is the fraction that is nearest in double precision."""
+    """Compare averages of integers with exact fractions: each is the nearest number in double precision."""
     image = noise(24, 20, 1)
     plan = resampling((24, 20), (11, 9))
     rows, columns = plan.rows.astype(int), plan.columns.astype(int)
@@ -212,7 +212,7 @@ def test_an_npz_in_place_of_an_npy_is_named(tmp_path: Path) -> None:
     assert "f.npy: not a readable .npy" in refused(tmp_path / "f.npy")
 
 
-@pytest.mark.filterwarnings("ignore:The legacy")  # plugins that imageio tries on an empty file
+@pytest.mark.filterwarnings("ignore:The legacy")  # imageio tries these plugins on an empty file
 @pytest.mark.parametrize("share", [0, 0.01, 0.5, 0.9])
 def test_a_truncated_png_is_named(tmp_path: Path, share: float) -> None:
     path = picture(tmp_path / "p.png", noise(40, 40, 3))

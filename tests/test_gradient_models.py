@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models of flat-fielding and of the quadratic gradient against what they stand for, in double precision."""
+"""Models of the flat field and of the quadratic gradient against their formulas in double precision."""
 
 from typing import Any
 
@@ -37,7 +37,7 @@ SEED = st.integers(0, 2**32 - 1)
 
 
 def lit(config: Configuration, seed: int, count: int = 1) -> np.ndarray:
-    """Frames without contact, as unevenly lit as a real gel and no darker than 20."""
+    """Return frames without contact, as unevenly lit as a real gel, and no darker than 20."""
     chance = np.random.default_rng(seed)
     y, x = np.indices((config.rows, config.columns)) / config.columns
     waves = [np.cos(3 * (x * chance.normal() + y * chance.normal()) + chance.uniform(0, 6)) for _ in range(3)]
@@ -93,7 +93,7 @@ def test_gains_of_pixels_stand_for_those_of_nodes() -> None:
 
 
 def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
-    """Neumann, whose floor nothing else fixes: lights that drift tilt and bend it, and a capture takes that away."""
+    """Capture the floor under Neumann: drifting lights tilt and bend it, and the capture removes both."""
     calibration = quadratics(3)
     config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit)
     words = polynomial_words(calibration, config, 15 / 64)
@@ -192,7 +192,7 @@ def test_a_pixel_whose_reference_is_dark_is_held() -> None:
 
 
 def raster(words: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """The six-word recurrence, word by word as the registers hold it, in Python's integers."""
+    """Return the six-word recurrence of the registers, computed with Python's integers."""
     out = np.zeros((rows, columns), object)
     a, b, d, e, f, h = (int(word) for word in words)
     v0, dv0 = a, b
@@ -224,7 +224,7 @@ def test_words_give_the_calibrations_quadratics(choices: Any) -> None:
     result = coefficient_map(words, config) * COLOUR_COEFFICIENT.lsb * unit
     terms = reference.quadratic_terms(config.rows, config.columns, pitch)
     want = np.einsum("ant,rct->anrc", calibration.coefficients, terms)  # type: ignore[arg-type]
-    # Half a unit of what is multiplied, and of three words of second differences, seen from an eighth of N^2 away.
+    # Half a unit of the factors, and of three words of second differences, which grow by N^2 / 8.
     far = 3 / 2 * POLYNOMIAL.lsb * max(config.rows, config.columns) ** 2 / 8
     assert np.abs(result - want).max() <= (COLOUR_COEFFICIENT.lsb / 2 + far) * unit * 1.01
 

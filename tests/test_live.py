@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tactile-depth live`: what it shows is what the pipeline computes, and each frame is shown or counted as lost.
+"""`tactile-depth live`: it shows the results of the pipeline, and each frame is shown or counted as lost.
 
-Tests of the viewer and of videos need the extra [live]: `make live-test` runs all in an environment that has it.
+Tests of the viewer and of videos need the extra [live]; `make live-test` runs all tests in an environment with it.
 """
 
 import importlib.util
@@ -33,7 +33,7 @@ needs_live = pytest.mark.skipif(bool(MISSING), reason=f"{', '.join(MISSING)} mis
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Drawn presses as a folder of pictures; background and calibration."""
+    """Return drawn presses as a folder of pictures, background and calibration."""
     folder = tmp_path_factory.mktemp("inputs")
     write_sensor(folder)
     (folder / "presses").mkdir()
@@ -58,7 +58,7 @@ def pipeline_of(inputs: Any, reference: Any = "background.png") -> Any:
 
 
 class Screen:
-    """Stands for the display: keeps what it is shown."""
+    """Substitute of the display that keeps the frames shown."""
 
     last: Any
 
@@ -101,7 +101,7 @@ def press_keys(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def counted(printed: Any) -> Any:
-    """The numbers of the last line, by name."""
+    """Return the numbers of the last line, by name."""
     (line,) = [line for line in printed.splitlines() if line.startswith("frames:")]
     counts = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)[,;]", line)}
     lost_or_shown = sum(count for name, count in counts.items() if name != "read")
@@ -109,7 +109,7 @@ def counted(printed: Any) -> Any:
     return counts
 
 
-# What is shown.
+# Frames shown.
 
 
 def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(
@@ -164,7 +164,7 @@ def test_it_stops_after_so_many_frames(
 
 
 def drifting(tmp_path: Path, inputs: Any, images: np.ndarray) -> tuple[Any, ...]:
-    """Frames without contact under weaker light, then one press; the drift is seen against the old background."""
+    """Return frames without contact under weaker light, then one press, with the background of the old light."""
     no_contact = np.array(Image.open(inputs / "background.png"))
     y, x = np.mgrid[-1:1:240j, -1:1:320j]
     light = 0.9 + 0.05 * np.stack([x, y, x * y], axis=-1)
@@ -340,7 +340,7 @@ def video(inputs: Any) -> Any:
 
 
 def decoded(video: Any) -> list[Any]:
-    """Frames of a video as OpenCV reads it, in RGB."""
+    """Return the frames of a video as OpenCV reads it, in RGB."""
     with Source(str(video)) as source:
         return [frame.image for frame in source.frames() if frame is not None]
 
@@ -392,7 +392,7 @@ def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(
 
 @needs_live
 def test_a_video_gives_the_frames_that_were_written_in_rgb(video: Any, images: np.ndarray) -> None:
-    """The codec loses nothing, so that a channel in another's place shows."""
+    """Read a video of a lossless codec, so that exchanged channels are seen."""
     read = decoded(video)
     assert len(read) == 25
     for index, image in enumerate(read):
@@ -401,7 +401,7 @@ def test_a_video_gives_the_frames_that_were_written_in_rgb(video: Any, images: n
 
 @needs_live
 def test_a_video_that_is_cut_is_counted(tmp_path: Path, inputs: Any, video: Any) -> None:
-    """The index of an AVI is at its end; what is cut off is claimed by its head and cannot be read."""
+    """Cut the end of an AVI, which holds its index: its header counts frames that cannot be read."""
     import cv2
 
     path = tmp_path / "whole.avi"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of the models that hold on any input, for models whose own tests state none."""
+"""Properties of the models that hold for any input, for models whose own tests check none."""
 
 from typing import Any
 
@@ -169,7 +169,7 @@ def test_negation_goes_through_elimination_and_substitution(seed: int, neumann: 
 
 
 def divergence_like(seed: int, config: Configuration) -> tuple[Any, ...]:
-    """Divergence that a depth within a quarter of the range has, and so one that sums to zero under Neumann."""
+    """Return the divergence of a depth within a quarter of the range, which sums to zero under Neumann."""
     limit = config.depth_limit_px / 4
     depth = np.random.default_rng(seed).uniform(-limit, limit, (config.rows, config.columns))
     shift = np.pad(depth, 1, mode="edge")

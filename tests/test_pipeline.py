@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python interface: from pictures to millimetres, equal to the models bit for bit, and near what was drawn."""
+"""Python interface: from pictures to millimetres, equal to the models bit for bit, and near the drawn height."""
 
 import json
 from dataclasses import replace
@@ -66,7 +66,7 @@ def test_the_default_grid_shows_the_whole_picture(ball: Any, camera: Any, solver
 
 @pytest.mark.parametrize("name", ["ball", "cylinder", "cone"])
 def test_the_height_is_what_was_drawn(name: str) -> None:
-    """Within 4 % of the peak: the bound is that of the discretisation at 128 x 96, 2.5 camera pixels to one."""
+    """Compare with the drawn height: within 4 % of the peak, the error of the discretisation at 128 x 96."""
     drawn = td.sample(name)
     result = td.Pipeline(drawn.sensor, drawn.reference)(drawn.image)
     truth = on_grid(drawn.height_mm, (96, 128))
@@ -182,7 +182,7 @@ def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
 
 
 def drifted(picture: np.ndarray, seed: int) -> Any:
-    """The picture under other lights, up to 10 % off over the gel, with noise."""
+    """Return the picture under lights that differ by up to 10 % across the gel, with noise."""
     rng = np.random.default_rng(seed)
     y, x = np.mgrid[-1:1:240j, -1:1:320j]
     light = 1 + 0.05 * np.stack([x, y, x * y], axis=-1)

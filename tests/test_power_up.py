@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check that registers and memories come up at random in Verilator, and unknown in Icarus: the suite rests on it."""
+"""Power-up: registers and memories are random in Verilator and unknown in Icarus, as the suite assumes."""
 
 import json
 from pathlib import Path
@@ -33,6 +33,6 @@ def test_what_is_not_reset(simulator: str, tmp_path: Path) -> None:
         assert all(set(value) == {"X"} for value in seen(1))
         return
     values = [seen(power_up) for power_up in SEEDS]
-    assert seen(SEEDS[0]) == values[0], "the seed does not say it all"
+    assert seen(SEEDS[0]) == values[0], "the seed does not determine the state"
     for place in range(17):  # within a memory Verilator gives all words the same value
         assert len({held[place] for held in values}) == len(SEEDS), "a register or a word came up the same"

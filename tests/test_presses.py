@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ball presses: folders, geometry and circles, and errors for bad ones."""
+"""Ball presses: folders, geometry and circles, and errors for bad folders."""
 
 import builtins
 import importlib.util
@@ -89,7 +89,7 @@ def test_no_circle_is_found_where_nothing_touches(seed: int) -> None:
 
 
 def test_circles_of_the_pictures_take_the_place_of_the_tables(folder: Path) -> None:
-    """A table with radii two pixels too large: the circles found lie within the contact, where gel touches ball."""
+    """Find the circles of a table whose radii are two pixels too large: they lie within the contact."""
     write_table(folder, [{**row, "contact_radius_px": row["contact_radius_px"] + 2} for row in table_rows()])
 
     def error(find: Any) -> Any:
@@ -201,7 +201,7 @@ def test_a_pitch_that_nothing_tells_is_asked_for() -> None:
     assert "pitch_mm is needed" in refused(lambda: camera_pitch_mm(gather(in_memory(), drawn([], 1)), None))
 
 
-# Bad folders: what is bad is named in one line, the others are used.
+# Bad folders: one line names each bad press, and the others are used.
 
 
 def used(folder: Path, **choices: Any) -> tuple[int, list[str]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The double-precision reference against the equation it claims to solve."""
+"""Reference in double precision: it solves its equation."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ from tactile_depth.sensor import Sensor, synthetic
 
 
 def second_difference(z: np.ndarray, axis: int) -> np.ndarray:
-    """Zero half a pixel outside: the neighbour out there is the mirrored negative."""
+    """Return the second difference, zero half a pixel outside: a neighbour outside is the mirrored negative."""
     first, last = np.take(z, [0], axis), np.take(z, [-1], axis)
     return np.diff(np.concatenate((-first, z, -last), axis), n=2, axis=axis)
 

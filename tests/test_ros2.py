@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""examples/ros2: conversions of messages, exactly; and the node, with stand-ins for the modules of ROS."""
+"""examples/ros2: exact conversion of messages, and the node with substitutes for the modules of ROS."""
 
 import importlib
 import math
@@ -97,11 +97,11 @@ def test_the_contact_is_in_si_units_in_the_documented_order(conversions: Any, pi
 
 
 class Message(SimpleNamespace):
-    """A message: it takes any field."""
+    """Message that takes any field."""
 
 
 class Node:
-    """Stands for rclpy.node.Node: parameters by name, what is published, services by name."""
+    """Substitute for rclpy.node.Node: parameters by name, published messages, services by name."""
 
     parameters: dict = {}  # noqa: RUF012
 
@@ -129,7 +129,7 @@ class Node:
 
 @pytest.fixture
 def make_node(monkeypatch: pytest.MonkeyPatch, conversions: Any) -> Any:
-    """Import the node with stand-ins for ROS; call it with parameters."""
+    """Return a function that imports the node with substitutes for ROS and starts it with parameters."""
     names = {
         "rclpy": {},
         "rclpy.node": {"Node": Node},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: heights within the sensor's range, colours that lead back to them."""
+"""Scenes: heights within the range of the sensor, and colours that give these heights."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A sensor, its camera and a configuration: what does not belong together is refused."""
+"""Sensor, camera and configuration: combinations that do not fit are refused."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -167,11 +167,11 @@ def test_words_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     assert unsigned(np.array([-1]), 4) == 15
 
 
-# Which sensor took a reference.
+# Sensor of a reference.
 
 
 def rest_of(sensor: Any, zoom: Any = 1) -> Any:
-    """A picture without contact as the camera of a sensor sees it."""
+    """Return a picture without contact as the camera of a sensor sees it."""
     rng = np.random.default_rng(1)
     picture = np.kron(sensor.lighting * 90, np.ones((60 * zoom, 80 * zoom, 1)))
     return (picture + rng.normal(size=picture.shape)).clip(0, 255).astype(np.uint8)

@@ -25,7 +25,7 @@ from tactile_depth.cli.source import Source
 
 @pytest.fixture
 def camera(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Make camera 0 out of items; it is asked for each as fast as it can be."""
+    """Make camera 0 return these items, each as fast as it is read."""
 
     def connect(items: Any) -> Any:
         monkeypatch.setattr(sources, "_camera", lambda name: iter(items))
@@ -64,7 +64,7 @@ def test_a_silent_source_gives_none_meanwhile(camera: Any) -> None:
 
 
 class Camera:
-    """Stands for cv2 and its camera, which reads one frame and then fails."""
+    """Substitute for cv2 and its camera, which reads one frame and then fails."""
 
     COLOR_BGR2RGB = None
 
@@ -110,7 +110,7 @@ def test_a_camera_that_is_not_there_is_a_failure(monkeypatch: pytest.MonkeyPatch
 
 
 def test_the_terminal_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keys come one by one while the block runs; afterwards lines and echo are back, also after an error."""
+    """Read single keys inside the block; afterwards lines and echo are restored, also after an error."""
     ours, theirs = pty.openpty()
     with os.fdopen(theirs, "r") as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)

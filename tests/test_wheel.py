@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The package as users get it: a wheel, installed into an empty environment, computes what the RTL computes."""
+"""Package as users get it: a wheel, installed into an empty environment, gives the codes of the RTL."""
 
 import email
 import fcntl
@@ -50,13 +50,13 @@ QUICK_START = """
 
 
 def without_sources() -> dict[Any, Any]:
-    """The surroundings of a user: the repository's own modules are not on the path."""
+    """Return the environment of a user, without the modules of the repository on the path."""
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    """One folder for all workers, with a lock around what is made once."""
+    """Return one folder for all workers, with a lock around objects that are made once."""
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "wheel"
     folder.mkdir(exist_ok=True)
@@ -67,7 +67,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def wheel(folder: Path) -> Any:
-    """The wheel, built of a copy: setuptools would take up what lies in build/ from before."""
+    """Build the wheel from a copy, because setuptools would include files in build/."""
     if not list(folder.glob("*.whl")):
         sources = folder / "sources"
         for name in SOURCES:
@@ -84,7 +84,7 @@ def wheel(folder: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def environment(folder: Path, wheel: Any) -> Any:
-    """An environment that holds the wheel and what it asks for, by pip's usual registry."""
+    """Return an environment with the wheel and its dependencies, from the default registry of pip."""
     python = folder / "environment" / "bin" / "python"
     complete = folder / "complete"
     if not complete.exists():
@@ -101,7 +101,7 @@ def environment(folder: Path, wheel: Any) -> Any:
 
 @pytest.fixture(scope="module")
 def pictures(folder: Path) -> Any:
-    """A folder with background.png and press.png of a GelSight Mini: real ones where TACTILE_DATA is."""
+    """Return a folder with background.png and press.png of a GelSight Mini; real pictures if TACTILE_DATA is set."""
     place = folder / "pictures"
     if not place.exists():
         place.mkdir()
@@ -125,7 +125,7 @@ def run(python: Any, cwd: Any, *arguments: Any) -> Any:
 
 
 def examples() -> Iterator[Any]:
-    """Code of the package's docstring and of the README."""
+    """Return the code in the docstring of the package and in the README."""
     (block,) = re.findall(r"(?:^    .*\n|^\n)*^    result\..*\n", td.__doc__, re.MULTILINE)
     yield pytest.param(textwrap.dedent(block), id="docstring")
     for page in ("README.md", "docs/python.md"):

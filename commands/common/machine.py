@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Name of this machine, printed beside each figure measured on it."""
+"""Name of this machine, printed with each figure measured on it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def machine() -> str:
-    """Model of the processor, and how many cores this process may use."""
+    """Return the model of the processor and the number of cores that this process may use."""
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():

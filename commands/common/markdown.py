@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables that read well in a terminal and go into a page as they are."""
+"""Tables of Markdown, aligned so that a terminal can show them too."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A Markdown table, its columns aligned, those of numbers to the right."""
+    """Return a table of Markdown with aligned columns, numbers to the right."""
     columns = list(zip(*rows, strict=True))
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     numbers = [all(cell[:1] in "+-0123456789" for cell in column) for column in columns]

@@ -12,7 +12,7 @@ from typing import Any
 CLOCK_MHZ = 166.0
 FIRST_DEPTH_CYCLES = {64: 9421, 128: 35107, 256: 135448}  # after the first pixel
 
-# Resources of the XCZU7EV, as far as each grid's are stated.
+# Resources of the XCZU7EV, as far as they are published for each grid.
 RESOURCES: dict[int, dict[str, int]] = {
     64: {"DSP48E2": 82, "LUT": 12_280, "UltraRAM": 8},
     128: {"UltraRAM": 32},

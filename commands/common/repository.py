@@ -18,7 +18,8 @@ from tactile_depth.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
-UNITS = ("video_in", "gradient_unit", "poisson_unit", "depth_unit", "contact_unit")  # of the top, tested through it
+# Units of the top, tested through it.
+UNITS = ("video_in", "gradient_unit", "poisson_unit", "depth_unit", "contact_unit")
 PACKAGE = "_pkg"  # end of the name of a SystemVerilog package, which is no core
 
 

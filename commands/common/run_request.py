@@ -25,7 +25,7 @@ from tactile_depth.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
 from tactile_depth.sensor import BUILT_IN, Sensor, load
 
 DEFAULT_SCENE = "ball"
-WORST = "worst"  # a depth range that no slopes can leave
+WORST = "worst"  # a depth range that no slopes can exceed
 SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
@@ -48,13 +48,13 @@ ACCEPTED = (
     *("AT", "NOISE", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "REPEAT", "SEED", "GAPS"),
     *("STALLS", "WAVES", "CONFIG", "OUT"),
 )
-CAMERA = ("CAMERA", "BAYER", "WINDOW")  # of commands that convert pictures to what a camera sends
+CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
 LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
 @dataclass(frozen=True)
 class Request:
-    """Request of the user, checked as far as possible without reading files."""
+    """Values of the variables, checked as far as possible without reading files."""
 
     rows: int
     columns: int
@@ -65,14 +65,14 @@ class Request:
     data_width: int
     coefficient_width: int
     gain_width: int
-    depth_range_mm: float | None  # infinite: as deep as any slopes can make it
+    depth_range_mm: float | None  # infinite: the largest depth that slopes can cause
     frames: str
     press: Press
     reference: str | None
     floor: str | None
     calibration: str
     camera_size: tuple[int, int] | None  # rows, columns
-    gradient: str  # a model; "": the calibration's own
+    gradient: str  # a model; "": that of the calibration
     repeat: int
     seed: int
     gaps: float
@@ -83,7 +83,7 @@ class Request:
 
 
 def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default. Raises InputError."""
+    """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
     values = variables.given(arguments, accepted)
     if "CONFIG" in values:
         values = from_file(Path(values.pop("CONFIG")), values, [name for name in accepted if name != "CONFIG"]) | values
@@ -107,11 +107,11 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
 
     both = number("N", 128, -math.inf, math.inf)
     return Request(
-        rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration says which
+        rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration file sets the solver
         columns=int(number("COLS", both, -math.inf, math.inf)),
         solver=choice("SOLVER", SOLVERS),
         boundary=choice("BOUNDARY", BOUNDARIES),
-        lanes=int(number("LANES", 1, -math.inf, math.inf)),  # as for the rows
+        lanes=int(number("LANES", 1, -math.inf, math.inf)),  # see rows
         simulator=choice("SIM", simulation.SIMULATORS),
         data_width=int(number("DATA_WIDTH", 24, -math.inf, math.inf)),
         coefficient_width=int(number("COEFF_WIDTH", 18, -math.inf, math.inf)),
@@ -158,7 +158,7 @@ def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:
 
 
 def _calibration(values: dict[str, str]) -> str:
-    """The calibration that is named. Scenes are drawn for the synthetic sensor; a picture needs that of its sensor."""
+    """Return the chosen calibration: scenes use the synthetic sensor, pictures need the calibration of their sensor."""
     if "CALIBRATION" in values:
         return values["CALIBRATION"]
     for key in ("FRAMES", "REFERENCE", "FLOOR"):
@@ -171,7 +171,7 @@ def _calibration(values: dict[str, str]) -> str:
 
 
 def _camera_size(values: dict[str, str]) -> tuple[int, int] | None:
-    """Rows and columns of CAMERA_SIZE=320x240, which gives columns first, as cameras do."""
+    """Return rows and columns of CAMERA_SIZE=320x240, which states columns first, as cameras do."""
     if "CAMERA_SIZE" not in values:
         return None
     size = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", values["CAMERA_SIZE"])
@@ -181,7 +181,7 @@ def _camera_size(values: dict[str, str]) -> tuple[int, int] | None:
 
 
 def load_sensor(request: Request) -> Sensor:
-    """The calibration of a request. Raises InputError."""
+    """Return the calibration of a request. Raises InputError."""
     try:
         return load(request.calibration, request.camera_size)
     except InputError as error:
@@ -193,7 +193,8 @@ def load_sensor(request: Request) -> Sensor:
 
 
 def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict[str, str]:
-    """Variables of a configuration file, a JSON object; an N of `explicit` replaces rows and columns of the file.
+    """Return the variables of a configuration file, a JSON object; N in `explicit` replaces rows and columns of the
+    file.
 
     Raises InputError.
     """
@@ -267,7 +268,7 @@ def check_grid(request: Request) -> None:
 
 
 def configure(request: Request, calibration: Sensor) -> Configuration:
-    """The pipeline for a request and a calibration on its grid; the depth range becomes grid pixels."""
+    """Return the configuration for a request and a calibration on its grid; the depth range becomes grid pixels."""
     neumann = request.boundary == "neumann"
     depth_range = request.depth_range_mm
     depth_range_px: float | None

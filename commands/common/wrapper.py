@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrappers of hdl/tactile_depth.sv with every parameter of a configuration inside, and its default parameters."""
+"""Wrappers of hdl/tactile_depth.sv that set every parameter of a configuration, and its default parameters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def ports() -> tuple[str, list[str]]:
 
 
 def default_parameters() -> dict[str, int]:
-    """Return the parameters of the default configuration, with those of options that it leaves out."""
+    """Return the parameters of the default configuration, and of options that it does not use."""
     tridiagonal = Configuration(solver="tridiagonal")
     flat = [Configuration(flat_field=True, gradient_model=model) for model in ("quadratic", "lut")]
     merged: dict[str, int] = {}
@@ -53,7 +53,7 @@ def wrapper(
 ) -> str:
     """Return the text of the module tactile_depth_<name>, which finds its table files in the folder `tables`.
 
-    With a `camera` its s_axis takes what that camera sends.
+    With a `camera` its s_axis takes the stream of that camera.
     """
     declared, names = ports()
     inside = "".join(f"    .{parameter}({value}),\n" for parameter, value in parameters.items())

@@ -4,7 +4,7 @@
 Takes the variables of `make sim` that choose a configuration and a frame (SOLVER is tridiagonal by default), and
   LIB         Liberty file; by default the OSU 0.18 um library of Debian's qflow-tech-osu018
   NODE_NM     feature size that memories are scaled to; 180 for the default library, required with another
-  CLOCK_MHZ   of constraints/asic.sdc and of the power
+  CLOCK_MHZ   clock of constraints/asic.sdc and of the power
 Writes asic.json into OUT. Exit status: 0, 1 when the gates differ from the model, 2 on bad input.
 """
 
@@ -43,7 +43,7 @@ DEFAULT_LIB = Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")
 OWN = ("LIB", "NODE_NM", "CLOCK_MHZ")
 SDC = repository.ROOT / "constraints" / "asic.sdc"
 TOOLS = {"sta": "opensta", "c++": "g++"}
-WINDOW_CLOCKS = 256  # in the middle of the frame, simulated with delays
+WINDOW_CLOCKS = 256  # cycles in the middle of the frame that are simulated with delays
 YOSYS_SECONDS = 3600.0
 METHOD = (
     f"Logic: cells by Yosys, toggles of all nets in one frame, effect of delays as in {WINDOW_CLOCKS} of its clocks, "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packs registers into the multipliers of an ECP5, which Yosys leaves outside them.
+"""Packing of registers into the multipliers of an ECP5, which Yosys leaves outside.
 
 A MULT18X18D has registers at its inputs and at its output. With them the routes between a product and its registers
 disappear, and so does most of the delay.

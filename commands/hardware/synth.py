@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make synth`: resources of a configuration on an FPGA, by Yosys: of the design, of each core, of each memory.
 
-TARGET=xczu7ev, the variables of `make sim` that choose a configuration, and OUT. GRIDS=64,128: a table over grids and
-both solvers. Exit status: 0 when the design fits, 1 when not, 2 on bad input.
+Takes TARGET=xczu7ev, the variables of `make sim` that choose a configuration, and OUT. GRIDS=64,128 gives a table over
+grids and both solvers. Exit status: 0 when the design fits, 1 when not, 2 on bad input.
 
 Every design is mapped twice at the same time. The cores of the top and of the solver keep their boundaries, so that
 each has its figures and the design is their sum. With CAMERA, BAYER and WINDOW the camera front end comes along, in a

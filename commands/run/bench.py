@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tb/frame_bench.sv: what it plays and what it writes down; pixels move in bulk, without a Python step a clock."""
+"""Input and recording of tb/frame_bench.sv, in which pixels move in bulk, without a step of Python per cycle."""
 
 from __future__ import annotations
 
@@ -23,27 +23,30 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 BENCH = "frame_bench"
 KINDS = {"pixel": 0, "idle": 1, "sink": 2, "source": 3, "reset": 4, "arm": 5}
 NOTE, USER, LAST = 1 << 27, 1 << 25, 1 << 24
-LINE_BLANKING, FRAME_BLANKING = 144 / 640, 30 / 480  # of an OV7670: 784 x 510 clocks for a picture of 640 x 480
-LARGEST_CODE = 2**31 - 1  # no depth is above it
+# Blanking of an OV7670: 784 x 510 cycles for a picture of 640 x 480.
+LINE_BLANKING, FRAME_BLANKING = 144 / 640, 30 / 480
+LARGEST_CODE = 2**31 - 1  # no depth exceeds it
 
 
 def entry(kind: str, value: int = 0) -> int:
-    """An entry that is no pixel: clocks without one, a profile of the sink or the source, a reset."""
+    """Return an entry that is no pixel: idle cycles, a profile of the sink or the source, or a reset."""
     return KINDS[kind] << 28 | value
 
 
 def turns(on: int, off: int) -> int:
-    """A profile: `on` clocks of yes by turns with `off` clocks of no; with `on` 0 a no of probability off / 4096."""
+    """Return a profile: ready or valid for `on` cycles, then not for `off` cycles. `on` 0: not with probability off /
+    4096."""
     return on << 12 | off
 
 
 def chance(no: float) -> int:
-    """A profile: each clock a no of this probability."""
+    """Return a profile that is not ready or valid with this probability in each cycle."""
     return turns(0, min(round(no * 4096), 4095))
 
 
 def frame_entries(frames: np.ndarray) -> np.ndarray:
-    """Whole frames, uint8 (..., rows, columns, 3) RGB; the clocks of their first and last pixels are noted."""
+    """Return the entries of whole frames, uint8 (..., rows, columns, 3) RGB, with the cycles of first and last pixels
+    noted."""
     red, green, blue = (frames[..., channel].astype(np.uint32) for channel in range(3))
     entries = red << 16 | blue << 8 | green
     entries[..., -1] |= LAST
@@ -53,9 +56,10 @@ def frame_entries(frames: np.ndarray) -> np.ndarray:
 
 
 def picture_entries(words: np.ndarray, last_word: int) -> np.ndarray:
-    """Pictures as a camera sends them, uint32 (pictures, rows, columns), with blanking behind rows and before pictures.
+    """Return the entries of camera pictures, uint32 (pictures, rows, columns), with blanking after rows and before
+    pictures.
 
-    The clocks of the first word and of the one at position `last_word` of a picture are noted.
+    The cycles of the first word and of the word at position `last_word` of a picture are noted.
     """
     count, rows, columns = words.shape
     entries = words.copy()
@@ -69,7 +73,7 @@ def picture_entries(words: np.ndarray, last_word: int) -> np.ndarray:
 
 
 def clocks_of(entries: np.ndarray) -> int:
-    """Clocks that these entries take without gaps."""
+    """Return the cycles that these entries take without gaps."""
     is_idle = entries >> 28 == KINDS["idle"]
     return int(np.where(is_idle, entries & 0xFFFFFF, 1).sum())
 
@@ -79,8 +83,8 @@ class Played:
     """Recording of the bench."""
 
     codes: np.ndarray  # int32, as they left
-    events: list[tuple[str, tuple[int, ...]]]  # letter and numbers by clock: see tb/frame_bench.sv
-    registers: dict[str, int]  # at the end
+    events: list[tuple[str, tuple[int, ...]]]  # letter and numbers of each event: see tb/frame_bench.sv
+    registers: dict[str, int]  # values at the end
 
     def clocks(self, letter: str) -> list[int]:
         return [numbers[0] for have, numbers in self.events if have == letter]
@@ -89,7 +93,7 @@ class Played:
 def build(
     simulator: str, config: Configuration, waves: bool = False, camera: CameraConfiguration | None = None
 ) -> Path:
-    """The simulator for a configuration, built once for each state of the sources."""
+    """Return the simulator for a configuration, which is built once for each state of the sources."""
     bench = repository.ROOT / "tb" / BENCH
     sources = [*repository.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
     parameters = top_parameters(config)
@@ -101,7 +105,7 @@ def build(
     complete = folder / "complete"
     folder.parent.mkdir(parents=True, exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # another run may be building the same
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another run may be building the same model
         if complete.exists():
             return folder
         shutil.rmtree(folder, ignore_errors=True)
@@ -140,10 +144,10 @@ def play(
     floor: np.ndarray | None = None,
     camera: CameraConfiguration | None = None,
 ) -> Played:
-    """Play entries in `folder`, from reset on, with `registers` written; then read the registers. `floor`: of
-    `tactile_depth.tactile_depth`. With a `camera` entries are what it sends.
+    """Play entries in `folder` after a reset and the writes of `registers`; then read the registers.
 
-    It ends when the file does and `total_frames` have left, and fails after so many `clocks`.
+    `floor` is that of `tactile_depth.tactile_depth`. With a `camera` the entries are its stream. The run ends when all
+    entries are sent and `total_frames` have left, and fails after `clocks` cycles.
     """
     write_roms(folder, calibration, config, floor)
     np.asarray(entries, dtype=">u4").tofile(folder / "entries.bin")
@@ -167,7 +171,7 @@ def play(
             waves=waves,
             log=folder / "simulation.log",
         )
-    except RuntimeError:  # it ended without results
+    except RuntimeError:  # the simulator ended without results
         count, failed = 0, 0
     if failed or not count:
         log = shutil.copy(folder / "simulation.log", built / "simulation.log")

@@ -2,10 +2,10 @@
 """`make calibrate`: from ball presses of known diameter to a calibration file, a picture and a table.
 
 The folder PRESSES holds background.png, the presses as PNGs or JPEGs, and presses.csv (press_folder.py). Circles that
-presses.csv does not give are found in the pictures; with CIRCLES=found all are: half a pixel in a radius of 26 is 4 %
-of the cap's height. HELD_OUT=each measures every whole press by a fit to all others, HELD_OUT=second every second one
-by the fit that is written. With CAMERA the pictures are converted to what a camera of this pixel format sends, and are
-taken as its hardware takes them. models/tactile_depth/fitting.py says how the fit is made.
+presses.csv does not give are measured in the pictures; with CIRCLES=found all are, because half a pixel in a radius of
+26 is 4 % of the height of a cap. HELD_OUT=each measures every whole press by a fit to all others, HELD_OUT=second every
+second press by the written fit. With CAMERA the pictures are converted to the stream of a camera with this pixel format
+and go through the model of its hardware. models/tactile_depth/fitting.py says how the fit is made.
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ def check_writable(out: Path) -> None:
 
 
 def report(fit: Fit, presses: GridPresses, each_in_turn: bool) -> str:
-    """Return what the fit was made from, and how far it holds."""
+    """Return the text of the report: presses of the fit, and its accuracy on the presses held out."""
     held_out = "every whole press in turn, by a fit to the others" if each_in_turn else "the presses held out"
     lines = [
         f"{len(fit.fitted)} presses fitted, {len(fit.held_out)} held out, {presses.pitch_mm:g} mm per pixel, grid of "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures for people."""
+"""Pictures of depth maps and of ball presses."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def draw_depth(
     count = len(shown)
     rows, columns = depth.shape[1:]
     extent = (0, columns * pixel_pitch_mm, rows * pixel_pitch_mm, 0)
-    # A layout by hand, since matplotlib's own takes longer than all else. Between are the scales, and room for numbers.
+    # Positions are computed here, because the layout of matplotlib takes longer than everything else.
     height, widths = 2.65 * count + 1.1, (1, 1, 1, 0.06, 0.2, 1, 0.06)
     figure, axes = plt.subplots(
         count, len(widths), figsize=(12, height), squeeze=False, gridspec_kw={"width_ratios": widths}
@@ -92,7 +92,7 @@ def draw_depth(
 
 
 def _paints(flagged: Flags) -> list[tuple[str, str, np.ndarray]]:
-    """Colour and meaning of each kind of flag, and where it is up."""
+    """Return colour, meaning and flagged pixels of each kind of flag."""
     return [
         ("orange", "slope outside the calibrated range", flagged.outside),
         ("magenta", "dark, colour taken from the neighbour", flagged.dark),
@@ -116,13 +116,13 @@ class DrawnPress:
     slopes: np.ndarray  # (size, size, 2)
     depth: np.ndarray  # (size, size)
     circle: tuple[np.ndarray, np.ndarray]  # columns, rows
-    across: np.ndarray  # (size,), from the centre
+    across: np.ndarray  # (size,), relative to the centre
     ball: np.ndarray  # (size,), height over the contact circle; NaN outside
     cuts: dict[str, np.ndarray]  # of the depth by each model, height over the contact circle
 
 
 def draw_presses(path: Path, presses: list[DrawnPress], width_mm: float, title: str) -> None:
-    """Frame, both slopes, depth and a cut through the contact, one row a press."""
+    """Draw frame, both slopes, depth and a cut through the contact, one row per press."""
     extent = (0, width_mm, width_mm, 0)
     figure, axes = plt.subplots(
         len(presses), 5, figsize=(17, 3 * len(presses) + 0.6), squeeze=False, layout="constrained"

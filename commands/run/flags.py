@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels whose depth deserves less trust: without light, or with slopes that the calibration has never seen."""
+"""Pixels with uncertain depth: without light, or with slopes steeper than those of the calibration."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tactile_depth.sensor import Sensor
 class Flags:
     """Flagged pixels of frames, bool arrays (frames, rows, cols)."""
 
-    dark: np.ndarray  # the reference is too dark there, so the colour is that of the pixel before
-    outside: np.ndarray  # not dark, and the slope is steeper than any in the fit of the calibration
+    dark: np.ndarray  # the reference is too dark there, so the pixel takes the colour of the one before it
+    outside: np.ndarray  # not dark, but steeper than any slope in the fit of the calibration
 
     def report(self, repeat: int) -> dict[str, list[int]]:
         """Return the number of flagged pixels of each frame, the sequence `repeat` times."""
@@ -29,7 +29,7 @@ class Flags:
         }
 
     def warnings(self) -> list[str]:
-        """Return a line for each kind of flag that is up."""
+        """Return a line for each kind of flag that is set."""
         lines = []
         if self.dark.any():
             lines.append(

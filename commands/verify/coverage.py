@@ -196,7 +196,7 @@ def run_tests() -> int:
     worst = 0
     # The bins ask for every fault and disturbance with both solvers; the top repeats what seldom happens more often.
     for more, chosen in (({"MANY": str(MANY)}, [tests[TOP]]), ({}, cores)):
-        command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-k", "verilator", *chosen]
+        command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-m", "verilator", *chosen]
         settings = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": "1", **more}
         run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | settings, check=False)
         worst = max(worst, run.returncode)

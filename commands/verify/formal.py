@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from commands.common import variables
-from commands.common.repository import ROOT, chosen, cores, sources
+from commands.common.repository import ROOT, chosen, cores, sources, tested
 from commands.common.signals import threads
 from commands.hardware.yosys import in_wheel
 from formal.entries import Proof, Structure
@@ -203,7 +203,7 @@ def selected(cores: str) -> list[Proof | Structure]:
     every: tuple[Proof | Structure, ...] = (*STRUCTURES, *PROOFS)
     if not cores:
         return list(every)
-    names = chosen(cores)
+    names = tested(chosen(cores))
     for name in names:
         if name in WITHOUT_CONTROL:
             raise InputError(f"CORE={name} has no proof: {WITHOUT_CONTROL[name]}")

@@ -158,7 +158,7 @@ def parse(arguments: list[str]) -> tuple[list[str], int]:
     """Names of cores, and the seed. Raises InputError."""
     values = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
     values |= variables.given(arguments, values)
-    names = repository.chosen(values["CORE"])
+    names = repository.tested(repository.chosen(values["CORE"]))
     return names, variables.number(values, "SEED", 1, 0, 10**9)
 
 

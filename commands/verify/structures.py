@@ -1,21 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Structures of a core, read from its own test: the `structures` mark is the only place that lists them.
+"""Structures of a core: the `structures` mark of its own test is the only place that lists them.
 
-The test function runs with a stand-in for `run_tb` that records its arguments and starts no simulator.
+A command imports no test. pytest runs the test with STRUCTURES set to a folder, and tests/conftest.py then writes the
+arguments of `run_tb` there, and builds nothing.
 """
 
 from __future__ import annotations
 
-import importlib
-import inspect
-from collections.abc import Callable, Mapping, Sequence
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import Any
 
 from commands.common import repository
 
-GROUPS = ("both", "verilator", "icarus", "regress")  # of the mark `structures`, see tests/conftest.py
+FOLDER = "STRUCTURES"  # environment variable
+ARGUMENTS = "arguments.json"  # beside the ROM files of a structure
 
 
 @dataclass(frozen=True)
@@ -29,42 +34,38 @@ class Structure:
     environment: Mapping[str, str]
 
 
+@cache
+def structures(core: str) -> tuple[Structure, ...]:
+    """Return all structures of a core in the order of the groups both, verilator, icarus and regress of its mark.
+
+    Raises RuntimeError: pytest failed.
+    """
+    test = repository.cores()[core].test
+    assert test is not None, core
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", f"--basetemp={folder}/tests", str(test)]
+        environment = os.environ | {FOLDER: f"{folder}/structures", "SIM": "verilator"}
+        ended = subprocess.run(
+            command, cwd=repository.ROOT, env=environment, capture_output=True, text=True, check=False
+        )
+        if ended.returncode:
+            raise RuntimeError(f"the structures of {core} cannot be read from {test}:\n{ended.stdout[-2000:]}")
+        written = sorted(Path(folder, "structures").iterdir(), key=lambda path: int(path.name))
+        return tuple(_structure(path) for path in written)
+
+
 def structure(core: str, index: int) -> Structure:
-    """Return the structure of a core with this position in the groups of its `structures` mark, GROUPS in order."""
-    file = repository.cores()[core].test
-    assert file is not None, core
-    module = importlib.import_module(repository.module(file))
-    tests = [
-        function
-        for name, function in vars(module).items()
-        if name.startswith("test_")
-        and inspect.isfunction(function)
-        and "run_tb" in inspect.signature(function).parameters
-    ]
-    test = tests[0]  # the core's own; others run it in another way
-    chosen = {"simulator": "verilator"} if "simulator" in inspect.signature(test).parameters else {}
-    kept: list[Structure] = []
+    """Return the structure of a core with this position in `structures`."""
+    return structures(core)[index]
 
-    def keep(
-        toplevel: str,
-        parameters: Mapping[str, int | str] | None = None,
-        test_module: str | None = None,
-        roms: Callable[[Path], None] | None = None,
-        environment: Mapping[str, str] | None = None,
-        files: Sequence[Path] = (),
-    ) -> None:
-        assert not files, f"{core}: a bench of SystemVerilog"
-        bench = test_module or repository.testbench(toplevel)
-        kept.append(Structure(toplevel, parameters or {}, bench, roms, environment or {}))
 
-    cases: list[tuple[Any, ...]] = [()]
-    names: list[str] = []
-    for mark in getattr(test, "pytestmark", []):
-        if mark.name == "structures":
-            names = mark.args[0].split()
-            cases = [case for group in GROUPS for case in mark.kwargs.get(group, [])]
-        elif mark.name == "parametrize":
-            names = [mark.args[0]] if isinstance(mark.args[0], str) else list(mark.args[0])
-            cases = [case if len(names) > 1 else (case,) for case in mark.args[1]]
-    test(keep, **chosen, **dict(zip(names, cases[index], strict=True)))
-    return kept[0]
+def _structure(folder: Path) -> Structure:
+    """Read a structure from the folder that the fixture `run_tb` wrote."""
+    arguments = json.loads((folder / ARGUMENTS).read_text())
+    contents = {path.name: path.read_bytes() for path in folder.iterdir() if path.name != ARGUMENTS}
+
+    def roms(place: Path) -> None:
+        for name, content in contents.items():
+            (place / name).write_bytes(content)
+
+    return Structure(roms=roms if contents else None, **arguments)

@@ -17,9 +17,8 @@ def starts(size: int, chance: random.Random) -> list[Any]:
     return [*burst, *burst, *[0] * 5, *burst, *burst[:3], *burst, *random_ones, *[0] * (size + 3)]
 
 
-@cocotb.test()
-@cocotb.parametrize(pause=[0.0, 0.3], before=[0, 2])
-async def positions(dut: Any, pause: float, before: Any) -> None:
+async def check(dut: Any, pause: float, before: int) -> None:
+    """Send bursts after `before` cycles of another one and a reset, and compare the positions with the model."""
     (size,) = parameters(dut, "Size")
     chance = random.Random(cocotb.RANDOM_SEED)
     lost = [{"rst": 0, "start": int(n == 0)} for n in range(before)] + [{"rst": 1, "start": 0}]
@@ -29,3 +28,9 @@ async def positions(dut: Any, pause: float, before: Any) -> None:
     pairs = zip(seen["position"][len(lost) :], seen["active"][len(lost) :], strict=True)
     got = [int(position) if active else None for position, active in pairs]
     assert got == burst_counter(begun, size)
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.3], before=[0, 2])
+async def positions(dut: Any, pause: float, before: int) -> None:
+    await check(dut, pause, before)

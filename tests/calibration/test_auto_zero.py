@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""auto_zero: RTL against the model; what the model does."""
+"""auto_zero: RTL against the model, and the model against its definition."""
 
 from collections.abc import Callable
 from typing import Any
@@ -84,7 +84,8 @@ def test_exact_zero_is_the_same_but_for_rounding() -> None:
 
 
 def test_a_floor_that_is_a_plane_is_taken_off_between_the_centres_of_blocks() -> None:
-    """A cut row of blocks has no node: there, and outside the outermost centres, the floor stands still."""
+    """Subtract a plane. In a cut row of blocks, which has no node, and beyond the outermost centres the floor is
+    constant."""
     row, column = np.mgrid[:21, :32]
     plane = 400 * row - 600 * column + 5000
     zeroed = auto_zero(plane, captured_floor(plane[None], CONFIG), CONFIG)

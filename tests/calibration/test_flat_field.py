@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""flat_field: RTL against the model; what the model's parameters mean."""
+"""flat_field: RTL against the model, and the model against its definition."""
 
 from typing import Any
 
@@ -43,7 +43,7 @@ CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")
 
 @pytest.mark.parametrize("level", [8, 16, 40, 128, 255])
 def test_a_frame_like_the_reference_is_flat(level: int) -> None:
-    """At every level: gains of under 16 grey levels make dark pixels, which are flat as well."""
+    """Send the reference as a frame, at every level. Below 16 grey levels pixels are dark, and flat as well."""
     frames = np.full((1, 21, 32, 3), level, np.uint8)
     gains = captured_gains(frames, CONFIG)
     assert np.all(np.abs(interpolated_gains(gains, CONFIG) * level - (1 << CONFIG.gain_fraction)) <= level)
@@ -59,7 +59,7 @@ def test_gains_at_power_up_leave_pixels_as_they_are() -> None:
 
 
 def test_interpolation_is_linear_between_the_centres_of_blocks() -> None:
-    """Gains on a plane come back as that plane, between the outermost centres."""
+    """Interpolate gains on a plane: between the outermost centres the result is that plane."""
     log2 = CONFIG.reference_block_log2
     rows, columns = CONFIG.reference_nodes
     centre = np.arange(max(rows, columns)) * (1 << log2) + ((1 << log2) - 1) / 2

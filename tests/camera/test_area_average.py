@@ -47,7 +47,8 @@ def overlap(pixel: int, block: int, numerator: int, denominator: int) -> int:
 @pytest.mark.parametrize("colour", [(0, 0), (0, 1), (1, 0), (1, 1)])
 @pytest.mark.parametrize(("numerator", "denominator"), PATTERN_RATIOS)
 def test_a_pattern_is_averaged_colour_by_colour(numerator: int, denominator: int, colour: tuple[int, int]) -> None:
-    """The mean of each colour over its pixels, weighted by the area in the block, rounded as Python rounds."""
+    """Compare with the mean of each colour over its pixels, weighted by their area in the block and rounded as in
+    Python."""
     rows = columns = 2
     length = -(-rows * numerator // denominator)
     samples = np.random.default_rng(numerator).integers(0, 1024, (length, length))

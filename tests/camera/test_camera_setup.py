@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""camera_setup: RTL against the model; what the lists say of the cameras."""
+"""camera_setup: RTL against the model, and the lists against the data sheets of the cameras."""
 
 from collections.abc import Callable
 from functools import partial
@@ -39,7 +39,7 @@ def test_rtl(run_tb: Callable[..., None], entries: str) -> None:
 
 @pytest.mark.parametrize("name", list(CAMERAS))
 def test_a_camera_gets_its_list(name: str) -> None:
-    """The model of the core and the model of a camera, through every entry."""
+    """Play every entry of the list with the model of the core and a model of the camera."""
     camera = CAMERAS[name]()
     core = CameraSetup(camera.entries, camera.address_bytes, camera.device_id, quarter_clocks=4, millisecond_clocks=2)
     checks = {entry.address: entry.data for entry in camera.entries if entry.kind == Kind.CHECK}
@@ -71,7 +71,7 @@ def test_the_product_is_checked_before_anything_is_written(name: str) -> None:
 
 
 def test_frames_per_second_of_the_ov7725() -> None:
-    """The data sheet's formula for the pixel clock; a line has 748 of them, a frame 510 lines."""
+    """Compute the rate by the data sheet: pixel clock, 748 of its cycles per line, 510 lines per frame."""
     registers = last_values(ov7725())
     multiplier = (1, 4, 6, 8)[registers[0x0D] >> 6]
     clock = XCLK_HZ * multiplier / (2 * ((registers[0x11] & 0x3F) + 1))
@@ -79,7 +79,7 @@ def test_frames_per_second_of_the_ov7725() -> None:
 
 
 def test_frames_per_second_of_the_ov5640() -> None:
-    """XCLK / front divider x multiplier / system divider / root divider / bits / 2."""
+    """Compute the rate from XCLK / front divider x multiplier / system divider / root divider / bits / 2."""
     registers = last_values(ov5640())
     front, root = registers[0x3037] & 0xF, (registers[0x3037] >> 4 & 1) + 1
     clock = XCLK_HZ / front * registers[0x3036] / (registers[0x3035] >> 4) / root / 2 / 2

@@ -27,7 +27,7 @@ RAW = [name for name, form in FORMATS.items() if form.bayer]
     regress_verilator=[("rgb888", 0, 0), ("rgb565", 0, 0), ("raw8", 3, 0), ("raw12", 2, 1)],
 )
 def test_rtl(run_tb: Callable[..., None], form: str, phase: int, choice: int) -> None:
-    """Run a format; `choice` is its other order of bits or bytes."""
+    """Run a format; `choice` selects its second order of bits or bytes."""
     arguments: dict[str, Any] = {"picture": PICTURE, "grid": GRID, "pixel_format": form, "phase": PHASES[phase]}
     arguments |= {"msb_aligned": not choice} if form in RAW else {"byte_serial": bool(choice)}
     camera = CameraConfiguration(**arguments)
@@ -50,7 +50,7 @@ def test_raw_is_aligned_to_either_end_of_16_bits() -> None:
 
 
 def test_components_are_where_vendors_put_them() -> None:
-    """AXI4-Stream Video: G lowest, then B, then R; 4:2:2: luma below chroma."""
+    """Compare with AXI4-Stream Video: G lowest, then B, then R; in 4:2:2 luma below chroma."""
     assert pixel_format(words(0x112233), camera("rgb888")).tolist()[0] == [[0x11, 0x33, 0x22]]
     assert pixel_format(words(0xF800, 0x07E0, 0x001F, 0x0821), camera("rgb565")).tolist()[0] == [
         [255, 0, 0],

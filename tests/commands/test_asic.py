@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ASIC flow: its parser and its sums against numbers by hand, a small core end to end, and bad input."""
+"""make asic: parser and sums against numbers by hand, a small core from RTL to power, and bad input."""
 
 import re
 import shutil
@@ -64,7 +64,8 @@ def library(tmp_path: Path) -> Any:
 
 
 def test_power_by_hand(library: Any) -> None:
-    """A flip-flop (net 3) that an inverter (net 4) feeds back, and that is an output: it toggles each clock."""
+    """Compute the power of a flip-flop (net 3) that an inverter (net 4) feeds back; it is an output and toggles each
+    cycle."""
     gates: list[Any] = [
         Instance("DFF", "", {"CK": [2], "D": [4], "Q": [3]}),
         Instance("INV", "", {"A": [3], "Y": [4]}),
@@ -131,7 +132,7 @@ def test_memory_model_is_the_macro_at_45_nm() -> None:
     ("spectral", 0.41, 1_420_403, 181.5),
 ])  # fmt: skip
 def test_estimate_at_45_nm(solver: str, logic: Any, bits: int, milliwatts: Any) -> None:
-    """Recorded logic and 0.53 um2 and 5.3 / 64 pJ per bit at 166 MHz, by hand."""
+    """Compare with figures by hand: recorded logic, 0.53 um2 and 5.3 / 64 pJ per bit at 166 MHz."""
     _, area_mm2, power_mw, source = estimate.at_45_nm(solver)
     assert area_mm2 == pytest.approx(logic + 0.53e-6 * bits)
     accessed = estimate.RECORDED[solver].accessed_bits_per_clock
@@ -140,7 +141,8 @@ def test_estimate_at_45_nm(solver: str, logic: Any, bits: int, milliwatts: Any) 
 
 
 def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
-    """A stand-in with the ports of the design: a pixel's green is written to a memory and leaves two clocks later."""
+    """Simulate a substitute with the ports of the design: green of a pixel goes through a memory and leaves two cycles
+    later."""
     nets = iter(range(10, 200))
     bus = [next(nets) for _ in range(24)]
     rst, valid, last, user, ready, out_valid, late = (next(nets) for _ in range(7))
@@ -179,9 +181,9 @@ def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
     assert activity.accesses == [(1.0, 0.0)]
     steady = np.append(codes[-1], codes)
     assert activity.toggles[out[0]] * 64 == np.count_nonzero(np.diff(steady & 1))
-    in_window = codes[1:7]  # two clocks later
+    in_window = codes[1:7]  # two cycles later
     assert activity.window[out[0]] * 5 == np.count_nonzero(np.diff(in_window & 1))
-    assert activity.window_with_delays == activity.window  # nothing to glitch
+    assert activity.window_with_delays == activity.window  # no logic that could glitch
     wrong = np.where(np.arange(64) == 5, codes ^ 1, codes)
     assert gate_sim.simulate(netlist, [macro], Stimulus(pixels, wrong, 8, 3, range(0)), {}, 0.5, tmp_path).wrong == 3
 
@@ -191,7 +193,8 @@ def activity_of(toggles: Any, window: Any, window_with_delays: Any) -> Any:
 
 
 def test_delays_count_for_the_cores_in_which_they_act(library: Any) -> None:
-    """Two inverters: in a core that glitches in the window, and in one that does not move there."""
+    """Compute the power of two inverters: one in a core that glitches in the window, one in a core that is idle
+    there."""
     gates = [Instance("INV", path, {"A": [i], "Y": [i + 1]}) for i, path in ((5, "a"), (9, "b"))]
     netlist = Netlist("two", {"clk": ("input", [2])}, gates, library, 2)
     activity = activity_of({6: 0.2, 10: 0.1}, {6: 0.3}, {6: 0.9})
@@ -205,7 +208,7 @@ def test_delays_count_for_the_cores_in_which_they_act(library: Any) -> None:
 
 @pytest.mark.parametrize("node_nm", [180.0, 45.0])
 def test_figures(library: Any, node_nm: Any) -> None:
-    """One figure each for area and power, and the published ones at their node only."""
+    """Print one figure each for area and power, and the published figures at their node only."""
     core = {"core": "one", "cells": 7, "area_um2": 2e6, "delay_factor": 2.0, "with_delays_mw": 30.0}
     core["without_delays_mw"] = {"clock": 10.0, "internal": 4.0, "switching": 5.0, "leakage": 1.0}
     options = asic.Options(repository.ROOT, library, node_nm, 100.0)
@@ -240,7 +243,7 @@ def needs_tools(*tools: Any) -> None:
 
 
 def cell_models(netlist: Any) -> Any:
-    """Cells as Verilog for Icarus, with paths for an SDF file."""
+    """Return the cells as Verilog for Icarus, with paths for an SDF file."""
     lines = ["`timescale 1ns/1ps"]
     for cell in {cell.name: cell for _, _, cell in netlist.gates}.values():
         lines.append(f"module {cell.name} ({', '.join(f'{pin.direction} {name}' for name, pin in cell.pins.items())});")
@@ -261,7 +264,8 @@ def cell_models(netlist: Any) -> Any:
 def icarus_toggles(
     folder: Any, netlist: Any, operands: Any, delays: Any, settle_ns: Any, period_ns: Any
 ) -> dict[Any, Any]:
-    """Transitions of each net while the operands go by a second time, and clocks with wrong outputs, by Icarus."""
+    """Return the transitions of each net in the second pass of the operands, and the cycles with wrong outputs, by
+    Icarus."""
     names = [
         name for name, (direction, _) in netlist.ports.items() if direction == "input" and name not in ("clk", "en")
     ]
@@ -300,7 +304,7 @@ def icarus_toggles(
 
 
 def as_design(netlist: Any, operands: Any, widths: Any) -> tuple[Any, ...]:
-    """A dot product behind the ports of the design: operands are its pixels, sums its codes; and the pixels."""
+    """Return a dot product with the ports of the design (pixels are operands, codes are sums), and the pixels."""
     ports = {name: nets for name, (_, nets) in netlist.ports.items()}
     pixels, place = 0, 0
     for name, width in widths.items():
@@ -315,7 +319,7 @@ def as_design(netlist: Any, operands: Any, widths: Any) -> tuple[Any, ...]:
 
 
 def test_small_core_end_to_end(tmp_path: Any) -> None:
-    """Cells that compute products; the same toggles from Icarus without delays, nearly the same with delays."""
+    """Map a small core: its products are right, its toggles equal those of Icarus, with delays nearly."""
     needs_tools("sta", "c++", "iverilog")
     widths = {"AWidth": 6, "BWidth": 5}
     cells = read(asic.DEFAULT_LIB)

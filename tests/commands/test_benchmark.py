@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make benchmark: what it accepts, which package it imports, what it makes of the times."""
+"""make benchmark: its variables, the package that it imports, and its statistics."""
 
 import re
 from pathlib import Path
@@ -51,7 +51,7 @@ def test_modules_before_the_package_are_imported_as_models(tmp_path: Path) -> No
 
 
 def test_the_ratio_is_that_of_neighbouring_runs() -> None:
-    """A machine three times as slow in half of the rounds: the medians of the two versions would hide it."""
+    """Slow the machine down by three in half of the rounds: medians of each version alone would give a wrong ratio."""
     slow = np.where(np.arange(40) % 2, 3.0, 1.0)
     row = summary("chip", np.stack((10 * slow, 4 * slow), axis=-1), 0.0)
     assert (row["ratio"], row["ratio_low"], row["ratio_high"]) == pytest.approx((0.4, 0.4, 0.4))

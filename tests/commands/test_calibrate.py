@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make calibrate: what it writes and prints, and errors for bad variables. test_fitting.py tests the fit."""
+"""make calibrate: its files, its output, and errors for bad variables. test_fitting.py tests the fit."""
 
 import re
 import shutil

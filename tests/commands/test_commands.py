@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`python -m commands`: every command refuses what it does not know in one line, with exit status 2."""
+"""`python -m commands`: every command refuses unknown variables in one line, with exit status 2."""
 
 import importlib
 import os

@@ -71,7 +71,7 @@ def test_frames_on_the_model_do_not_drift(solver: str) -> None:
 
 @pytest.mark.parametrize("data_width", [24, 32])
 def test_transforms_comply(data_width: int) -> None:
-    """Bars near what is measured: small noise has the error of its roundings alone, whatever the width."""
+    """Compare with bars near the measured values: small noise has only the error of its roundings, for every width."""
     rows = compliance(Configuration(columns=SIZE, data_width=data_width), 640)
     assert {row.core for row in rows} == {"dst_forward", "dst_inverse", "2-D forward", "2-D inverse"}
     for row in rows:
@@ -87,7 +87,7 @@ def test_transforms_comply(data_width: int) -> None:
 
 
 def test_lone_modes_fill_the_range_that_noise_leaves_empty() -> None:
-    """A lone mode of the depth range reaches full scale; noise that fits beside it stays far below."""
+    """Drive a single mode of the depth range to full scale; noise that fits the range stays far below."""
     config = Configuration(columns=SIZE)
     core = transforms(config)["2-D inverse"][0]
     largest_word: dict[Any, Any] = {}

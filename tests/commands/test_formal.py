@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make formal: every core is proven or says why not, two quick proofs hold, and a wrong core is found out."""
+"""make formal: every core has a proof or a reason, two quick proofs hold, and the proof of a wrong core fails."""
 
 import re
 from pathlib import Path

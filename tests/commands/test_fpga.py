@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make fpga`: its packing of registers in simulation, what it refuses, what it reads from its tools."""
+"""`make fpga`: packed registers in simulation, refused variables, and values read from the tools."""
 
 import contextlib
 import json
@@ -30,7 +30,7 @@ endmodule
 
 
 def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
-    """Yosys' JSON of a core on the device, before anything is packed."""
+    """Return Yosys' JSON of a core on the device, before packing."""
     lines = synthesis.read(
         folder,
         Configuration(columns=16, solver="tridiagonal"),
@@ -45,7 +45,7 @@ def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
 
 
 def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
-    """The netlist of a dot product through the testbench of the core, with every register packed that can be."""
+    """Run the testbench of a dot product on its netlist, in which every possible register is packed."""
     design = netlist_of("dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
     packed = ecp5.pack(design["modules"]["dot_product"])
     assert packed["multipliers"] == packed["operands"] == packed["products"] == 4
@@ -79,7 +79,7 @@ def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
 
 
 def test_only_registers_without_reset_are_packed() -> None:
-    """One operand behind a register that is reset, or straight from a port: the multiplier stays as it is."""
+    """Feed one operand by a register with a reset, or directly by a port: the multiplier does not change."""
     pins = [f"{side}{place}" for side in "AB" for place in range(ecp5.WIDTH)]
     bits = dict(zip(pins, range(100, 200), strict=False))
 
@@ -106,7 +106,7 @@ def test_only_registers_without_reset_are_packed() -> None:
         "operands": 1,
         "products": 0,
         "registers": len(pins) - 1,
-    }  # one is read elsewhere
+    }  # one register has another reader
     left = {"multipliers": 1, "operands": 0, "products": 0, "registers": 0}
     assert ecp5.pack(module({"r100": register(100, reset=7)})) == left
     other = register(120)
@@ -130,7 +130,7 @@ def test_only_registers_without_reset_are_packed() -> None:
     ],
 )
 def test_bad_input(arguments: Any, message: str, tmp_path: Path) -> None:
-    """Refused before anything is written."""
+    """Refuse bad input before anything is written."""
     out = tmp_path / "out"
     with pytest.raises(InputError, match=message):
         fpga.run(fpga.parse([*arguments, f"OUT={out}"]), "")
@@ -146,7 +146,7 @@ def test_bad_input_is_one_line() -> None:
 
 @pytest.mark.parametrize(("error", "logs"), [(RuntimeError, 1), (InputError, 0), (KeyboardInterrupt, 0), (None, 0)])
 def test_the_folder_of_a_run_stays_only_after_a_failure(tmp_path: Any, error: Any, logs: Any) -> None:
-    """A RuntimeError names a log in it."""
+    """Keep the folder of a run that fails, because the RuntimeError names a log in it."""
     with contextlib.suppress(error or ()), synthesis.workspace(tmp_path, ["fpga.json"]) as work:  # type: ignore[arg-type]
         (work / "tool.log").touch()
         if error:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tactile_depth.core lists hdl/ and nothing else; its generator writes what the top reads; its part is the script's."""
+"""tactile_depth.core: its list of files is hdl/, and its generator writes the parameters and tables that the top
+reads."""
 
 import json
 import os
@@ -55,7 +56,7 @@ def test_the_generator_writes_parameters_and_tables(tmp_path: Path) -> None:
     made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
     config = Configuration(columns=16, rows=8, solver="tridiagonal")
     defaults = {name: parameter["default"] for name, parameter in made["parameters"].items()}
-    # The calibration's slopes set the formats, so only what they do not touch is the default's.
+    # The slopes of the calibration set the formats; all other parameters are the defaults.
     assert defaults.keys() == top_parameters(config).keys()
     assert (defaults["Rows"], defaults["Size"], defaults["Tridiagonal"]) == (8, 16, 1)
     files = {name for file in made["filesets"]["tables"]["files"] for name in file}
@@ -74,7 +75,7 @@ def test_with_a_name_it_writes_a_module(tmp_path: Path) -> None:
 
 
 def fusesoc(folder: Path, *arguments: str, **environment: str) -> None:
-    """Run FuseSoC in a folder, on a copy of examples/fusesoc beside this repository."""
+    """Run FuseSoC in a folder, with a copy of examples/fusesoc and this repository as libraries."""
     binary = Path(sys.executable).parent / "fusesoc"
     if not binary.exists():
         pytest.skip("fusesoc is not installed: pip install -r requirements-hardware.txt")
@@ -96,13 +97,13 @@ def fusesoc(folder: Path, *arguments: str, **environment: str) -> None:
 
 
 def cocotb_environment(*paths: Path, **variables: str) -> dict[str, str]:
-    """Return what cocotb 2.1 needs and FuseSoC does not set."""
+    """Return the variables that cocotb 2.1 needs and FuseSoC does not set."""
     path = os.pathsep.join(map(str, paths))
     return {"GPI_USERS": f"{find_libpython()};{pygpi_entry_point()}", "PYTHONPATH": path, **variables}
 
 
 def passed(folder: Path) -> int:
-    """Return the number of cocotb tests that passed, and none failed."""
+    """Return the number of cocotb tests that passed; fail if one failed."""
     (results,) = folder.rglob("results.xml")
     count, failed = get_results(results)
     assert not failed, results.read_text()
@@ -110,7 +111,7 @@ def passed(folder: Path) -> int:
 
 
 def test_a_project_that_depends_on_this_one_is_linted(tmp_path: Path) -> None:
-    """-Wall is clean, because the project gets the waivers of this one."""
+    """Lint a dependent project: -Wall is clean, because it gets the waivers of this repository."""
     fusesoc(tmp_path, "--target", "lint", "fingertip")
     (files,) = tmp_path.rglob("*.vc")
     listed = files.read_text().split()
@@ -120,7 +121,8 @@ def test_a_project_that_depends_on_this_one_is_linted(tmp_path: Path) -> None:
 
 
 def test_a_project_that_depends_on_this_one_is_simulated(tmp_path: Path) -> None:
-    """Its own testbench finds the depth of the model, so the configuration and the tables are inside."""
+    """Simulate a dependent project: its testbench finds the depth of the model, hence the configuration and the
+    tables."""
     environment = cocotb_environment(tmp_path / "project", repository.ROOT / "models", COCOTB_RANDOM_SEED="1")
     fusesoc(tmp_path, "--target", "sim", "fingertip", **environment)
     assert passed(tmp_path) == 1

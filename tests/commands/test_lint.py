@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make lint: each tool sees the defects that it is there for, and a sound module passes all of them."""
+"""make lint: each tool reports the defects that it must find, and a correct module passes all tools."""
 
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ module seeded (
 SOUND = "  always_ff @(posedge clk) y <= choose ? a : $signed(u);\n"
 CHILD = "\nmodule child (\n  input  logic x,\n  output logic z\n);\n  assign z = !x;\nendmodule\n"
 
-# What is seeded: the module's body, and the tools that must say so.
+# Seeded defects: the body of the module, and the tools that must report it.
 DEFECTS = {
     "undriven signal": (
         "  logic signed [7:0] b;\n  always_ff @(posedge clk) y <= choose ? a + $signed(u) : b;\n",

@@ -32,7 +32,7 @@ HOSTILE = {
     "shell function behind dollars": "$$(shell touch mark)",
     "command": "$$(touch mark)`touch mark`",
     "reference": "$(MAKE) ${HOME} $@ $",
-    "spaces": "two  words ",  # make itself drops spaces in front
+    "spaces": "two  words ",  # make itself drops leading spaces
     "double quotes": '"; touch mark; "',
     "operators": "a; touch mark & touch mark | touch mark > mark",
     "backslash at the end": "C:\\frames\\",
@@ -48,7 +48,7 @@ def targets() -> Any:
 
 @pytest.fixture
 def place(tmp_path: Path) -> Any:
-    """A folder with the Makefile, whose virtual environment is complete and holds SPY in the place of Python."""
+    """Return a folder with the Makefile and a complete virtual environment in which SPY replaces Python."""
     shutil.copy(ROOT / "Makefile", tmp_path)
     (tmp_path / "commands" / "common").mkdir(parents=True)
     (tmp_path / "commands" / "common" / "icarus.sh").write_text("true\n")
@@ -59,7 +59,7 @@ def place(tmp_path: Path) -> Any:
     python = tmp_path / ".venv" / "bin" / "python"
     python.write_text(SPY)
     python.chmod(python.stat().st_mode | stat.S_IXUSR)
-    for stamp in ("complete", "verification", "baselines", "hardware"):  # each is newer than the one before
+    for stamp in ("complete", "verification", "baselines", "hardware"):  # each is newer than its predecessor
         (tmp_path / ".venv" / stamp).touch()
     (tmp_path / ".venv-live").symlink_to(".venv")
     return tmp_path
@@ -73,7 +73,7 @@ def make(place: Any, *words: Any, **environment: Any) -> Any:
 
 
 def calls(place: Any) -> Any:
-    """Arguments and environment of every run of SPY."""
+    """Return arguments and environment of every run of SPY."""
     log = place / "calls"
     return [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
 

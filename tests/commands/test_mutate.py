@@ -2,6 +2,7 @@
 """`make mutate`: on one small core every verdict is the right one; every core of hdl/ is listed."""
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -40,9 +41,10 @@ def test_mutants_are_killed_or_proven_equivalent(outcome: Any) -> None:
 
 
 def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without a reset in mid-burst nobody sees a counter that is not reset; without pauses, none that does not wait."""
+    """Without a reset inside a burst and without pauses, mutants of the reset and of the enable survive."""
     monkeypatch.setattr(mutate, "CORE_BAR", 99.0)  # of 40 mutants one is a hole
-    monkeypatch.setenv("COCOTB_TEST_FILTER", "every_mutant|positions/pause=0.0/before=0$")
+    built = replace(structure(SMALL, mutate.CORES[SMALL].structures[0]), test_module="tests.commands.weak_bench")
+    monkeypatch.setattr(mutate, "structure", lambda core, index: built)
     result = outcome()
     assert result.different > 0
     assert not result.passed
@@ -50,7 +52,7 @@ def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) -> None:
-    """The cores inside are a part of the graph."""
+    """Build the graph of a core with cores inside: the cores are a part of it."""
     core, built = "axil_registers", structure("axil_registers", 0)
     mutants.make(core, built, 20, 1, tmp_path, flat=mutate.CORES[core].flat)
     outputs = graph(core, tmp_path, core, built.parameters).outputs
@@ -58,11 +60,13 @@ def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) ->
 
 
 def contrary(mutant: Any) -> Any:
-    """The graph of two registers that take a word and its inverse, and of a third that says so; all of them for `en`.
+    """Return a graph with a word register, a register of its inverse, and a valid register; all load with `en`.
 
-    The output is the first, looked at while the third is high. Mutants invert it: "equal", where both are the same,
-    which no clock with `en` leaves; "loose" the same, but the second takes its word in every clock; "patient", where
-    four clocks without `en` have gone by.
+    The output is the word; it counts while the valid register is high. A mutant inverts the output:
+
+    - "equal": when word and inverse are the same, which never occurs after a cycle with `en`;
+    - "loose": likewise, but the inverse register loads in every cycle;
+    - "patient": after four cycles without `en`.
     """
     en, rst, x, selector, word, inverse, valid, *idle = range(2, 2 * 12, 2)  # literals of inputs and registers
     gates = Gates(12)
@@ -92,8 +96,10 @@ def contrary(mutant: Any) -> Any:
 
 
 def turning(every: Any) -> Any:
-    """A register that takes its inverse in every clock in the mutant, and a count; it is looked at in every second
-    clock since the last reset, or in all of them. Beside it a word, which the mutant has as well."""
+    """Return a graph whose mutant toggles a register in every cycle, beside a word that is the same in both copies.
+
+    The output counts in every second cycle since the last reset, or in all cycles.
+    """
     rst, x, selector, toggle, word, even = range(2, 2 * 7, 2)
     gates = Gates(7)
     result = gates.differ(toggle, word)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make netlists` on two small cores: their netlists pass their own testbenches, and a wrong one does not."""
+"""`make netlists` on two small cores: their netlists pass their testbenches, and a wrong netlist fails."""
 
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,7 @@ def test_a_wrong_netlist_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     synthesis = netlists.netlist
 
     def stuck(case: Any, folder: Path) -> Any:
-        """Every constant one is a zero."""
+        """Write a netlist in which every constant one is a zero."""
         cells = synthesis(case, folder)
         file = folder / "netlist.v"
         text = file.read_text()

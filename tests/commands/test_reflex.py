@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""make reflex: the command comes from the pin, its delays are drawn as stated, wrong pins and bad input are named."""
+"""make reflex: the command comes from the pin, delays have their distributions, wrong pins and bad input are
+reported."""
 
 import json
 from dataclasses import replace
@@ -64,7 +65,7 @@ def test_draws_are_those_of_the_seed() -> None:
 
 
 def test_delays_are_distributed_as_stated() -> None:
-    """Mean and standard deviation within five standard errors."""
+    """Draw the delays: mean and standard deviation are within five standard errors."""
     draws = reflex_model.draw(TRIALS, 3, "host")
     error = 5 / np.sqrt(TRIALS)
     assert draws.phase.mean() == pytest.approx(0.5, abs=error / np.sqrt(12))
@@ -140,7 +141,8 @@ def test_pins_that_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_loop_on_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The whole command, small: the command time is the pin's clock, and the clocks do not know the camera's pace."""
+    """Run the command on a small grid: command times are cycles of the pin, and latencies do not depend on the camera's
+    rate."""
     out = tmp_path / "out"
     reflex.run(reflex.parse([*SMALL, "HOST_TRIALS=3", f"OUT={out}"]))
     assert sorted(path.name for path in out.iterdir()) == ["reflex.json", "reflex.png"]

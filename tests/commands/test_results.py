@@ -40,7 +40,7 @@ def content(folder: Path) -> dict[Any, Any]:
 
 
 def alter(monkeypatch: pytest.MonkeyPatch, change: Any) -> None:
-    """Have the simulation return codes that `change` has altered in place."""
+    """Make the simulation return codes that `change` alters in place."""
     play = bench.play
 
     def altered(*arguments: Any, **options: Any) -> Any:
@@ -58,7 +58,7 @@ def alter(monkeypatch: pytest.MonkeyPatch, change: Any) -> None:
 def test_differing_codes_are_counted_and_the_first_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], solver: str
 ) -> None:
-    left = {"spectral": 12, "tridiagonal": 15 - 12}[solver]  # the row as it leaves; the tridiagonal solver begins below
+    left = {"spectral": 12, "tridiagonal": 15 - 12}[solver]  # the last row leaves first
 
     def change(codes: np.ndarray) -> None:
         frames = codes.reshape(6, 16, 16)  # two frames, three times
@@ -123,7 +123,7 @@ def test_the_picture_marks_differing_codes_in_any_frame(
     assert red(io.imread(tmp_path / "out" / "depth.png")) == 0
 
     def change(codes: np.ndarray) -> None:
-        codes.reshape(8, 16, 16)[7, 3, 3] += 1  # beyond the frames that are drawn otherwise
+        codes.reshape(8, 16, 16)[7, 3, 3] += 1  # beyond the frames that are drawn by default
 
     alter(monkeypatch, change)
     run(monkeypatch, capsys, *words)
@@ -249,7 +249,7 @@ def earlier(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> Any:
-    """A folder with results of a run, and a file of somebody else."""
+    """Return a folder with the results of a run and a file of the user."""
     kept = tmp_path_factory.getbasetemp() / "results-of-a-run"
     if not kept.exists():
         assert run(monkeypatch, capsys, *SMALL, f"OUT={kept}")[0] == 0
@@ -310,7 +310,7 @@ def test_a_write_that_fails_leaves_nothing_new(
 
 
 def test_a_file_that_does_not_fit_ends_with_one_line_that_helps(tmp_path: Path, earlier: Any) -> None:
-    """The system refuses to write files above a size, as it does on a full disk."""
+    """Limit the size of files, which acts like a full disk."""
     np.save(tmp_path / "many.npy", np.zeros((100, 16, 16, 3), np.uint8))
     before = content(earlier)
     words = [*SMALL, f"FRAMES={tmp_path / 'many.npy'}", "CALIBRATION=synthetic", f"OUT={earlier}"]

@@ -24,7 +24,7 @@ WAIT_S = 60
 
 
 def started(command: Any, folder: Path) -> Any:
-    """Start a command in a session of its own, with signals as a terminal leaves them."""
+    """Start a command in its own session, with the default handling of signals."""
 
     def defaults() -> None:
         for number in ENDS:
@@ -45,7 +45,7 @@ def started(command: Any, folder: Path) -> Any:
 
 
 def members(session: Any) -> Any:
-    """Command lines of the living processes of a session."""
+    """Return the command lines of the living processes of a session."""
     lines = {}
     for entry in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
@@ -63,7 +63,7 @@ def wait_for(condition: Any, what: Any) -> None:
 
 
 def wait_for_the_simulator(process: Any) -> None:
-    """Wait until vvp runs; fail with what the command wrote if it ends before."""
+    """Wait until vvp runs; if the command ends earlier, fail with its output."""
 
     def running() -> Any:
         assert process.poll() is None, process.stderr.read()
@@ -86,7 +86,7 @@ def test_a_signal_ends_the_command(tmp_path: Path, number: Any) -> None:
 
 @pytest.fixture
 def makefile(tmp_path: Path) -> Any:
-    """A folder with the Makefile, whose virtual environment is complete and runs the Python of this test."""
+    """Return a folder with the Makefile and a complete virtual environment that runs the Python of this test."""
     folder = tmp_path / "place"
     python = folder / ".venv" / "bin" / "python"
     python.parent.mkdir(parents=True)

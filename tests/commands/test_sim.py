@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make sim` as a user runs it: results, bars, files it leaves, and what it says to bad input."""
+"""`make sim` as a user runs it: results, bars, files, and errors for bad input."""
 
 import json
 import os
@@ -25,7 +25,7 @@ from tactile_depth.sensor import load
 
 
 def run(tmp_path: Any, *arguments: Any) -> Any:
-    """Run `make sim` into tmp_path/out; returns the report. It must be bit-exact."""
+    """Run `make sim` into tmp_path/out; return the report. The run must be bit-exact."""
     out = tmp_path / "out"
     assert sim.run(run_request.parse([*arguments, f"OUT={out}"])) == 0
     assert sorted(p.name for p in out.iterdir()) == ["depth.npy", "depth.png", "report.json"]
@@ -38,7 +38,7 @@ SPECTRAL_IN_REGRESS = ["tridiagonal", pytest.param("spectral", marks=pytest.mark
 
 
 def only(values: Any) -> Any:
-    """The one value that a list repeats."""
+    """Return the only value of a list; fail if there are several."""
     assert len(set(values)) == 1, f"not constant: {sorted(set(values))}"
     return values[0]
 
@@ -89,7 +89,7 @@ def test_the_largest_grid(tmp_path: Path) -> None:
     ("solver", "boundary", "size", "data_width", "percent"),
     [
         ("spectral", "dirichlet", 64, 24, 0.005),
-        ("tridiagonal", "neumann", 128, 24, 0.01),  # what a real sensor uses
+        ("tridiagonal", "neumann", 128, 24, 0.01),  # the options of a real sensor
         *(
             pytest.param(*case, marks=pytest.mark.regress)
             for case in (
@@ -203,7 +203,7 @@ def test_pictures_with_a_reference(tmp_path: Path) -> None:
 
 
 def _press(tmp_path: Path, name: str = "ball") -> list[Any]:
-    """Variables that give a drawn press, its reference and its calibration."""
+    """Return the variables of a drawn press, its reference and its calibration."""
     drawn = sample(name)
     drawn.sensor.save(tmp_path / "sensor.npz")
     for file, image in (("press.png", drawn.image), ("background.png", drawn.reference)):
@@ -214,7 +214,7 @@ def _press(tmp_path: Path, name: str = "ball") -> list[Any]:
 
 
 def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> None:
-    """Depth in mm is codes times unit, and the codes are those of the RTL."""
+    """Compare with Python: depth in mm is code times unit, and the codes equal those of the RTL."""
     report = run(tmp_path, *_press(tmp_path), f"FLOOR={tmp_path / 'background.png'}")
     drawn = sample("ball")
     result = Pipeline(drawn.sensor, drawn.reference, grid=(24, 32))(drawn.image)
@@ -271,7 +271,7 @@ def test_flagged_pixels_are_painted() -> None:
 
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
 def test_a_floor_is_subtracted(tmp_path: Path, solver: str) -> None:
-    """The mean depth of two frames without contact, in the RTL and in double precision."""
+    """Subtract the mean depth of two frames without contact, in the RTL and in double precision."""
     no_contact = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
     every = _npy(tmp_path / "every.npy", np.concatenate((no_contact, no_contact[:1, ::-1])))
     chosen = ["N=16", "BOUNDARY=neumann", f"SOLVER={solver}", f"FRAMES={every}", "SIM=icarus"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make sim CAMERA=..`: every format through the front end's RTL, its latency, what it costs in depth, bad input."""
+"""`make sim CAMERA=..`: every format through the RTL of the front end, latency, depth error, bad input."""
 
 import json
 from pathlib import Path
@@ -34,7 +34,7 @@ def parsed(*arguments: str) -> run_request.Request:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Two pictures of a contact, larger than the grid and of another aspect ratio."""
+    """Return a folder with two pictures of a contact, larger than the grid and of another aspect ratio."""
     pictures = tmp_path / "pictures"
     pictures.mkdir()
     for name in ("ball", "cone"):
@@ -63,7 +63,7 @@ def run(folder: Path, *arguments: str) -> dict[str, Any]:
 def test_the_cycles_from_the_last_word_are_those_of_the_model(
     folder: Path, form: str, arguments: tuple[str, ...]
 ) -> None:
-    """To the first depth, and to contact, for every picture, with gaps and blanking."""
+    """Compare the cycles to the first depth and to contact for every picture, with gaps and blanking."""
     report = run(folder, f"CAMERA={form}", *arguments)
     choice = parsed(f"CAMERA={form}", *arguments).camera
     assert choice is not None
@@ -100,7 +100,7 @@ def test_rgb888_is_what_the_package_averages(folder: Path) -> None:
 
 
 def test_each_format_costs_little_depth() -> None:
-    """A scene of 640 x 480 to depth at 128, against RGB of the grid; the RTL equals the model."""
+    """Compute depth at 128 from a scene of 640 x 480: the RTL equals the model, and the loss against RGB is small."""
     grid = (128, 128)
     config = Configuration(columns=grid[1], solver="tridiagonal")
     depth = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make sweep`: what it covers, that no row is lost or measured twice, and what it says to bad input."""
+"""`make sweep`: its configurations; no row is lost or measured twice; errors for bad input."""
 
 import csv
 import json
@@ -196,7 +196,7 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Any, moment: Any) -> None:
 
 @pytest.fixture
 def dask_scheduler(tmp_path: Path) -> Iterator[Any]:
-    """Address of a cluster whose one worker runs elsewhere and has not got the models."""
+    """Return the address of a cluster with one worker that runs in another folder and lacks the models."""
     pytest.importorskip("distributed", reason="Dask is not installed: run `make setup`")
     away = tmp_path / "away"
     away.mkdir()

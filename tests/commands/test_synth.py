@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make synth`: what it counts on a tiny grid, the plain rule of memories, and what it says to bad input."""
+"""`make synth`: its counts on a tiny grid, the plain rule of memories, and errors for bad input."""
 
 import json
 import sys
@@ -49,7 +49,7 @@ def test_the_front_end_of_a_camera_is_a_row_of_its_own(tmp_path: Path) -> None:
 
 
 def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_path: Any) -> None:
-    """The mapping to logic on dot_product alone: two DSPs, and nothing beside them."""
+    """Map dot_product alone to logic: the result is two DSPs and nothing else."""
     for source in repository.sources("dot_product"):
         (tmp_path / source.name).write_text(source.read_text().replace("module dot_product", f"module {synth.TOP}"))
     lines = [
@@ -114,7 +114,7 @@ def test_a_design_too_large_ends_with_a_line(
 
 
 def test_a_grid_that_one_solver_has_is_built_with_that_solver() -> None:
-    """The other one is named with the reason."""
+    """Build the solver that has the grid; the report names the reason why the other one is missing."""
     _, _, grids, request = synth.parse(["GRIDS=1024"])
     reasons = {each.solver: reason for each, reason in synth.designs(request, grids)}
     assert reasons["tridiagonal"] == ""
@@ -135,7 +135,7 @@ def test_a_grid_that_one_solver_has_is_built_with_that_solver() -> None:
     ],
 )
 def test_bad_input(arguments: Any, message: str, capsys: pytest.CaptureFixture[str], monkeypatch: Any) -> None:
-    """Refused before Yosys runs."""
+    """Refuse bad input before Yosys runs."""
     monkeypatch.chdir(repository.ROOT)
     monkeypatch.setattr(synth.yosys, "run", None)
     monkeypatch.setattr(sys, "argv", ["synth", *arguments])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make tune`: that its search finds the cheapest, that its choice holds in RTL, and what it says otherwise."""
+"""`make tune`: its search finds the cheapest configuration, its choice is proven in RTL, and failures are reported."""
 
 import json
 import math
@@ -35,7 +35,7 @@ def cost_of(at: Any) -> Any:
 
 
 def falling(solver_bits: Any) -> Any:
-    """An error that falls with both widths, of each solver by another law."""
+    """Return an error that falls with both widths, by a different law for each solver."""
     by_configuration = {}
     for at in all_points():
         bits = solver_bits[at.solver]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A sample of the soft errors that `make upsets` counts: no hang, and the frames sent after one are right."""
+"""Sample of the soft errors that `make upsets` counts: no hang, and frames sent after an upset are right."""
 
 from pathlib import Path
 from typing import Any

@@ -43,7 +43,8 @@ def test_words_are_read_as_they_were_written(
 
 @pytest.mark.parametrize("solver", COLUMNS)
 def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver: str) -> None:
-    """Neumann: what is not above has the mean -volume / (pixels - area)."""
+    """Compute the floor under Neumann, where the mean of a frame is zero: depths that are not above have -volume /
+    rest."""
     config = Configuration(columns=32, solver=solver, neumann=True)
     frames = load_frames("bench", (32, 32))
     depths = tactile_depth(frames.pixels, load("synthetic").on_grid(frames), config)

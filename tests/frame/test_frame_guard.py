@@ -40,7 +40,7 @@ def test_model_flags_a_broken_frame_once_and_the_next_is_right(kind: str) -> Non
         assert good == [[word.data for word in words] for words in sent], position
         bad = [f for f in out.frames if f.bad]
         assert len(bad) == len([fault for fault in out.faults if fault != "start_missing"]), position
-        if bad and kind not in WITHOUT_START:  # right up to the fault, then the last pixel over and over
+        if bad and kind not in WITHOUT_START:  # right up to the fault, then the last pixel repeated
             kept = position + (kind in ("row_short", "end_extra", "row_long", "end_missing"))
             pixels = list(range(200, 200 + kept))
             assert bad[0].pixels == (*pixels, *[pixels[-1]] * (ROWS * COLUMNS - kept)), position

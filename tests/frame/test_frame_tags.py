@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 
-# Two places, one, two exactly, four; the first again, for mutants.
+# Two frames in flight, one, exactly two, four; the first again, for mutants.
 @pytest.mark.structures(
     "width latency pixels",
     verilator=[(33, 37, 24)],

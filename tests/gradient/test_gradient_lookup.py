@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""gradient_lookup: RTL against the model, the model against the calibration it was made from."""
+"""gradient_lookup: RTL against the model, the model against the calibration of its table."""
 
 import json
 from collections.abc import Callable
@@ -30,7 +30,7 @@ def test_rtl(run_tb: Callable[..., None], bits: int, data_width: int) -> None:
 
 @pytest.mark.parametrize("bits", [1, 4, 6])
 def test_codes_are_the_slopes_within_half_a_step(bits: int) -> None:
-    """The bins of a random table differ everywhere, so a wrong order of colours or bits shows."""
+    """Use a random table, whose bins all differ, so that a wrong order of colours or bits is seen."""
     gradient = np.random.default_rng(bits).uniform(-0.9, 0.9, (*[1 << bits] * 3, 2))
     calibration = Sensor("random", gradient, 0.1)
     config = Configuration(columns=16, bits_per_channel=bits)

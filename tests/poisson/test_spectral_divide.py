@@ -70,7 +70,8 @@ CONFIGURATIONS = [
 
 @pytest.mark.parametrize("config", CONFIGURATIONS, ids=lambda c: f"{c.columns}-{c.coefficient_width}")
 def test_model_divides_by_the_eigenvalues(config: Configuration) -> None:
-    """Half a step for the rounding; a mantissa of w bits, at least 2^(w - 2), errs by half its last bit."""
+    """Bound the error: half a step of the rounding, and half the last bit of a mantissa of w bits, at least 2^(w -
+    2)."""
     shape = (config.columns, config.columns)
     limit = 2.0 ** (config.arithmetic_width - 1)
     full = np.abs(divided(np.ones(shape), config))

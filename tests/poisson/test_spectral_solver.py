@@ -44,7 +44,7 @@ PEAKS = np.linspace(3, 18, 6) / 128  # of the domes, over N: those of the accura
 
 
 def error_percent(config: Configuration) -> Any:
-    """RMS error of each dome's depth in % of its peak; the reference is fed with the same slope codes."""
+    """Return the RMS error of the depth of each dome in % of its peak; the reference gets the same slope codes."""
     slopes = np.stack([slopes_of(dome(config.columns, share * config.columns)) for share in PEAKS])
     f = divergence(np.rint(slopes / config.gradient.lsb).astype(np.int64))
     monitor = Monitor()
@@ -82,7 +82,7 @@ NOISE = 6 * 5  # codes: six times the RMS error of a frame of 16 x 16, 5 codes
 
 
 def random_frame(seed: int) -> Any:
-    """Divergence whose depth stays within half of the range."""
+    """Return a random divergence whose depth stays within half of the range."""
     limit = 2.0 ** (CONFIG.divergence.width - 1) * 0.01
     return np.rint(np.random.default_rng(seed).uniform(-limit, limit, (16, 16))).astype(np.int64)
 

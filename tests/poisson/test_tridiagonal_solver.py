@@ -48,7 +48,7 @@ def test_rtl(run_tb: Callable[..., None], choices: Any, store: Any) -> None:
 
 
 def divergence_codes(slopes: np.ndarray, config: Configuration) -> tuple[Any, ...]:
-    """Slopes (..., rows, columns, 2) as divergence codes, and the divergence they stand for."""
+    """Return slopes (..., rows, columns, 2) as divergence codes, and the divergence that the codes represent."""
     f = divergence(np.rint(slopes / config.gradient_lsb).astype(np.int64), config.neumann)
     return f, f * config.gradient_lsb
 

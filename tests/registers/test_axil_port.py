@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/registers/axil_port.sv against models/tactile_depth/registers/axil_port.py."""
+"""axil_port: RTL against the model."""
 
 from collections.abc import Callable
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/registers/axil_registers.sv against models/tactile_depth/registers/axil_registers.py."""
+"""axil_registers: RTL against the model."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cold_rst on a netlist without initial values, as gates have it at power-up."""
+"""Netlist without initial values, like gates at power-up: state after `cold_rst`."""
 
 from pathlib import Path
 from typing import Any

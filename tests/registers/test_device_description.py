@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A host converts codes to mm and slopes with the registers of the device alone."""
+"""Description of the device: a host converts codes to mm and slopes with registers only."""
 
 import math
 
@@ -33,7 +33,7 @@ NAMES = ("DEVICE", "DEPTH_UNIT", "SLOPE_UNIT", "PITCH")
 
 
 def words(config: Configuration, pitch_mm: float) -> dict[str, int]:
-    """Return what a host reads of a device."""
+    """Return the words that a host reads from a device."""
     registers = AxilRegisters(Build(top_parameters(config, pitch_mm)))
     answers = {name: registers.read(REGISTERS[name].offset) for name in NAMES}
     assert {response for _, response in answers.values()} == {Response.OKAY}
@@ -50,7 +50,7 @@ def test_a_unit_is_rounded_to_24_bits(value: float) -> None:
 @pytest.mark.parametrize("config", CONFIGURATIONS.values(), ids=CONFIGURATIONS)
 @pytest.mark.parametrize("pitch_mm", [0.0634, 0.1, 0.02734375, 1.5])
 def test_mm_and_slopes_of_codes(config: Configuration, pitch_mm: float) -> None:
-    """The pitch is rounded to 1 nm, a unit to 24 bits."""
+    """Convert codes to mm and slopes, with the pitch rounded to 1 nm and units rounded to 24 bits."""
     device = words(config, pitch_mm)
     exact = config.depth_lsb_px * pitch_mm
     bound = RELATIVE_ERROR + (1 + RELATIVE_ERROR) * 0.5 / (pitch_mm * NM_PER_MM)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/registers/event_registers.sv against models/tactile_depth/registers/event_registers.py."""
+"""event_registers: RTL against the model."""
 
 from collections.abc import Callable
 

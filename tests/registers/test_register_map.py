@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The maps in registers/: what is written from them is up to date, and C and Python reach the registers by them."""
+"""Maps in registers/: generated files are up to date, and C and Python access the registers by them."""
 
 import shutil
 import subprocess
@@ -57,7 +57,7 @@ def test_an_access_that_no_register_has_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_table_has_the_bit_of_its_number_in_the_commit_register() -> None:
-    """hdl/registers/table_access.sv takes the one for the other."""
+    """Compare: hdl/registers/table_access.sv uses the number of a table as its bit."""
     assert {field.name: field.low for field in REGISTERS["TABLE_COMMIT"].fields} == dict(TABLES)
     assert sorted(TABLES.values()) == list(range(len(TABLES)))
 
@@ -77,7 +77,7 @@ def test_a_value_too_large_for_its_field_is_refused() -> None:
 
 @pytest.mark.parametrize("of", MAPS, ids=lambda of: of.name)
 def test_the_c_header(of: registers.Map, tmp_path: Path) -> None:
-    """A program that includes it finds every register where the map has it, and every field's bits and reset value."""
+    """Compile a program that checks the offset of every register, and the bits and reset value of every field."""
     compiler = shutil.which("gcc")
     if compiler is None:
         pytest.skip("gcc is missing: it compiles the C header")
@@ -103,7 +103,7 @@ def test_the_c_header(of: registers.Map, tmp_path: Path) -> None:
 
 
 def test_the_python_layer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It reads and writes fields by name; behind it the model of the registers in place of a device."""
+    """Read and write fields by name, with the model of the registers as the device."""
     registers.python_layer(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     from tactile_depth_registers.lib import NormalCallbackSet  # type: ignore[import-not-found]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/registers/setting_registers.sv against models/tactile_depth/registers/setting_registers.py."""
+"""setting_registers: RTL against the model."""
 
 from collections.abc import Callable
 

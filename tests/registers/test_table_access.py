@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/registers/table_access.sv against models/tactile_depth/registers/table_access.py."""
+"""table_access: RTL against the model."""
 
 from collections.abc import Callable
 from typing import Any

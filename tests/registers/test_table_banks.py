@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""hdl/registers/table_banks.sv against models/tactile_depth/registers/table_banks.py."""
+"""table_banks: RTL against the model."""
 
 from collections.abc import Callable
 from typing import Any

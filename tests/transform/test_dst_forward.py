@@ -39,12 +39,12 @@ def test_rtl(run_tb: Callable[..., None], parameters: dict[str, int]) -> None:
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:
-    """Transform rows in natural order, at full precision but for the coefficients."""
+    """Transform rows in natural order, at full precision except for the coefficients."""
     return dst_forward(x[..., makhoul(x.shape[-1])], 0, width, coeff, 0, width)
 
 
 def ideal(x: Any) -> Any:
-    """scipy's DST-II (twice the sum, modes from 1) in the order and with the halvings of the hardware."""
+    """Return the DST-II of scipy (twice the sum, modes from 1) in the order and with the halvings of the hardware."""
     size = x.shape[-1]
     return dst(x, type=2)[..., size - 1 - bit_reversed(size)] / 2 * 2.0 ** -halvings(size, inverse=False)
 
@@ -94,7 +94,7 @@ def test_sums_go_through_within_their_rounding(seed: int, size: int, factor: int
 @settings(max_examples=40, deadline=None)
 @given(SEED, SIZE)
 def test_a_reversed_row_negates_every_second_mode(seed: int, size: int) -> None:
-    """Sines about the middle: odd modes are even, even modes odd."""
+    """Reverse a row: about the middle odd modes are even and even modes are odd."""
     x = np.random.default_rng(seed).integers(-(2**16), 2**16, size)
     sign = 1 - 2 * (bit_reversed(size) % 2)  # position of mode N - k, so modes and k are of one parity
     error = transform(x[::-1], 30) + sign * transform(x, 30)

@@ -116,7 +116,7 @@ def test_negation_goes_through(words: Any, real_only: bool) -> None:
 
 
 def test_a_turned_corner_saturates() -> None:
-    """(A, A) turned by an eighth is (1.41 A, 0): it needs the guard bit that formats leave it."""
+    """Rotate (A, A) by an eighth to (1.41 A, 0), which needs the guard bit of the formats."""
     full = np.full(8, 2**26 - 1)
     monitor = Monitor()
     re, im = twiddle_multiply(full, full, twiddle_factors(8, False, 18), 17, 27, monitor)
