@@ -57,6 +57,10 @@ class Board:
         self.lights: list[Any] = []
         dut.ftdi_txd.value, dut.btn.value = 1, 0
 
+    def top(self) -> Any:
+        """Return the top of the board, which a bench around it has inside."""
+        return self.dut
+
     async def start(self, button: bool = True) -> None:
         Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         if button:
@@ -85,7 +89,7 @@ class Board:
 
     async def note_starts(self) -> None:
         """Note the pipeline's cycle count at the first pixel of each frame; the record holds it."""
-        depth = self.dut.u_depth.u_pipeline
+        depth = self.top().u_system.u_depth.u_pipeline
         while True:
             await RisingEdge(depth.s_axis_tvalid)  # tuser may be high from power-up on
             await ReadOnly()
@@ -130,19 +134,21 @@ class Board:
         if not good:
             return []
         pixels = unpack([frame.pixels for frame in good]).reshape(-1, self.rows, self.columns, 3)
-        depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
         times = iter(self.starts)
         time_of = {index: next(times) for index, word in enumerate(taken.pixels) if word.user}
+        thresholds = [[self.setting(name, taken.writes, frame.last) for name in THRESHOLDS] for frame in good]
+        return self.records_of(pixels, thresholds, [time_of[frame.first] for frame in good])
+
+    def records_of(self, pixels: np.ndarray, thresholds: Any, times: Any) -> list[tuple[Any, bool]]:
+        """Return the record of each frame, and whether its light is on, from its thresholds and its time."""
+        depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
         events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
         found = []
-        for frame, codes in zip(good, depth, strict=True):
-            on, off = (self.setting(name, taken.writes, frame.last) for name in THRESHOLDS)
+        for codes, (on, off), time in zip(depth, thresholds, times, strict=True):
             settings = Settings(on, off, 1, 1)
             for place, code in enumerate(codes.flat):
                 row_end = place % self.columns == self.columns - 1
-                record = events.beat(
-                    int(code), place == 0, row_end, place == codes.size - 1, settings, time_of[frame.first]
-                )
+                record = events.beat(int(code), place == 0, row_end, place == codes.size - 1, settings, time)
             found.append((record.words, bool((codes > on).any())))  # type: ignore[union-attr]
         return found
 

@@ -3,6 +3,7 @@
 
 import contextlib
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,7 @@ import pytest
 
 from commands.common import repository
 from commands.common import simulator as simulation
-from commands.hardware import ecp5, fpga, synthesis, yosys
+from commands.hardware import crossing, ecp5, fpga, synthesis, yosys
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 
@@ -125,6 +126,12 @@ def test_only_registers_without_reset_are_packed() -> None:
         (["TARGET=ulx3s", "SEEDS=2,2"], "SEEDS=2,2"),
         (["TARGET=ulx3s", "GAPS=0.5"], "GAPS=0.5: unknown variable"),
         (["TARGET=ulx3s", "N=100"], "100"),
+        (["TARGET=ulx3s", "CLOCK_MHZ=90"], "CLOCK_MHZ=90: accepted are 25, 50, 75, 100, 150"),
+        (["TARGET=ulx3s", "SENSOR=ov7725"], "SENSOR=ov7725 goes with CAMERA=raw8"),
+        (["TARGET=ulx3s", "CAMERA=yuyv"], "CAMERA=yuyv: the board sets cameras to raw8"),
+        (["TARGET=ulx3s", "CAMERA=raw8", "SENSOR=ov2640"], "SENSOR=ov2640 is unknown: accepted are ov7670, ov7725"),
+        (["TARGET=ulx3s", "CAMERA=raw8", "SENSOR=ov5640"], "SENSOR=ov5640 sends pictures of 1280 x 960 pixels"),
+        (["TARGET=ulx3s", "GAIN_WIDTH=12", "REFERENCE=flat"], "gain_width=12 is out of range"),
         (["TARGET=ulx3s", "CALIBRATION=none.npz"], "none.npz"),
         (["TARGET=ulx3s", "REFERENCE=none.png"], "none.png"),
     ],
@@ -166,14 +173,84 @@ def test_what_does_not_fit_is_named() -> None:
     assert fpga.too_much(log) == ["DP16KD: 441 of 208, 233 too many"]
 
 
-def test_every_port_of_the_top_has_a_pin() -> None:
+@pytest.mark.parametrize("top", [fpga.BOARDS["ulx3s"].top, fpga.BOARDS["ulx3s"].camera_top])
+def test_every_port_of_the_top_has_a_pin_of_its_own(top: str) -> None:
     text = (repository.ROOT / "constraints" / "ulx3s.lpf").read_text()
-    top = (repository.ROOT / "boards" / "ulx3s" / "ulx3s.sv").read_text()
-    header = top[top.index(") (") : top.index(");")]
+    source = (repository.ROOT / "boards" / "ulx3s" / f"{top}.sv").read_text()
+    header = source[source.index(") (") : source.index(");")]
+    sites = []
     for line in header.splitlines()[1:]:
         words = line.strip().rstrip(",").split()
         low, high = sorted(map(int, words[2][1:-1].split(":"))) if len(words) == 4 else (None, None)
         names = [words[-1]] if low is None else [f"{words[-1]}[{place}]" for place in range(low, high + 1)]  # type: ignore[operator]
         for name in names:
-            assert f'LOCATE COMP "{name}"' in text
+            (site,) = re.findall(rf'LOCATE COMP "{re.escape(name)}" SITE "(\w+)"', text)
+            sites.append(site)
             assert f'IOBUF PORT "{name}"' in text
+    assert len(set(sites)) == len(sites)
+
+
+SYSTEM, CAMERA = "posedge $glbnet$u_clock.clk", "posedge $glbnet$camera_pclk$TRELLIS_IO_IN"
+
+
+def timing(delays: dict[str, float], event: str = CAMERA, end: str = SYSTEM) -> list[dict[str, Any]]:
+    """Return nets of nextpnr's report, one for each register that catches a bit."""
+    return [
+        {
+            "net": f"bit {number}",
+            "event": event,
+            "endpoints": [{"cell": cell, "port": "M", "event": end, "delay": [delay - 0.1, delay]}],
+        }
+        for number, (cell, delay) in enumerate(delays.items())
+    ]
+
+
+def test_the_longest_delay_of_a_pointer_bit() -> None:
+    """Bits of both pointers count, wires inside a clock and other words that cross do not."""
+    bit = "u_receive.u_fifo.{}_code_q_TRELLIS_FF_Q_{}"
+    nets = [
+        *timing({bit.format("written", n): 1.0 + n for n in range(3)}),
+        *timing({bit.format("fetched", n): 2.5 for n in range(3)}, SYSTEM, CAMERA),
+        *timing({"u_receive.u_fifo.written_code_q2_TRELLIS_FF_Q": 9.0}, SYSTEM, SYSTEM),
+        *timing({bit.format("written", 7): 9.0}, SYSTEM, SYSTEM),
+        *timing({"u_receive.u_fifo.read_data_TRELLIS_FF_Q": 9.0}),
+    ]
+    report = {"detailed_net_timings": nets, "fmax": {"a": {"constraint": 100.0}, "b": {"constraint": 60.0}}}
+    assert crossing.longest(report, bits=6) == 3.0
+    assert crossing.source_period(report) == 10.0
+    with pytest.raises(RuntimeError, match="nextpnr reports 6 bits of pointers between the clocks, the design has 10"):
+        crossing.longest(report, bits=10)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"bitstream_fmax_mhz": 99.9}, "the bitstream MISSES its clock: 99.9 of 100 MHz"),
+        ({"camera_fmax_mhz": 50.0}, "the bitstream MISSES the camera's clock: 50.0 of 60 MHz"),
+        ({"crossing_ns": 10.0}, "a bit takes 10.00 ns to cross between the clocks: a period is 10.00 ns"),
+    ],
+)
+def test_a_bitstream_that_misses_a_clock_says_so_in_its_name(changes: dict[str, float], message: str) -> None:
+    report = {"bitstream_fmax_mhz": 100.0, "clock_mhz": 100, "camera_fmax_mhz": 60.0, "camera_clock_mhz": 60.0}
+    report |= {"crossing_ns": 9.99, "crossing_limit_ns": 10.0}
+    assert not fpga.missed(report)
+    assert fpga.bitstream_name("ulx3s_camera", report) == "ulx3s_camera.bit"
+    assert fpga.missed(report | changes) == [message]
+    assert fpga.bitstream_name("ulx3s_camera", report | changes) == "ulx3s_camera-misses-its-clock.bit"
+    alone = {"bitstream_fmax_mhz": 108.8, "clock_mhz": 100}
+    assert not fpga.missed(alone)
+
+
+def test_the_pipelines_clock_is_not_the_cameras() -> None:
+    fmax = {CAMERA[8:]: {"constraint": 60.0, "achieved": 190.0}, SYSTEM[8:]: {"constraint": 50.0, "achieved": 101.0}}
+    step = {"type": "logic", "delay": 0.4, "from": {"cell": "lut", "port": "A"}}
+    paths = [{"from": CAMERA, "to": CAMERA, "path": [step] * 3}, {"from": SYSTEM, "to": SYSTEM, "path": [step]}]
+    report = {"fmax": fmax, "critical_paths": [*paths, {"from": CAMERA, "to": SYSTEM, "path": [step] * 4}]}
+    assert fpga.clock_of(report)["achieved"] == 101.0
+    assert fpga.longest_path(report) == ["0.40 ns logic lut.A"]
+
+
+def test_the_clocks_are_those_of_the_boards_module() -> None:
+    source = (repository.ROOT / "boards" / "ulx3s" / "ulx3s_clock.sv").read_text()
+    for name, value in (("OscillatorMhz", fpga.OSCILLATOR_MHZ), ("VcoMhz", fpga.DIVIDED_MHZ)):
+        assert f"localparam int {name} = {value};" in source

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// ulx3s_system: what the tops of the ULX3S share: serial line, reset and tactile_depth.
+//
+//   ftdi_txd -> uart_receive -> serial_link -> tactile_depth -> serial_link -> uart_transmit -> ftdi_rxd
+//
+// Packets: serial_link.sv. With Camera 0 frames come from the serial line; with Camera 1 they come on s_axis, and those
+// on the line are dropped. Depth leaves the pipeline at full rate and is not sent; its record is. recorded changes with
+// every record. tactile_depth_ulx3s is a wrapper; `make fpga` writes it for a configuration. Threshold is a depth code.
+// Model: models/tactile_depth/boards/serial_link.py around models/tactile_depth/tactile_depth.py.
+
+`default_nettype none
+
+module ulx3s_system
+  import register_map_pkg::*;
+#(
+  parameter int ClockMhz  = 100,      // of clk
+  parameter int Baud      = 3000000,
+  parameter int Threshold = 65536,    // written to both thresholds after a reset
+  parameter int Rows      = 128,      // of the wrapper
+  parameter int Size      = 128,
+  parameter int DataWidth = 24,
+  parameter int Lanes     = 1,
+  parameter int Camera    = 0
+) (
+  input  wire         clk,
+  input  wire         ready,          // the clock is locked, no button is pressed; from elsewhere
+  output logic        rst,
+  input  wire         ftdi_txd,
+  output logic        ftdi_rxd,
+  input  wire  [23:0] s_axis_tdata,
+  input  wire         s_axis_tvalid,
+  output logic        s_axis_tready,
+  input  wire         s_axis_tlast,
+  input  wire         s_axis_tuser,
+  output logic        contact,
+  output logic        recorded,
+  output logic        irq
+);
+
+  localparam int Divider = (ClockMhz * 1000000 + Baud / 2) / Baud;
+  localparam int DepthBits = 8 * Lanes * ((DataWidth + 7) / 8);
+
+  logic [3:0] resetting;
+  assign rst = resetting[3];
+  always_ff @(posedge clk) resetting <= {resetting[2:0], ~ready};
+
+  logic byte_valid, broken, reply_valid, reply_ready;
+  logic [7:0] byte_data, reply_data;
+  uart_receive #(.Divider(Divider)) u_receive (
+    .clk, .rst, .line(ftdi_txd), .out_valid(byte_valid), .out_data(byte_data), .broken
+  );
+  uart_transmit #(.Divider(Divider)) u_transmit (
+    .clk, .rst, .in_valid(reply_valid), .in_ready(reply_ready), .in_data(reply_data), .line(ftdi_rxd)
+  );
+
+  logic [23:0] sent_tdata, pixel_tdata;
+  logic sent_tvalid, sent_tready, sent_tlast, sent_tuser, pixel_tvalid, pixel_tready, pixel_tlast, pixel_tuser;
+  if (Camera != 0) begin : g_camera
+    assign {pixel_tdata, pixel_tvalid, pixel_tlast, pixel_tuser} =
+      {s_axis_tdata, s_axis_tvalid, s_axis_tlast, s_axis_tuser};
+    assign s_axis_tready = pixel_tready;
+    assign sent_tready = 1'b1;
+    logic unused_sent;
+    assign unused_sent = ^{sent_tdata, sent_tvalid, sent_tlast, sent_tuser};
+  end else begin : g_serial
+    assign {pixel_tdata, pixel_tvalid, pixel_tlast, pixel_tuser} = {sent_tdata, sent_tvalid, sent_tlast, sent_tuser};
+    assign sent_tready = pixel_tready;
+    assign s_axis_tready = 1'b0;
+    logic unused_camera;
+    assign unused_camera = ^{s_axis_tdata, s_axis_tvalid, s_axis_tlast, s_axis_tuser};
+  end
+  logic [31:0] event_tdata;
+  logic event_tvalid, event_tready, event_tlast;
+  logic [AddressWidth-1:0] awaddr, araddr;
+  assign araddr = '0;  // nothing is read
+  logic [31:0] wdata;
+  logic awvalid, awready, wvalid, wready;
+  serial_link #(.Rows(Rows), .Columns(Size), .Divider(Divider)) u_link (
+    .clk, .rst, .threshold(Threshold),
+    .in_valid(byte_valid), .in_data(byte_data), .in_broken(broken),
+    .out_valid(reply_valid), .out_ready(reply_ready), .out_data(reply_data),
+    .m_axis_tdata(sent_tdata), .m_axis_tvalid(sent_tvalid), .m_axis_tready(sent_tready), .m_axis_tlast(sent_tlast),
+    .m_axis_tuser(sent_tuser),
+    .s_event_tdata(event_tdata), .s_event_tvalid(event_tvalid), .s_event_tready(event_tready),
+    .s_event_tlast(event_tlast),
+    .m_axil_awaddr(awaddr), .m_axil_awvalid(awvalid), .m_axil_awready(awready),
+    .m_axil_wdata(wdata), .m_axil_wvalid(wvalid), .m_axil_wready(wready)
+  );
+
+  logic [DepthBits-1:0] depth_tdata;
+  logic depth_tvalid, depth_tlast, depth_tuser;
+  logic [1:0] bresp, rresp;
+  logic bvalid, arready, rvalid;
+  logic [31:0] rdata;
+  tactile_depth_ulx3s u_depth (
+    .clk, .rst, .cold_rst(1'b0),
+    .s_axis_tdata(pixel_tdata), .s_axis_tvalid(pixel_tvalid), .s_axis_tready(pixel_tready),
+    .s_axis_tlast(pixel_tlast), .s_axis_tuser(pixel_tuser),
+    .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
+    .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
+    .contact, .irq,
+    .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
+    .m_event_tlast(event_tlast),
+    .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
+    .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
+    .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
+    .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
+    .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1)
+  );
+
+  always_ff @(posedge clk) begin
+    if (event_tvalid && event_tready && event_tlast) recorded <= ~recorded;
+    if (rst) recorded <= 1'b0;
+  end
+
+  logic unused_outputs;
+  assign unused_outputs = ^{depth_tdata, depth_tvalid, depth_tlast, depth_tuser, bresp, bvalid, arready, rdata,
+    rresp, rvalid};
+
+endmodule
+
+`default_nettype wire
