@@ -240,7 +240,7 @@ def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) ->
 
 def clock_of(report: dict[str, Any]) -> dict[str, float]:
     """Return the constraint of the pipeline's clock and the clock reached, in MHz."""
-    return report["fmax"][pipeline_clock(report)]  # type: ignore[no-any-return]
+    return report["fmax"][pipeline_clock(report)]
 
 
 def pipeline_clock(report: dict[str, Any]) -> str:
