@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calibrations: the built-in ones, files, and errors for bad files."""
 
+import errno
 import io
+import os
 import zipfile
 from dataclasses import fields
 from pathlib import Path
@@ -282,10 +284,23 @@ def test_a_calibration_without_a_camera_is_not_saved(tmp_path: Path) -> None:
         synthetic().save(tmp_path / "copy.npz")
 
 
+def test_a_full_disk_is_told_and_leaves_the_earlier_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    (tmp_path / "copy.npz").write_text("earlier")
+    monkeypatch.setattr(np, "savez_compressed", full)
+    with pytest.raises(OSError, match="No space left on device"):
+        load("gelsight-mini").save(tmp_path / "copy.npz")
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["earlier"]
+
+
 def test_a_path_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match=r"file/copy\.npz: .*/file is a file"):
         load("gelsight-mini").save(tmp_path / "file" / "copy.npz")
+    with pytest.raises(InputError, match=r"cannot be written \(File name too long\)"):
+        load("gelsight-mini").save(tmp_path / f"{'x' * 300}.npz")
     with pytest.raises(InputError, match=r"give the name of an \.npz file"):
         load("gelsight-mini").save(tmp_path / "copy.npy")
     with pytest.raises(InputError, match=r"cannot be written \(a character that no path can hold\)"):

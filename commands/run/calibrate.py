@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -24,6 +23,7 @@ from tqdm import tqdm
 from commands.common import repository, variables
 from commands.common.run_request import camera_choice
 from commands.run import draw
+from tactile_depth import files
 from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
 from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.errors import InputError
@@ -99,10 +99,21 @@ def data_folder() -> Path:
 
 
 def run(request: Request) -> int:
-    """Fit, print the table, write the calibration and its picture."""
+    """Fit, print the table, write the calibration and its picture together."""
     folder = data_folder() if request.presses is None else request.presses
     out = request.out or repository.ROOT / "build" / "calibrate" / f"{folder.resolve().name}.npz"
-    check_writable(out)
+    names = (out.name, out.with_suffix(".png").name)
+    with files.workspace(out.parent, names, str(out)) as work:  # refused before the fit, which takes half a minute
+        fit = fit_folder(request, folder, out, work)
+        files.replace(work, names, out.parent)
+    kibibytes = out.stat().st_size / 1024
+    print(f"the better model is {fit.sensor.model}: the default in {os.path.relpath(out)} ({kibibytes:.1f} KiB)")
+    print(f"picture: {os.path.relpath(out.with_suffix('.png'))}")
+    return 0
+
+
+def fit_folder(request: Request, folder: Path, out: Path, work: Path) -> Fit:
+    """Fit to the presses of a folder, print the table, and write both files of `out` into `work`."""
     pictures = gather(folder)
     pitch_mm = camera_pitch_mm(pictures, request.pitch_mm)
     presses = to_grid(pictures, pitch_mm, request.find_circles, compare_circles=True, choice=request.camera)
@@ -118,28 +129,9 @@ def run(request: Request) -> int:
         progress=_progress,
     )
     print(report(fit, presses, request.each_in_turn))
-    fit.sensor.save(out)
-    picture = out.with_suffix(".png")
-    try:
-        draw_presses(picture, fit, presses)
-    except OSError as error:
-        raise InputError(f"{picture} cannot be written ({error.strerror})") from error
-    kibibytes = out.stat().st_size / 1024
-    print(f"the better model is {fit.sensor.model}: the default in {os.path.relpath(out)} ({kibibytes:.1f} KiB)")
-    print(f"picture: {os.path.relpath(picture)}")
-    return 0
-
-
-def check_writable(out: Path) -> None:
-    """Raise InputError where a file cannot be written: before the fit, which takes half a minute."""
-    try:
-        if out.is_dir():
-            raise IsADirectoryError(0, "it is a folder")
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=out.parent):
-            pass
-    except OSError as error:
-        raise InputError(f"OUT={out} cannot be written ({error.strerror}): give a file in a folder that can") from error
+    fit.sensor.save(work / out.name)
+    draw_presses(work / out.with_suffix(".png").name, fit, presses)
+    return fit
 
 
 def report(fit: Fit, presses: GridPresses, each_in_turn: bool) -> str:

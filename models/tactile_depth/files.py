@@ -21,8 +21,13 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 SHORT_WRITE = " requested and "  # of numpy, whose error has no number: "4096 requested and 512 written"
 
 
-def make(folder: Path, files: Iterable[str] = ()) -> list[Path]:
+def make(folder: Path, files: Iterable[str] = (), path: str = "") -> list[Path]:
     """Make a folder and check that `files` can be written there.
+
+    Parameters
+    ----------
+    path : str
+        Path that errors name, if the user gave another one than that of the folder.
 
     Returns
     -------
@@ -35,18 +40,22 @@ def make(folder: Path, files: Iterable[str] = ()) -> list[Path]:
     OSError
         The machine failed, with a full disk for example.
     """
+    given, names = path or str(folder), tuple(files)
     try:
         for part in (folder, *folder.parents):
             if part.is_symlink() and not part.exists():
-                link = "" if part == folder else f": {part}"
+                link = "" if str(part) == given else f": {part}"
                 raise InputError(
-                    f"folder={folder}{link} is a link to {os.readlink(part)}, which does not exist: give a folder"
+                    f"folder={given}{link} is a link to {os.readlink(part)}, which does not exist: give a folder"
                 )
         if folder.exists() and not folder.is_dir():
-            raise InputError(f"folder={folder} is a file: give a folder")
+            raise InputError(f"folder={given}{f': {folder}' if path else ''} is a file: give a folder")
         missing = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
-        refuse_folders(folder, files)
+        refuse_folders(folder, names, path)
+        for name in names:
+            with contextlib.suppress(FileNotFoundError):
+                os.lstat(folder / name)  # refuses a name that no file can have
         with tempfile.TemporaryFile(dir=folder):
             return missing
     except InputError:
@@ -55,18 +64,21 @@ def make(folder: Path, files: Iterable[str] = ()) -> list[Path]:
         if isinstance(error, OSError) and error.errno in OF_THE_MACHINE:
             raise
         reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
-        raise InputError(f"folder={folder} cannot be written ({reason}): give a folder that can") from error
+        raise InputError(f"folder={given} cannot be written ({reason}): give a folder that can") from error
 
 
-def refuse_folders(folder: Path, files: Iterable[str]) -> None:
+def refuse_folders(folder: Path, files: Iterable[str], path: str = "") -> None:
     """Raise InputError if one of `files`, which are to be written, is a folder there: replacing it would lose it."""
     for name in files:
         if (folder / name).is_dir():
-            raise InputError(f"folder={folder} cannot be written ({name} in it is a folder): remove it or give another")
+            place = "" if path else " in it"
+            raise InputError(
+                f"folder={path or folder} cannot be written ({name}{place} is a folder): remove it or give another"
+            )
 
 
 @contextmanager
-def workspace(folder: Path, files: Iterable[str] = ()) -> Iterator[Path]:
+def workspace(folder: Path, files: Iterable[str] = (), path: str = "") -> Iterator[Path]:
     """Make a folder and yield an empty one inside it, which is removed at the end, however that comes about.
 
     Folders that were missing are removed too when they stay empty.
@@ -76,7 +88,7 @@ def workspace(folder: Path, files: Iterable[str] = ()) -> Iterator[Path]:
     InputError, OSError
         As `make` does.
     """
-    missing = make(folder, files)
+    missing = make(folder, files, path)
     work = None
     try:
         work = Path(tempfile.mkdtemp(prefix=".work-", dir=folder)).resolve()
@@ -84,9 +96,9 @@ def workspace(folder: Path, files: Iterable[str] = ()) -> Iterator[Path]:
     finally:
         if work is not None:
             shutil.rmtree(work, ignore_errors=True)
-        for path in missing:
+        for created in missing:
             with contextlib.suppress(OSError):
-                path.rmdir()
+                created.rmdir()
 
 
 def replace(work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = ()) -> None:

@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -14,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactile_depth import files
 from tactile_depth.camera_configuration import FORMATS
 from tactile_depth.configuration import GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
 from tactile_depth.errors import InputError, InputWarning, is_number
@@ -339,7 +338,9 @@ class Sensor:
         Raises
         ------
         InputError
-            The sensor has no camera, or the file cannot be written.
+            The sensor has no camera, or the path cannot be written.
+        OSError
+            The machine failed, with a full disk for example.
         """
         if not isinstance(path, str | Path):
             raise InputError(f"path is a {type(path).__name__}: accepted is the path of an .npz file")
@@ -367,19 +368,10 @@ class Sensor:
             arrays[f"fitted_slope_{model}"] = slope
         for model, error in self.height_errors.items():
             arrays[f"cap_height_{model}"] = np.array((error.mean, error.spread, error.presses))
-        unfinished = None
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
-                unfinished = file.name
-                np.savez_compressed(file, **{key: value for key, value in arrays.items() if value is not None})
-            Path(unfinished).chmod(0o644)
-            os.replace(unfinished, path)
-        except (OSError, ValueError) as error:
-            if unfinished:
-                Path(unfinished).unlink(missing_ok=True)
-            reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
-            raise InputError(f"{path} cannot be written ({reason}): give a path that can") from error
+        with files.workspace(path.parent, (path.name,), str(path)) as work:
+            held = {key: value for key, value in arrays.items() if value is not None}
+            np.savez_compressed(work / path.name, **held)
+            files.replace(work, (path.name,), path.parent)
 
 
 def lighting(picture: np.ndarray) -> np.ndarray:

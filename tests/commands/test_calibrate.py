@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """make calibrate: its files, its output, and errors for bad variables. test_fitting.py tests the fit."""
 
+import errno
+import os
 import re
 import shutil
 import subprocess
@@ -11,7 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from commands.common import repository
+from commands.common import repository, variables
+from commands.run import draw
 from commands.run.calibrate import parse, run
 from tactile_depth.errors import InputError
 from tactile_depth.fitting import fit_presses
@@ -117,11 +120,49 @@ def test_a_folder_that_is_missing_says_how_to_get_one(tmp_path: Path, monkeypatc
     assert "rpl-cmu/gelslam" in refused()
 
 
-@pytest.mark.parametrize("out", ["file/mine.npz", "folder.npz"])
-def test_a_result_that_cannot_be_written_is_named_before_the_fit(tmp_path: Path, out: Any) -> None:
+@pytest.mark.parametrize(
+    ("out", "reason"),
+    [
+        ("file/mine.npz", "/file is a file"),
+        ("file/below/mine.npz", "cannot be written (Not a directory)"),
+        ("folder.npz", "cannot be written (folder.npz is a folder)"),
+        ("drawn.npz", "cannot be written (drawn.png is a folder)"),
+        (f"{'x' * 300}.npz", "cannot be written (File name too long)"),
+        ("link/mine.npz", "/link is a link to"),
+    ],
+)
+def test_a_result_that_cannot_be_written_is_named_before_the_fit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], out: Any, reason: str
+) -> None:
     (tmp_path / "file").write_text("")
     (tmp_path / "folder.npz").mkdir()
-    assert f"OUT={tmp_path / out} cannot be written" in refused(f"PRESSES={tmp_path}", f"OUT={tmp_path / out}")
+    (tmp_path / "drawn.png").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises(SystemExit) as ended, variables.reported("calibrate"):
+        run(parse([f"PRESSES={tmp_path}", f"OUT={tmp_path / out}"]))
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"make calibrate: OUT={tmp_path / out}")
+    assert reason in line
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_full_disk_leaves_earlier_results(
+    made: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.npz").write_text("earlier")
+
+    def full(*_: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "mine.png")
+
+    monkeypatch.setattr(draw, "draw_presses", full)
+    with pytest.raises(SystemExit) as ended, variables.reported("calibrate"):
+        run(parse([f"PRESSES={made}", "GRADIENT=quadratic", f"OUT={tmp_path / 'mine.npz'}"]))
+    assert ended.value.code == 3
+    assert "mine.png: No space left on device: free disk space" in capsys.readouterr().err
+    assert (tmp_path / "mine.npz").read_text() == "earlier"
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.npz"]
 
 
 def test_bad_input_ends_with_status_2_and_one_line(tmp_path: Path) -> None:
