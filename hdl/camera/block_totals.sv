@@ -66,19 +66,20 @@ module block_totals #(
     end
   end
 
-  // Operands of the multipliers; products, beside what the block's earlier rows add up to; the total, beside what the
-  // memory takes: the total, or where the block ends the row's part in the next one.
+  // Operands of the multipliers, beside the memory's word; products, beside what the block's earlier rows add up to; the
+  // total, beside what the memory takes: the total, or where the block ends the row's part in the next one.
 
-  logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, first_q2, blue_q, blue_q2;
+  logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, blue_q, blue_q2;
   logic [ColumnWidth-1:0] column_q, column_q2, column_q3;
   logic [WeightWidth-1:0] weight_q;
   logic [Lanes*SumWidth-1:0] sums_q;
-  logic [3*TotalWidth-1:0] earlier, stored;
+  logic [3*TotalWidth-1:0] earlier, earlier_q, stored;
   always_ff @(posedge clk) begin
     if (en) begin
       {ends_q, ends_q2, ends_q3} <= {in_ends, ends_q, ends_q2};
       {complete_q, complete_q2, out_valid} <= {in_ends & ends_row, complete_q, complete_q2};
-      {first_q, first_q2} <= {in_first_row, first_q};
+      first_q <= in_first_row;
+      earlier_q <= first_q ? '0 : earlier;
       {blue_q, blue_q2} <= {in_blue_row, blue_q};
       {column_q, column_q2, column_q3} <= {column, column_q, column_q2};
       weight_q <= weight;
@@ -91,7 +92,7 @@ module block_totals #(
   end
   ram #(.Width(3 * TotalWidth), .Depth(Columns), .Style(Style)) u_line (
     .clk, .write_en(en & ends_q3), .write_address(column_q3), .write_data(stored),
-    .read_en(en & ends_q & ~first_q), .read_address(column_q), .read_data(earlier)
+    .read_en(en & in_ends & ~in_first_row), .read_address(column), .read_data(earlier)
   );
 
   logic [Lanes*TotalWidth-1:0] parts, wholes;
@@ -123,7 +124,7 @@ module block_totals #(
       assign part = parts[c/2*TotalWidth+:TotalWidth];
       assign whole = wholes[c/2*TotalWidth+:TotalWidth];
     end
-    assign total = (first_q2 ? '0 : earlier[c*TotalWidth+:TotalWidth]) + (counts ? part : '0);
+    assign total = earlier_q[c*TotalWidth+:TotalWidth] + (counts ? part : '0);
     always_ff @(posedge clk) begin
       if (en) begin
         out_totals[c*TotalWidth+:TotalWidth] <= total;
