@@ -4,6 +4,8 @@
 // Nothing is assumed of the master, the front end, the set-up or reset. axil_port is proven by itself: here the words
 // and responses that it is given are those of the specification, and its writes are what the registers obey.
 
+`default_nettype none
+
 module fv_camera_registers
   import camera_map_pkg::*;
   import register_map_pkg::AddressWidth;
@@ -156,3 +158,5 @@ module fv_camera_registers
   end
 
 endmodule
+
+`default_nettype wire
