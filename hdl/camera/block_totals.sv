@@ -66,8 +66,8 @@ module block_totals #(
     end
   end
 
-  // Operands of the multipliers, beside the word of the memory; products, beside what earlier rows of the block add up to;
-  // the total, beside what the memory takes: the total, or, as the block ends, the part of the row in the next one.
+  // Operands of the multipliers, beside the memory's word; products, beside the sums of the block's earlier rows; the
+  // total, beside what the memory takes: the total, or, as the block ends, the part of the row in the next one.
 
   logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, blue_q, blue_q2;
   logic [ColumnWidth-1:0] column_q, column_q2, column_q3;
