@@ -185,11 +185,13 @@ def run(
     mutants: Sequence[Mutant],
     folder: Path,
     simulator: str,
-    *,
     jobs: int,
     seed: int,
+    repeats: int = MANY,
 ) -> list[dict]:
     """The core's testbench on each mutant; a dict of each with its verdict, the device itself being number 0.
+
+    `repeats`: of what the testbench repeats (MANY of tb/stream.py).
 
     Raises RuntimeError: the netlist without a mutant fails, or the simulator does.
     """
@@ -216,7 +218,7 @@ def run(
         "OPENBLAS_NUM_THREADS": "1",
         "REGRESS": "1",
         "NETLIST": "1",
-        "MANY": str(MANY),
+        "MANY": str(repeats),
     }
     _, failed = simulation.run(
         core,

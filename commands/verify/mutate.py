@@ -52,6 +52,7 @@ class Core:
     # One after the other gets what the one before let live. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
+    repeats: int = mutants.MANY  # of what its testbench repeats; few where each repetition meets everything
     flat: bool = True  # else of its own cells and of the pins of the cores in it alone: those have runs of their own
 
 
@@ -90,15 +91,15 @@ CORES = {
     "floor_capture": Core((2, 5)),
     "thomas_table": Core(),
     "block_weights": Core((2, 3)),
-    "round_divide": Core((3,)),
+    "round_divide": Core((3,), repeats=2),
     "row_sums": Core((2, 3)),
     "block_totals": Core((1, 2)),
-    "area_average": Core((2, 4), flat=False),
-    "channel_gain": Core((1, 2)),
-    "pixel_format": Core((2, 3, 4)),
+    "area_average": Core((2, 4), repeats=2, flat=False),
+    "channel_gain": Core((1, 2), repeats=2),
+    "pixel_format": Core((2, 3, 4), repeats=2),
     "camera_setup": Core((1,), "after_reset"),
-    "camera_window": Core((1, 2)),
-    "camera_front_end": Core((1, 2), flat=False),
+    "camera_window": Core((1, 2), repeats=2),
+    "camera_front_end": Core((1, 2), repeats=2, flat=False),
     "camera_registers": Core((1,), "axil_registers", outside=("dropped", "lost"), flat=False),
     "row_reorder": Core((2,), "words"),
     "corner_turn": Core((2,)),
@@ -196,7 +197,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         lived, killed = made, []
         for simulator in core.simulators:
             with progress(f"{name}, {simulator}", len(lived) + 1, folder / f"{simulator}.jsonl"):
-                results = mutants.run(name, built, lived, folder, simulator, jobs=jobs, seed=seed)
+                results = mutants.run(name, built, lived, folder, simulator, jobs, seed, core.repeats)
             killed += [result["mutant"] for result in results if result["verdict"] == "killed"]
             lived = [mutant for mutant in lived if mutant.number not in killed]
             if not lived:
