@@ -199,8 +199,8 @@ class FunctionalCoverage:
                 self.hit("silence inside a frame", "given up")
                 self.quiet = 0
         # A whole frame is reported one cycle after its last pixel, so it may coincide with a fault of the next frame.
-        whole = structs.unpack("events_t", int(dut.events.value))["frame_in"]
-        ends = ["good"] * whole + ([fault] if fault else [])
+        frame_in = structs.unpack("events_t", int(dut.events.value))["frame_in"]
+        ends = ["good"] * frame_in + ([fault] if fault else [])
         for end in ends:
             self.frames.append(end)
             if len(self.frames) > 2 and self.frames[-2] != "good":

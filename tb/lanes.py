@@ -161,11 +161,11 @@ async def check_lanes(
     await bench.clocks(latency + 2 * size)
     source.forget_but(count * rows)
     sink.forget_but(count * rows)
-    seen = np.array(source.words).reshape(frames.shape)
-    np.testing.assert_array_equal(seen, frames, "the driver sent other words than the test gave it")
+    sent = np.array(source.words).reshape(frames.shape)
+    np.testing.assert_array_equal(sent, frames, "the driver sent other words than the test gave it")
     clipped = Monitor()
     fields = lanes if isinstance(sink, BeatMonitor) else 1
-    expected = model(seen, clipped).reshape(-1, fields)
+    expected = model(sent, clipped).reshape(-1, fields)
     check_words(np.array(sink.words).reshape(-1, fields), expected, size // fields, rows)
     check_frame_starts((source, sink), rows)
     measured = {after - before for before, after in zip(source.starts, sink.starts, strict=True)}

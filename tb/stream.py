@@ -340,10 +340,10 @@ async def check_bursts(
         await driver.send(burst.tolist())
     await bench.clocks(1)
     source.forget_but(len(bursts))
-    seen = np.array(source.words).reshape(bursts.shape)
-    np.testing.assert_array_equal(seen, bursts, "the driver sent other words than the test gave it")
+    words_in = np.array(source.words).reshape(bursts.shape)
+    np.testing.assert_array_equal(words_in, bursts, "the driver sent other words than the test gave it")
     clipped = Monitor()
-    expected = model(seen, clipped).reshape(-1, len(out_fields))
+    expected = model(words_in, clipped).reshape(-1, len(out_fields))
     await bench.clocks((latency or len(expected)) + 2 * size + settle)
     if strays:
         sink.forget_but(len(expected) // size)
@@ -401,7 +401,7 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
     await RisingEdge(dut.clk)
     if hasattr(dut, "rst"):
         dut.rst.value = 0
-    seen: Any = {pin: [] for pin in (*stimuli[0], *outputs)}
+    pin_values: Any = {pin: [] for pin in (*stimuli[0], *outputs)}
     for clock in stimuli:
         for pin, value in clock.items():
             getattr(dut, pin).value = int(value)
@@ -411,6 +411,6 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
             if has_en:
                 dut.en.value = int(not paused)
             await RisingEdge(dut.clk)
-        for pin, values in seen.items():
+        for pin, values in pin_values.items():
             values.append(getattr(dut, pin).value)
-    return seen
+    return pin_values

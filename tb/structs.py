@@ -25,14 +25,14 @@ def members(name: str) -> dict[str, tuple[int, int]]:
         The package has no such struct.
     """
     structs = {struct: MEMBER.findall(body) for body, struct in STRUCT.findall(SOURCE.read_text())}
-    found: dict[str, tuple[int, int]] = {}
+    places: dict[str, tuple[int, int]] = {}
     low = 0
     for kind, top, member in reversed(structs[name]):
         inner = members(kind) if kind in structs else {}
         width = sum(bits for _, bits in inner.values()) if inner else int(top or 0) + 1
-        found |= {part: (low + place, bits) for part, (place, bits) in inner.items()} or {member: (low, width)}
+        places |= {part: (low + place, bits) for part, (place, bits) in inner.items()} or {member: (low, width)}
         low += width
-    return found
+    return places
 
 
 def pack(name: str, values: Mapping[str, int]) -> int:
@@ -68,5 +68,5 @@ def of(handle: Any, name: str) -> dict[str, int | None]:
     if value.is_resolvable:
         return {**unpack(name, int(value))}
     bits = str(value)[::-1]
-    found = {member: bits[low : low + width][::-1] for member, (low, width) in members(name).items()}
-    return {member: int(word, 2) if set(word) <= {"0", "1"} else None for member, word in found.items()}
+    words = {member: bits[low : low + width][::-1] for member, (low, width) in members(name).items()}
+    return {member: int(word, 2) if set(word) <= {"0", "1"} else None for member, word in words.items()}

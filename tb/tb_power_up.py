@@ -13,7 +13,7 @@ from tb.stream import CLOCK_NS
 
 
 @cocotb.test()
-async def seen(dut: Any) -> None:
+async def state(dut: Any) -> None:
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     words = []
     for address in range(16):

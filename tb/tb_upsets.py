@@ -62,7 +62,7 @@ def registers_of(module: str) -> set[str]:
 
 def places(dut: Any) -> list[Place]:
     """Return every register and every word of memory, without ROMs and objects that exist in simulation only."""
-    found: list[Place] = []
+    places_of_module: list[Place] = []
 
     def visit(scope: Any, module: str, owner: str) -> None:
         registers = registers_of(module)
@@ -83,10 +83,10 @@ def places(dut: Any) -> list[Place]:
             elif name in registers or name == "words":
                 memory = isinstance(child, ArrayObject)
                 for element in child if memory else [child]:
-                    found.append(Place(owner, child._path, element, memory))
+                    places_of_module.append(Place(owner, child._path, element, memory))
 
     visit(dut, "tactile_depth", "tactile_depth")
-    return found
+    return places_of_module
 
 
 class Device:
@@ -195,14 +195,14 @@ async def upsets(dut: Any) -> None:
     by_module: dict[str, list[Place]] = {}
     for place in places(dut):
         by_module.setdefault(place.module + " memory" * place.memory, []).append(place)
-    dut._log.info("%s", {module: len(found) for module, found in by_module.items()})
+    dut._log.info("%s", {module: len(places_of_module) for module, places_of_module in by_module.items()})
     assert len(by_module) > 20, "the registers were not found"
     results: list[Any] = []
     first = FLIPPED_IN * device.pixels
-    for name, found in sorted(by_module.items()):
+    for name, places_of_module in sorted(by_module.items()):
         wanted = len(results) + int(os.environ["UPSETS"])
         while len(results) < wanted:
-            place = rng.choice(found)
+            place = rng.choice(places_of_module)
             bit = rng.randrange(len(place.handle))
             at = first + rng.randrange(device.pixels + device.latency)
             stall = rng.choice((0.0, 0.25))

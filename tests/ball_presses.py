@@ -94,4 +94,4 @@ def real_folder() -> Path:
     try:
         return data_folder()
     except InputError as error:
-        pytest.skip(f"the real ball presses are absent: {error}")
+        pytest.skip(f"TACTILE_DATA names no folder with gelslam/: {error}")

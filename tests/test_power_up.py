@@ -15,7 +15,7 @@ def test_what_is_not_reset(simulator: str, tmp_path: Path) -> None:
     files = [*repository.sources("ram"), repository.ROOT / "tb" / "power_up.sv"]
     simulation.build(simulator, "power_up", files, {}, tmp_path, log=tmp_path / "build.log")
 
-    def seen(power_up: Any) -> Any:
+    def state(power_up: Any) -> Any:
         count, failed = simulation.run(
             "power_up",
             "tb.tb_power_up",
@@ -30,9 +30,9 @@ def test_what_is_not_reset(simulator: str, tmp_path: Path) -> None:
         return tuple(json.loads((tmp_path / "seen.json").read_text()))
 
     if simulator == "icarus":
-        assert all(set(value) == {"X"} for value in seen(1))
+        assert all(set(value) == {"X"} for value in state(1))
         return
-    values = [seen(power_up) for power_up in SEEDS]
-    assert seen(SEEDS[0]) == values[0], "the seed does not determine the state"
+    values = [state(power_up) for power_up in SEEDS]
+    assert state(SEEDS[0]) == values[0], "the seed does not determine the state"
     for place in range(17):  # within a memory Verilator gives all words the same value
         assert len({held[place] for held in values}) == len(SEEDS), "a register or a word came up the same"

@@ -93,7 +93,7 @@ def environment(folder: Path, wheel: Any) -> Any:
         ended = subprocess.run(install, capture_output=True, text=True, env=without_sources())
         output = ended.stdout + ended.stderr
         if ended.returncode and any(reason in output for reason in UNREACHABLE):
-            pytest.skip(f"pip reaches no registry for numpy, scipy and Pillow: {output.splitlines()[-1]}")
+            pytest.skip(f"a registry with numpy, scipy and Pillow is missing for pip: {output.splitlines()[-1]}")
         assert ended.returncode == 0, output
         complete.touch()
     return python

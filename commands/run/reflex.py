@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make reflex`: contact to command and to motion, near the sensor with the RTL in the loop, and through a host.
+"""`make reflex`: delays from contact to command and to motion, near the sensor with the RTL in the loop, and through a
+host.
 
-A pin is pressed into the gel at a set speed, at a moment that is uniform against the camera's frame clock. The frames
-that the sensor makes of it go through the RTL at the camera's timing, and the clock in which the pin `contact` rises is
-the command. The host path is a USB camera and the same reconstruction in software, timed on this machine as it runs.
-Every delay is a `Delay`: a distribution and where it comes from. docs/reflex.md tells what comes of it.
+A pin is pressed into the gel at a set speed, at a time that is uniform relative to the camera's frame clock. The frames
+of the sensor go through the RTL at the timing of the camera. The command is the cycle in which the pin `contact` rises.
+The host path is a USB camera and the same reconstruction in software, timed on this machine. Every delay is a `Delay`:
+a distribution with its source. docs/reflex.md explains the results.
 
 Takes N, CLOCK_MHZ, SPEED (mm/s), TRIALS, HOST_TRIALS, SEED, SIM and OUT as KEY=VALUE arguments. Exit
-status: 0 done, 1 the RTL is not as it must be, 2 bad input.
+status: 0 done, 1 the RTL is wrong, 2 bad input.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ from tactile_depth.tactile_depth import tactile_depth
 
 RESULTS = ("reflex.json", "reflex.png")
 DEFAULT_OUT = repository.ROOT / "build" / "reflex"
-DECIDING_CLOCKS = 1  # from the deciding depth's leaving to `contact`
+DECIDING_CLOCKS = 1  # cycles from the deciding depth on m_axis to `contact`
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default. Raises InputError."""
+    """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
     accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "OUT")
     values = variables.given(arguments, accepted)
     number = partial(variables.number, values)
@@ -78,7 +79,7 @@ def parse(arguments: Sequence[str]) -> Request:
 
 @dataclass(frozen=True)
 class Sent:
-    """A frame on its way to the RTL. `slow`: at the camera's timing."""
+    """Frame to send to the RTL; a `slow` frame is sent at the timing of the camera."""
 
     trial: int
     frame: int
@@ -86,10 +87,10 @@ class Sent:
 
 
 def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
-    """The frames of a trial: one from before the contact, then all until the pin is well beyond the threshold.
+    """Return the frames of a trial: one before the contact, then all until the pin is well beyond the threshold.
 
-    Those less than half as deep as the threshold cannot decide and come without gaps, to be done with them; if one
-    did decide, the run would fail.
+    Frames of less than half the threshold cannot decide and are sent without gaps, which saves time. If such a frame
+    decided, the run would fail.
     """
     phase = draws.phase[trial]
     for frame in itertools.count(-1):
@@ -101,19 +102,19 @@ def sequence(setup: Setup, draws: Draws, trial: int) -> Iterator[Sent]:
 
 @dataclass(frozen=True)
 class Decision:
-    """Decision of one trial at the pins, in clocks."""
+    """Decision of one trial at the pins, in cycles."""
 
-    frame: int  # the first after which `contact` rose; 0 is the first whose exposure ended after the contact
+    frame: int  # frame after which `contact` rose; 0 is the first whose exposure ended after the contact
     first_pixel_to_contact: int
     last_pixel_to_contact: int
     last_pixel_to_first_depth: int
-    place: int  # depths of the frame that left before the deciding one
+    place: int  # depths of the frame before the deciding one
     deciding_to_contact: int
 
 
 @dataclass(frozen=True)
 class Loop:
-    """The trials of one solver through the RTL."""
+    """Trials of one solver through the RTL."""
 
     config: Configuration
     sent: list[Sent]
@@ -124,7 +125,7 @@ class Loop:
 
 
 def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return the entries for the bench and the smallest number of clocks they take."""
+    """Return the entries for the bench and the smallest number of cycles that they take."""
     gap, period = model.spacing(request)
     parts: list[np.ndarray] = []
     clocks = 0
@@ -140,7 +141,7 @@ def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple
 
 
 def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration) -> tuple[list[Decision], list[str]]:
-    """The first contact of each trial from what the bench wrote down, and what is not as it must be."""
+    """Return the first contact of each trial in the recording of the bench, and a line for each fault."""
     taken, out = played.clocks("t"), played.clocks("d")
     deciding: dict[int, int] = {}
     contact: dict[int, int] = {}
@@ -177,7 +178,7 @@ def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration)
 
 
 def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
-    """The trials through the RTL of both solvers, at the same time."""
+    """Run the trials through the RTL of both solvers at the same time."""
     sent = [one for trial in range(request.trials) for one in sequence(setup, draws, trial)]
     pixels = np.stack(
         [
@@ -258,7 +259,7 @@ def measure(request: Request) -> dict[str, Any]:
     bases: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
     for one in loops:
         frames = np.array([decision.frame for decision in one.decisions])
-        # The clock counted from the first pixel on says all; `times` has its read-out apart.
+        # The cycles count from the first pixel; `times` counts the read-out separately.
         pipeline = np.array([d.first_pixel_to_contact for d in one.decisions]) / clocks_per_ms - read_out
         bases[one.config.solver] = (frames, pipeline, none)
         near_times[one.config.solver] = model.times(near, near_draws, *bases[one.config.solver])
@@ -309,7 +310,8 @@ def measure(request: Request) -> dict[str, Any]:
 
 
 def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
-    """Position of the deciding depth in the frame that leaves, and the gain from the earlier of the two starts."""
+    """Return the position of the deciding depth in its frame, and the time that the earlier of the two solvers
+    saves."""
     rows: dict[str, Any] = {}
     for one in loops:
         rows[one.config.solver] = {
@@ -339,7 +341,8 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
     clock = setup.frame / math.sqrt(12)
 
     def approach(other: float) -> float | None:
-        """mm/s for which growing to the threshold takes so many ms; None: none is quick enough."""
+        """Return the speed in mm/s at which the indentation reaches the threshold in `growth` ms; None if none is fast
+        enough."""
         return setup.speed * growth / other if other > 0 else None
 
     return {

@@ -19,10 +19,10 @@ from tactile_depth import reference
 from tactile_depth.scenes import Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load
 
-PIN = "ball"  # its round tip, of models/tactile_depth/scenes.py
-STOP_MM = 1.0  # the press ends so deep
+PIN = "ball"  # radius of its round tip, as in models/tactile_depth/scenes.py
+STOP_MM = 1.0  # depth at the end of the press
 
-# What the delays are made of.
+# Components of the delays.
 FRAME_MS = {"near": 1000 / 400, "host": 1000 / 25}
 SPEED_MM_S = 20.0
 EXPOSURE = 0.5  # of the frame time
@@ -36,7 +36,7 @@ SCALES = (0.5, 2.0)  # of the sensitivity table
 
 @dataclass(frozen=True)
 class Delay:
-    """One row of the table of delays: what the simulation takes from where."""
+    """Row of the table of delays: path, name, distribution and source."""
 
     path: str
     name: str
@@ -51,21 +51,21 @@ class Setup:
     speed: float  # mm/s
     threshold: float  # mm
     frame: float  # from one exposure to the next
-    exposure: float  # share of the frame time, at its end
-    read_out: float = 0.0  # share of the frame time from the end of the exposure to the last pixel
+    exposure: float  # fraction of the frame time, at its end
+    read_out: float = 0.0  # fraction of the frame time from the end of the exposure to the last pixel
     transfer: float = 0.0  # of a link, in place of the read-out
-    waiting: float = 1.0  # this and the next two scale what is drawn or measured in each trial
+    waiting: float = 1.0  # this and the next two scale the values drawn or measured in each trial
     compute: float = 1.0
     wake_up: float = 1.0
     servo: float = SERVO_MS
     servo_spread: float = SERVO_SPREAD_MS
 
     def exposed(self, phase: float, frame: int) -> float:
-        """End of the exposure of a frame, ms after the contact; frame 0 is the first that ends after it."""
+        """Return the end of the exposure of a frame, ms after the contact; frame 0 is the first that ends after it."""
         return (phase + frame) * self.frame
 
     def middle(self, phase: float, frame: int) -> float:
-        """The middle of its exposure: what a picture of a steady press shows."""
+        """Return the middle of the exposure of a frame, whose depth a picture of a steady press shows."""
         return self.exposed(phase, frame) - self.exposure * self.frame / 2
 
     def depth(self, phase: float, frame: int) -> float:
@@ -77,7 +77,7 @@ class Setup:
 class Draws:
     """Random draws for the trials of a path, one entry per trial."""
 
-    phase: np.ndarray  # share of a frame time from the contact to the end of the exposure
+    phase: np.ndarray  # fraction of a frame time from the contact to the end of the exposure
     waiting: np.ndarray  # finished frames that wait in the driver before this one
     servo: np.ndarray  # standard normal
     noise: np.ndarray  # seeds of the camera's noise
@@ -95,7 +95,7 @@ def draw(trials: int, seed: int, path: str) -> Draws:
 
 @dataclass(frozen=True)
 class Request:
-    """Request of the user."""
+    """Values of the variables."""
 
     size: int
     clock_mhz: float
@@ -120,7 +120,7 @@ def calibration_on(size: int) -> Sensor:
 
 
 def spacing(request: Request) -> tuple[int, int]:
-    """Clocks from pixel to pixel at the camera's timing, and of a frame time."""
+    """Return the cycles from pixel to pixel at the timing of the camera, and the cycles of a frame time."""
     period = round(FRAME_MS["near"] * request.clock_mhz * 1000)
     return period // request.size**2, period
 
@@ -135,7 +135,7 @@ class Times:
 
 
 def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, wake_up: np.ndarray) -> Times:
-    """Times from the deciding frames to motion.
+    """Return the times from the deciding frames to motion.
 
     Parameters
     ----------
@@ -158,7 +158,8 @@ def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, w
 
 
 def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: Sensor) -> tuple[int, float, float]:
-    """Deciding frame in double precision, time of its reconstruction, and delay of the end of a sleep before it, ms."""
+    """Return the deciding frame in double precision, the time of its reconstruction, and the lateness after a sleep, in
+    ms."""
     for frame in itertools.count():
         if 2 * setup.depth(draws.phase[trial], frame) < setup.threshold:
             continue  # see `sequence`
@@ -174,7 +175,7 @@ def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: 
 
 
 def in_software(setup: Setup, draws: Draws, size: int, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`first_above` of each trial: deciding frames, compute and wake-up in ms."""
+    """Return `first_above` of each trial: deciding frames, compute and wake-up in ms."""
     calibration = calibration_on(size)
     reference.depth(picture(setup, draws, 0, 0, size), calibration)  # the first is slower: imports, plans
     trials = tqdm(range(len(draws.phase)), desc=name, unit="trial", leave=False, disable=None, delay=2)
@@ -186,16 +187,16 @@ def in_software(setup: Setup, draws: Draws, size: int, name: str) -> tuple[np.nd
 def sensitivity(
     setup: Setup, draws: Draws, size: int, base: tuple[np.ndarray, np.ndarray, np.ndarray], names: dict[str, str]
 ) -> list[dict[str, Any]]:
-    """Contact to motion with one number of the setup halved or doubled, most moving first.
+    """Return contact to motion with one number of the setup halved or doubled, in descending order of effect.
 
-    `base`: what `times` takes with the setup as it is. `names`: field of the setup to what the table calls it.
+    `base` holds the arguments of `times` for the setup, `names` the name in the table of each field of the setup.
     """
     rows = []
     for field, name in names.items():
         row: dict[str, Any] = {"delay": name, "value": getattr(setup, field)}
         for scale in SCALES:
             changed = replace(setup, **{field: scale * getattr(setup, field)})
-            if max(changed.exposure, changed.read_out) > 1:  # no camera has time for it
+            if max(changed.exposure, changed.read_out) > 1:  # the frame time is too short for it
                 row[f"x{scale:g}"] = None
                 continue
             frames, compute, wake_up = base
@@ -218,19 +219,21 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
 
 
 def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
-    """Two-sided Mann-Whitney U. 0: every trial near the sensor was quicker than every one through the host."""
+    """Return the two-sided Mann-Whitney U; 0: every trial near the sensor was faster than every one through the
+    host."""
     result = mannwhitneyu(near, host, alternative="two-sided")
     return {"U": float(result.statistic), "p": float(result.pvalue)}
 
 
 def within_published(near: dict[str, Any]) -> bool:
-    """Mean within the published mean +- standard deviation, and a spread no wider than the published one."""
+    """Return True if the mean is within the published mean +- deviation and the spread does not exceed the published
+    one."""
     mean, spread = published.REFLEX["near"]["motion"]
     return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
 
 
 def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
-    """Every delay of the simulation and where it comes from."""
+    """Return every delay of the simulation with its source."""
     gap, _ = spacing(request)
     threshold = f"{near.threshold:.3g} mm, {CONTACT_THRESHOLD * request.size:g} px"
     return [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of `make reflex`: every trial beside the published figures."""
+"""Picture of `make reflex`: every trial beside the published figures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MARKERS = {"near": "o", "host": "s"}
 
 
 def plot(path: Path, document: dict[str, Any]) -> None:
-    """Contact to command and contact to motion of every trial, and the published mean, deviation and range."""
+    """Draw contact to command and to motion of every trial, and the published mean, deviation and range."""
     rows: list[tuple[str, str, dict[str, Any] | None]] = []
     for solver, result in document["near"].items():
         rows.append((f"near the sensor,\n{solver}", "near", result))
@@ -41,7 +41,7 @@ def plot(path: Path, document: dict[str, Any]) -> None:
                 mean, spread = result[key]["mean"], result[key]["sd"]
                 count = f"n = {len(values)}"
             axis.errorbar(mean, place, xerr=spread, color="black", marker="D", markersize=4, capsize=5)
-            side = "center" if kind == "host" else "left"  # there is no room left of the sensor's
+            side = "center" if kind == "host" else "left"  # there is no room left of the sensor's points
             axis.annotate(
                 f"{mean:.1f} ± {spread:.1f}   {count}", (mean, place - 0.36), fontsize=8, va="bottom", ha=side
             )

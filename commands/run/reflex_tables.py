@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables and sentences that make reflex prints and the report shows."""
+"""Tables and sentences of make reflex and of the report."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ DUMPS = (".vcd", ".fst")
 
 
 def untouched(request: Request, frames: Frames) -> np.ndarray | None:
-    """Frames of `FLOOR`, a power of two of them, uint8 (n, rows, columns, 3); None without it. Raises InputError."""
+    """Return the frames of `FLOOR`, uint8 (a power of two, rows, columns, 3); None without it. Raises InputError."""
     if request.floor is None:
         return None
     reference = request.reference if request.floor in SCENES else None
@@ -64,7 +64,7 @@ def floor_of(no_contact: np.ndarray | None, calibration: Sensor, config: Configu
 def exact_depth(
     frames: np.ndarray, no_contact: np.ndarray | None, calibration: Sensor, config: Configuration
 ) -> np.ndarray:
-    """Depth in double precision, grid pixels, rows from the top."""
+    """Return the depth in double precision, in grid pixels, rows from the top."""
     depth = reference.depth_of(frames, calibration, config)
     if no_contact is None:
         return depth
@@ -81,7 +81,7 @@ def simulate(
     folder: Path,
     floor: np.ndarray | None = None,
 ) -> bench.Played:
-    """Run the bench in `folder`, with a bar that shows how far it is."""
+    """Run the bench in `folder` with a progress bar."""
     total = len(frames.pixels) * request.repeat
     pixels = config.rows * config.columns
     if frames.camera is None or frames.words is None:
@@ -90,7 +90,7 @@ def simulate(
     else:
         entries = bench.picture_entries(frames.words, frames.camera.last_word)
         clocks = 4 * pixels + request.repeat * bench.clocks_of(entries)
-    # Twice the clocks that gaps and stalls make likely: a pipeline that hangs ends with a failure.
+    # Twice the expected cycles with gaps and stalls, so that a pipeline that hangs ends with a failure.
     clocks = int(2 * clocks / (1 - request.gaps) / (1 - request.stalls))
     profiles = [
         bench.entry(side, bench.chance(no)) for side, no in (("sink", request.stalls), ("source", request.gaps))
@@ -151,7 +151,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         codes = tactile_depth(frames.pixels, calibration, config, monitor, floor=floor)
         reference_px = exact_depth(frames.pixels, no_contact, calibration, config)
         rtl_codes = played.codes.reshape(request.repeat, *codes.shape)
-        if config.solver == "tridiagonal":  # it puts the bottom row out first; results are in input order
+        if config.solver == "tridiagonal":  # the bottom row leaves first; results are in the order of the input
             rtl_codes, codes = rtl_codes[..., ::-1, :], codes[..., ::-1, :]
         difference = compare(rtl_codes, codes)
         percent = errors(rtl_codes[0] * config.depth_lsb_px, reference_px)
@@ -202,7 +202,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
 
 
 def default_folder(request: Request, config: Configuration) -> Path:
-    """Folder of results when OUT is not given: one for each configuration."""
+    """Return the default folder of results, one for each configuration."""
     widths = f"d{config.data_width}-c{config.coefficient_width}"
     widths += f"-g{config.gain_width}" if config.flat_field else ""
     colours = f"-{config.gradient_model}" if config.flat_field else ""
@@ -215,7 +215,7 @@ def default_folder(request: Request, config: Configuration) -> Path:
 
 
 def describe(request: Request, config: Configuration, calibration: Sensor, frames: Frames) -> dict:
-    """Fields of the report that are known before the simulation."""
+    """Return the fields of the report that are known before the simulation."""
     pixel_pitch_mm = calibration.pixel_pitch_mm
     assert config.depth_range_px is not None
     return {
@@ -239,7 +239,7 @@ def describe(request: Request, config: Configuration, calibration: Sensor, frame
 def camera_report(request: Request, config: Configuration, frames: Frames, codes: np.ndarray) -> dict[str, Any]:
     """Return the fields of the report about the camera, and the depth error against RGB of the grid.
 
-    RGB of the grid is the same window of the same pictures, averaged as they are; its depth is in double precision.
+    RGB of the grid is the average of the same window of the same pictures; its depth is in double precision.
     `codes` are (frames, rows, columns), rows from the top.
     """
     camera = frames.camera
@@ -256,7 +256,7 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
 
 
 def take_dumps(request: Request, config: Configuration, frames: Frames, work: Path, result: Path) -> list[str]:
-    """Move the waveforms that a simulation left to `result`; returns their names."""
+    """Move the waveforms that a simulation left to `result`; return their names."""
     if not request.waves:
         return []
     built = bench.build(request.simulator, config, True, frames.camera)  # Icarus writes there, Verilator into `work`
@@ -264,7 +264,7 @@ def take_dumps(request: Request, config: Configuration, frames: Frames, work: Pa
 
 
 def earlier_dumps(out: Path) -> list[str]:
-    """Return the waveforms that the report in `out` lists: this command wrote them, and new results replace them."""
+    """Return the waveforms that the report in `out` lists, which new results replace."""
     return [name for name in files.listed(out / "report.json", "waves") if name.endswith(DUMPS)]
 
 

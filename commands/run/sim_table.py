@@ -14,7 +14,7 @@ ROWS_SHOWN = 16
 
 
 def measure(played: bench.Played) -> dict[str, list[int | None]]:
-    """Latencies of each frame, in clocks, from the events of the bench."""
+    """Return the latencies of each frame in cycles, from the events of the bench."""
     taken, depth, end = (played.clocks(letter) for letter in "tde")
     first, last = taken[::2], taken[1::2]
     contact: dict[int, int] = {}
@@ -37,28 +37,29 @@ def measure(played: bench.Played) -> dict[str, list[int | None]]:
 
 
 def check_registers(registers: dict[str, int], report: dict, stalls: float) -> list[str]:
-    """Compare the counters of the hardware with the events seen at the pins; return one line for each difference."""
+    """Compare the counters of the hardware with the events at the pins; return one line for each difference."""
     total = report["frames"]
     clipped = sum(report["saturations"].values())
     expected = {"frames_in": total, "frames_out": total, "frames_dropped": 0, "saturations": min(clipped, 2**32 - 1)}
-    if not stalls and "camera" not in report:  # behind a camera it counts from the first pixel of the grid
+    if not stalls and "camera" not in report:  # with a camera it counts from the first pixel of the grid
         expected["first_depth_latency"] = report["first_depth_latency_cycles"][-1]
     return [
-        f"register {name.upper()} says {registers[name]}, expected {value}"
+        f"register {name.upper()} is {registers[name]}, expected {value}"
         for name, value in expected.items()
         if registers[name] != value
     ]
 
 
 def coefficient_words(config: Configuration) -> int:
-    """Words of the table along the columns: reciprocals (spectral), or coefficients of Thomas's algorithm."""
+    """Return the words of the table along the columns: reciprocals (spectral), or coefficients of Thomas's
+    algorithm."""
     if config.solver == "spectral":
         return len(reciprocal_rom(config))
     return len(thomas_table(config).words) + config.columns
 
 
 def table(report: dict, labels: tuple[str, ...]) -> str:
-    """One line a frame, the sequence once; then what holds for all."""
+    """Return the printed table: one line per frame of the sequence, then the lines about all frames."""
 
     def cell(value: float | None, digits: int = 5) -> str:
         return "-" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.{digits}f}"

@@ -93,11 +93,11 @@ def cycles(config: Configuration) -> list[tuple[object, ...]]:
 
 def formats(config: Configuration, nodes: dict[str, str]) -> list[tuple[object, ...]]:
     """Return the fixed-point format of each node: bits, bits behind the point, full scale, least step."""
-    found: list[tuple[object, ...]] = []
+    rows_of_nodes: list[tuple[object, ...]] = []
     for name, attribute in nodes.items():
         form: Format = getattr(config, attribute)
-        found.append((name, form.width, form.fraction, f"{form.limit:g}", f"2^-{form.fraction}"))
-    return found
+        rows_of_nodes.append((name, form.width, form.fraction, f"{form.limit:g}", f"2^-{form.fraction}"))
+    return rows_of_nodes
 
 
 def by_core(costs: list[Cost]) -> list[tuple[object, ...]]:
@@ -132,8 +132,8 @@ def tables() -> str:
 
 def document() -> str:
     """Return the page with fresh tables."""
-    before, _, rest = PAGE.read_text().partition(BEGIN)
-    return f"{before}{BEGIN}\n\n{tables()}\n{END}{rest.partition(END)[2]}"
+    before, _, after = PAGE.read_text().partition(BEGIN)
+    return f"{before}{BEGIN}\n\n{tables()}\n{END}{after.partition(END)[2]}"
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The solve in software by several libraries, prepared for a grid and a number of threads."""
+"""Solve in software by several libraries, prepared for a grid and a number of threads."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ Solve = Callable[[Any], Any]
 
 @dataclass(frozen=True)
 class Method:
-    """One way to solve in software.
+    """Method to solve in software.
 
-    `prepare` takes a size and a number of threads. `packages` are names of distributions, `program` is another program
-    that it needs, `device` is CUDA, and a method of `one_core` has no threads.
+    `prepare` takes a size and a number of threads. The method needs the distributions `packages`, the `program` and the
+    `device` (CUDA). A method with `one_core` has no threads.
     """
 
     name: str
@@ -43,10 +43,10 @@ class Method:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A method for one grid.
+    """Method prepared for one grid.
 
-    `give` turns a float32 array into what `solve` takes, `take` its result into an array; neither is timed.
-    `synchronise` waits for a device. `clock` times so many solves in us where a call from Python would count.
+    `give` converts a float32 array to the input of `solve`, `take` its result to an array; neither is timed.
+    `synchronise` waits for a device. `clock` times solves in us if the overhead of a call from Python would count.
     """
 
     solve: Solve
@@ -77,7 +77,7 @@ def with_ducc0(size: int, threads: int) -> Prepared:
 
     factor = (inverse_eigenvalues(size) / (2 * size) ** 2).astype(
         np.float32
-    )  # type 3 undoes type 2 but for 2 N an axis
+    )  # type 3 inverts type 2 except for a factor of 2 N per axis
     modes, depth = np.empty_like(factor), np.empty_like(factor)
 
     def solve(f: np.ndarray) -> np.ndarray:
@@ -112,7 +112,7 @@ def with_pyfftw(size: int, threads: int) -> Prepared:
 
 
 def with_tridiagonal(size: int, threads: int) -> Prepared:
-    """DST along the rows, Thomas's algorithm down the columns: the tridiagonal solver in floats."""
+    """Prepare the tridiagonal solver in floats: DST along the rows, Thomas's algorithm down the columns."""
     import numba
     from ducc0.fft import dst
 
@@ -124,7 +124,7 @@ def with_tridiagonal(size: int, threads: int) -> Prepared:
         table[row] = 1 / (diagonal[row] - table[row - 1])
     coefficients = table.astype(np.float32)
     share = -(-size // threads)
-    scale = np.float32(0.5 / size)  # what the two transforms along the rows leave
+    scale = np.float32(0.5 / size)  # factor of the two transforms along the rows
 
     @numba.njit(fastmath=True, parallel=threads > 1)  # type: ignore[untyped-decorator]
     def columns(modes: np.ndarray, c: np.ndarray, scale: float) -> None:
@@ -157,7 +157,7 @@ COMPILER = ("cc", "-O3", "-march=native", *FLOATS, "-shared", "-fPIC")
 
 
 def with_c(size: int, threads: int) -> Prepared:
-    """The tridiagonal solver in C with SIMD, compiled for this machine and grid.
+    """Prepare the tridiagonal solver in C with SIMD, compiled for this machine and grid.
 
     Raises RuntimeError: the compiler refuses it.
     """
@@ -176,10 +176,10 @@ def with_c(size: int, threads: int) -> Prepared:
         solver.solve(ctypes.c_void_p(f.ctypes.data), target)
         return depth
 
-    def clock(given: Sequence[np.ndarray], runs: int) -> list[float]:
-        frames = (ctypes.c_void_p * len(given))(*(frame.ctypes.data for frame in given))
+    def clock(inputs: Sequence[np.ndarray], runs: int) -> list[float]:
+        frames = (ctypes.c_void_p * len(inputs))(*(frame.ctypes.data for frame in inputs))
         nanoseconds = np.empty(runs, np.int64)
-        solver.time_solves(frames, len(given), target, runs, ctypes.c_void_p(nanoseconds.ctypes.data))
+        solver.time_solves(frames, len(inputs), target, runs, ctypes.c_void_p(nanoseconds.ctypes.data))
         return (nanoseconds / 1000).tolist()
 
     return Prepared(solve, give=np.ascontiguousarray, clock=clock)
@@ -196,7 +196,8 @@ def _on(device: str, threads: int) -> tuple[Any, Callable[[np.ndarray], Any], Ca
 
 
 def with_torch_fft(size: int, threads: int, device: str = "cpu") -> Prepared:
-    """PyTorch has no DST: Makhoul's way through a real FFT of the same length, as the hardware goes."""
+    """Prepare the solve by PyTorch, which has no DST: Makhoul's method with a real FFT of the same length, as in
+    hardware."""
     torch, give, take, synchronise = _on(device, threads)
     half = size // 2
     mode = np.arange(size)
@@ -209,7 +210,7 @@ def with_torch_fft(size: int, threads: int, device: str = "cpu") -> Prepared:
     to_burst, from_burst = give(order), give(np.argsort(order))
 
     def forward(x: Any) -> Any:
-        """DST-II of the last axis, unnormalised as scipy's."""
+        """Return the DST-II along the last axis, unnormalised like that of scipy."""
         c = torch.fft.rfft((x * sign)[..., to_burst]) * forward_phase
         cosine = torch.cat((c.real, -c.imag[..., 1:half].flip(-1)), -1)  # C[k], then C[N - k]
         return cosine.flip(-1)
@@ -229,7 +230,7 @@ def with_torch_fft(size: int, threads: int, device: str = "cpu") -> Prepared:
 
 
 def with_torch_matmul(size: int, threads: int, device: str = "cpu") -> Prepared:
-    """The transforms as products with a dense matrix of sines."""
+    """Prepare the solve by PyTorch with transforms as products with a dense matrix of sines."""
     torch, give, take, synchronise = _on(device, threads)
     sines = scipy.fft.dst(np.eye(size), type=2, axis=0, norm="ortho")
     right, left = (give(np.ascontiguousarray(m).astype(np.float32)) for m in (sines.T, sines))
@@ -259,7 +260,7 @@ METHODS = (
 
 
 def missing(method: Method) -> str:
-    """Reason why a method cannot run here; empty when it can."""
+    """Return the reason why a method cannot run here, empty if it can."""
     absent = []
     for package in method.packages:
         try:

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make baselines`: the solve in software, one frame at a time, against the pipeline's fixed count of clocks.
+"""`make baselines`: the solve in software, one frame at a time, against the fixed number of cycles of the pipeline.
 
-The same 2-D solve (divergence in, depth out, single precision) on the same frames, the contacts of the bench in turn,
-in scipy, ducc0, pyFFTW and PyTorch, on one core and on all, and on CUDA where there is a device, the frames already on
-it. And the tridiagonal solver's method on the CPU: ducc0 along the rows, Thomas's algorithm by numba down the columns;
-and on one core in C with SIMD (simd_solver.c), compiled for this machine.
+Every method makes the same 2-D solve (divergence in, depth out, single precision) of the same frames, the contacts of
+the bench in turn: scipy, ducc0, pyFFTW and PyTorch on one core and on all, and on CUDA if there is a device, with the
+frames already on it. The method of the tridiagonal solver runs on the CPU too: ducc0 along the rows and Thomas's
+algorithm by numba down the columns, and on one core in C with SIMD (simd_solver.c), compiled for this machine.
 Every result is checked by tactile_depth.reference before it is timed: WARM_UPS solves, then RUNS that count, or as many
-as there is time for. Each method is timed in a process of its own, so that none runs beside the threads of another.
+as the time allows. Each method is timed in its own process, so that no threads of another method run.
 
 Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a result is wrong,
-2 bad input. What is not installed says so in its row: `make baselines` installs requirements-baselines.txt.
+2 bad input. The row of a method that is not installed says so; `make baselines` installs requirements-baselines.txt.
 """
 
 from __future__ import annotations
@@ -58,32 +58,33 @@ DEFAULT_OUT = repository.ROOT / "build" / "baselines"
 GRIDS = (64, 128, 256, 512)
 SCENE = "bench"
 WARM_UPS, RUNS, FEWEST_RUNS = 100, 1000, 10
-SECONDS = 480  # for all solves together: where threads disturb each other, or other programs do, a solve may take 0.1
-# Of a result, RMS to double precision in % of peak: measured at most 0.00005 (PyTorch's products of matrices at 512).
+SECONDS = 480  # for all solves together: if threads or other programs disturb each other, a solve may take 0.1
+# RMS of a result to double precision in % of peak: measured at most 0.00005 (PyTorch's products of matrices at 512).
 TOLERANCE_PERCENT = 0.0001
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
 def frames(size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Divergence of the bench's contacts, float32, and the reference's depth, float64: (frames, size, size) each."""
+    """Return the divergence of the contacts of the bench, float32, and their reference depth, float64, (frames, size,
+    size)."""
     f = divergence(reference.slopes(render(SCENE, size).frames, synthetic())).astype(np.float32)
     return f, reference.solve(f.astype(np.float64))
 
 
 def percent_of_peak(depth: np.ndarray, wanted: np.ndarray) -> float:
-    """RMS difference over the whole frame, no fitted scale or offset, in % of the peak."""
+    """Return the RMS difference over the whole frame, without fitted scale or offset, in % of the peak."""
     return 100 * math.sqrt(np.mean((depth - wanted) ** 2)) / float(wanted.max())
 
 
 @dataclass(frozen=True)
 class Job:
-    """One of `METHODS`, by its number, for a process of its own."""
+    """One of `METHODS`, by its number, to measure in its own process."""
 
     number: int
     threads: int
     scenes: dict[int, tuple[np.ndarray, np.ndarray]]  # `frames` by grid
     runs: int
-    until: float  # end of all jobs by time.monotonic; each grid may take twice its share of the time
+    until: float  # end of all jobs by time.monotonic; each grid may take twice its part of the time
     cells: int  # grids of this job and of all that follow
 
 
@@ -120,7 +121,7 @@ def measure(job: Job) -> list[dict[str, Any]]:
 
 
 def _timed(solve: Solve, inputs: Sequence[Any], wait: Callable[[], None], runs: int, end: float) -> list[float]:
-    """Times in us of so many solves, or of those until the end, and FEWEST_RUNS of them at least."""
+    """Return the times in us of `runs` solves, or of those before the end, at least FEWEST_RUNS."""
     times: list[float] = []
     while len(times) < runs and (time.monotonic() < end or len(times) < FEWEST_RUNS):
         one = inputs[len(times) % len(inputs)]
@@ -133,7 +134,7 @@ def _timed(solve: Solve, inputs: Sequence[Any], wait: Callable[[], None], runs: 
 
 
 def in_own_process(job: Job) -> list[dict[str, Any]]:
-    """Run `measure` in a process of its own, with the threads of the job."""
+    """Run `measure` in its own process, with the threads of the job."""
     before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(job.threads)))
     try:
@@ -141,7 +142,7 @@ def in_own_process(job: Job) -> list[dict[str, Any]]:
             1,
             mp_context=multiprocessing.get_context("spawn"),
             initializer=signal.signal,
-            initargs=(signal.SIGINT, signal.SIG_DFL),  # ended without a word
+            initargs=(signal.SIGINT, signal.SIG_DFL),  # the process ended without a result
         ) as pool:
             return pool.submit(measure, job).result()
     except BrokenProcessPool:
@@ -156,11 +157,11 @@ def in_own_process(job: Job) -> list[dict[str, Any]]:
                 os.environ[name] = value
 
 
-# The pipeline, in clocks from the last pixel on: what it has to wait for as software does.
+# The pipeline, in cycles from the last pixel on, where software begins too.
 
 
 def pipeline(sizes: Sequence[int], clock_mhz: float) -> list[dict[str, Any]]:
-    """Both solvers, and the tridiagonal one with the most lanes."""
+    """Return the rows of both solvers, and of the tridiagonal solver with the most lanes."""
     rows = []
     for size in sizes:
         for solver, lanes in (("spectral", 1), ("tridiagonal", 1), ("tridiagonal", most_lanes(size))):
@@ -178,7 +179,7 @@ def pipeline_name(row: dict[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Request:
-    """Request of the user."""
+    """Values of the variables."""
 
     grids: tuple[int, ...]
     runs: int
@@ -187,7 +188,7 @@ class Request:
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """KEY=VALUE arguments to a Request; an empty value means the default. Raises InputError."""
+    """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
     values = defaultdict(str, variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT")))
     number = partial(variables.number, values)
     low, high = COLUMNS["spectral"]
@@ -206,7 +207,7 @@ def parse(arguments: Sequence[str]) -> Request:
 
 
 def summarise(row: dict[str, Any]) -> dict[str, Any]:
-    """Percentiles in place of the times."""
+    """Return the row with percentiles instead of the times."""
     times = row.pop("times_us", None)
     if times is not None:
         percentiles = {f"p{share}_us": float(np.percentile(times, share)) for share in (1, 50, 99)}
@@ -215,13 +216,13 @@ def summarise(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def measure_all(request: Request) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """The document that baselines.json holds, and the rows with every time, for the picture.
+    """Return the content of baselines.json, and the rows with every time, for the picture.
 
-    Raises RuntimeError: a result is not that of the reference.
+    Raises RuntimeError: a result differs from the reference.
     """
     cores = len(os.sched_getaffinity(0))
     load = os.getloadavg()[0]
-    jobs = [  # all cores last: where they are not free, that takes longest
+    jobs = [  # all cores last: if they are not free, that takes longest
         (number, threads)
         for threads in sorted({1, cores})
         for number, method in enumerate(METHODS)
@@ -268,7 +269,7 @@ def threads_of(row: dict[str, Any]) -> str:
 
 
 def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """Title, head and rows: in short, and for each grid."""
+    """Return title, head and rows of each table: a summary, and one table for each grid."""
     made = [summary(document)]
     head = ("from the frame's last pixel, us", "threads", "p50", "p99", "maximum", "error, % of peak")
     for size in sorted({row["grid"] for row in document["pipeline"]}):
@@ -291,13 +292,13 @@ def tables(document: dict[str, Any]) -> list[tuple[str, tuple[str, ...], list[tu
 
 
 def fastest(document: dict[str, Any], size: int) -> dict[str, Any]:
-    """The row of the least median."""
+    """Return the row of the least median."""
     timed = [row for row in document["software"] if row["grid"] == size and "p50_us" in row]
     return min(timed, key=lambda row: row["p50_us"])
 
 
 def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
-    """Title, head and rows of a table with one line a grid."""
+    """Return title, head and rows of a table with one line per grid."""
     rows = []
     for size in sorted({row["grid"] for row in document["pipeline"]}):
         best = fastest(document, size)
@@ -316,7 +317,7 @@ def summary(document: dict[str, Any]) -> tuple[str, tuple[str, ...], list[tuple[
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
-    """Return for each grid a sentence that says which parts software computes faster."""
+    """Return for each grid a sentence that compares the fastest software with the pipeline."""
 
     def place(micros: float, row: dict[str, Any]) -> str:
         if micros > row["max_us"]:
@@ -355,7 +356,7 @@ def setting(document: dict[str, Any]) -> str:
 
 
 def plot(path: Path, document: dict[str, Any], rows: Sequence[dict[str, Any]]) -> None:
-    """Every solve, a row for each method, and the pipeline's two fixed times as lines."""
+    """Draw every solve, a row for each method, and the two fixed times of the pipeline as lines."""
     sizes = sorted({row["grid"] for row in document["pipeline"]})
     names = list(dict.fromkeys((row["method"], threads_of(row)) for row in rows if "times_us" in row))
     across = min(2, len(sizes))

@@ -3,10 +3,10 @@
 
 A case begins with uint8 pictures of the camera in memory and ends with depth in mm, float64: area average to 128 x 128,
 rounding, flat field, quadratic slopes, divergence, solve (tridiagonal, Neumann), scale. `chip` is the bit-accurate
-model, `float` the reference in double precision. Tables are prepared before. The pictures are scenes of the project.
+model, `float` the reference in double precision. Tables are prepared first. The pictures are scenes of the project.
 
-Both versions run in a process of their own, on one thread. They take turns, ROUNDS times after WARM_UPS, so that other
-load on the machine meets both; a ratio is that of two neighbouring runs. The depth maps of both are compared.
+Each version runs in its own process, on one thread. The two run in turn, ROUNDS times after WARM_UPS, so that other
+load on the machine affects both; each ratio is that of two neighbouring runs. The depth maps of both are compared.
 
 Takes BEFORE (a commit, 32a97ff by default), ROUNDS and OUT as KEY=VALUE arguments. Exit status: 0 done, 1 a version
 does not run, 2 bad input.
@@ -42,7 +42,7 @@ from tactile_depth.scenes import Press, render
 
 DEFAULT_OUT = ROOT / "build" / "benchmark"
 FIRST = "32a97ff"  # the last commit before the models were a package
-CAMERA = (240, 320)  # of a GelSight Mini
+CAMERA = (240, 320)  # picture size of a GelSight Mini
 SCENE, NO_CONTACT = "bench", "flat"
 WARM_UPS, ROUNDS, FEWEST_ROUNDS = 5, 60, 10
 SPREAD = (10, 90)  # percentiles
@@ -50,7 +50,7 @@ SPREAD = (10, 90)  # percentiles
 
 @dataclass(frozen=True)
 class Request:
-    """Request of the user: a commit, how many pairs of runs a case has, the folder of the results."""
+    """Values of the variables: a commit, the number of pairs of runs of each case, the folder of the results."""
 
     before: str
     rounds: int
@@ -65,13 +65,13 @@ def parse(arguments: Sequence[str]) -> Request:
 
 
 def git(*arguments: str) -> bytes | None:
-    """Output of a git command in the repository; None if it fails."""
+    """Return the output of a git command in the repository, None if it fails."""
     done = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, check=False)
     return done.stdout if done.returncode == 0 else None
 
 
 def commit(name: str) -> str:
-    """Abbreviated hash of a commit that holds models. Raises InputError."""
+    """Return the abbreviated hash of a commit that holds models. Raises InputError."""
     output = git("rev-parse", "--verify", "--quiet", "--short", "--end-of-options", f"{name}^{{commit}}")
     if output is None:
         raise InputError(f"BEFORE={name} is no commit of this clone: give a hash or a branch, or run `git fetch`")
@@ -89,7 +89,7 @@ def extract(name: str, folder: Path) -> None:
 
 
 def draw_pictures(folder: Path) -> None:
-    """Write `pictures.npy`, as many as the largest case takes, and `no_contact.npy`, uint8."""
+    """Write `pictures.npy`, with the pictures of the largest case, and `no_contact.npy`, uint8."""
     frames = render(SCENE, *CAMERA).frames
     np.save(folder / "pictures.npy", frames[np.arange(max(CASES.values())) % len(frames)])
     np.save(folder / "no_contact.npy", render(NO_CONTACT, *CAMERA, press=Press(noise=0)).frames[0])
@@ -102,7 +102,7 @@ class Version:
         self.name, self.results, self._process = name, results, process
 
     def run(self, case: str) -> float:
-        """Run a case once: ms per frame. Raises RuntimeError: the child ended."""
+        """Run a case once and return ms per frame. Raises RuntimeError: the child ended."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         try:
@@ -118,7 +118,7 @@ class Version:
 
 @contextmanager
 def started(name: str, folder: Path, pictures: Path) -> Iterator[Version]:
-    """Start the child of a version, whose models lie in `folder`, on one thread."""
+    """Start the child of a version with models in `folder`, on one thread."""
     with tempfile.TemporaryDirectory() as results:
         command = [sys.executable, benchmark_child.__file__, str(folder), str(pictures), results]
         one_thread = os.environ | dict.fromkeys(THREAD_VARIABLES, "1")
@@ -128,7 +128,7 @@ def started(name: str, folder: Path, pictures: Path) -> Iterator[Version]:
 
 
 def measure(before: Version, now: Version, rounds: int) -> list[dict[str, Any]]:
-    """Run both versions in turn: one row a case, of `summary`."""
+    """Run both versions in turn; return one row of `summary` per case."""
     times: dict[str, list[tuple[float, float]]] = {case: [] for case in CASES}
     for index in tqdm(range(WARM_UPS + rounds), leave=False, disable=None):
         for case, pairs in times.items():
@@ -146,7 +146,7 @@ def measure(before: Version, now: Version, rounds: int) -> list[dict[str, Any]]:
 
 
 def summary(case: str, pairs: np.ndarray, difference_mm: float) -> dict[str, Any]:
-    """Medians of pairs (rounds, 2) of ms, before and now, and of the ratio of each pair, with its percentiles."""
+    """Return the medians of pairs (rounds, 2) of ms, before and now, and of their ratios, with percentiles."""
     before, now = np.median(pairs, axis=0)
     low, ratio, high = np.percentile(pairs[:, 1] / pairs[:, 0], (SPREAD[0], 50, SPREAD[1]))
     return {
@@ -161,7 +161,7 @@ def summary(case: str, pairs: np.ndarray, difference_mm: float) -> dict[str, Any
 
 
 def table(rows: Sequence[dict[str, Any]], before: str) -> str:
-    """Table of the rows, for the terminal and for a page."""
+    """Return the table of the rows, for the terminal and for a page."""
     head = ("per frame", f"{before}, ms", "now, ms", "ratio", f"{SPREAD[0]} to {SPREAD[1]} %", "largest difference, mm")
     cells = [
         (

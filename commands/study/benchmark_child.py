@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Child process of `make benchmark`: runs one version of the models, one case at a time, as the parent asks.
 
-Arguments: the folder of the version and that of the pictures. Every line on the standard input is the name of a case;
-the answer is one line, the time of the case in ms per frame. The first run of a case writes its depth maps to
-`<case>.npy` in the folder of the results, the third argument. The parent is commands/study/benchmark.py.
+Arguments are the folders of the version, of the pictures and of the results. Every line on the standard input is the
+name of a case; the answer is one line, the time of the case in ms per frame. The first run of a case writes its depth
+maps to `<case>.npy` in the folder of the results. The parent is commands/study/benchmark.py.
 """
 
 from __future__ import annotations
@@ -28,16 +28,17 @@ Solve = Callable[[np.ndarray], np.ndarray]
 
 
 def import_path(folder: Path) -> Path:
-    """Folder of which the version's package is imported: `tactile_depth` out of `models`, or `models` itself."""
+    """Return the folder from which the package of the version is imported: `tactile_depth` in `models`, or `models`
+    itself."""
     return folder / "models" if (folder / "models" / "tactile_depth").is_dir() else folder
 
 
-# Either version as its user calls it: uint8 (pictures, rows, columns, 3) of the camera to depth in mm, float64. What
-# can be kept from one picture to the next is prepared before.
+# Each version as a user calls it: uint8 (pictures, rows, columns, 3) of the camera to depth in mm, float64. Objects
+# that pictures share are prepared first.
 
 
 def package_tactile_depth(no_contact: np.ndarray) -> tuple[Solve, Solve]:
-    """`chip` and `float` of the package."""
+    """Return `chip` and `float` of the package."""
     from tactile_depth.pipeline import Pipeline
     from tactile_depth.sensor import Camera, synthetic
 
@@ -51,7 +52,7 @@ def package_tactile_depth(no_contact: np.ndarray) -> tuple[Solve, Solve]:
 
 
 def package_models(no_contact: np.ndarray) -> tuple[Solve, Solve]:
-    """`chip` and `float` of the modules before they were a package."""
+    """Return `chip` and `float` of the modules from before the package."""
     from models.calibration import synthetic
     from models.configuration import Configuration
     from models.frames import resampling
@@ -75,9 +76,9 @@ def package_models(no_contact: np.ndarray) -> tuple[Solve, Solve]:
 
 
 def main() -> None:
-    """Answer until the standard input ends."""
+    """Answer every line of the standard input."""
     folder, pictures_folder, results = map(Path, sys.argv[1:])
-    sys.path[0] = str(import_path(folder))  # ahead of the package that is installed
+    sys.path[0] = str(import_path(folder))  # before the installed package
     no_contact = np.load(pictures_folder / "no_contact.npy")
     pictures = np.load(pictures_folder / "pictures.npy")
     package = package_models if import_path(folder) == folder else package_tactile_depth

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make certify`: the largest value that each node can be asked to hold, and the frames that ask for it, run.
+"""`make certify`: the largest value that each node can reach, and a run of the frames that reach it.
 
-Takes the variables of `make sim`, and RTL=0 to leave the simulation out. Exit status: 0 when model and RTL saturate
-where the certificate says they can, and nowhere else; 1 when not, 2 on bad input.
+Takes the variables of `make sim`, and RTL=0 for no simulation. Exit status: 0 if model and RTL saturate exactly where
+the certificate allows it, 1 if not, 2 on bad input.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ class Attempt:
     """Frame of a calibration's colours that drives a node as far as any of them can."""
 
     node: Node
-    frame: int  # its place among the frames
+    frame: int  # its position among the frames
     expected: float  # value of the node in exact arithmetic, in its codes
 
 
 class Peaks(Monitor):
-    """The largest magnitude of each node in each frame, before it is clipped, and whether it was."""
+    """Largest magnitude of each node in each frame before clipping, and a flag that it was clipped."""
 
     def __init__(self, widths: dict[str, int], frames: int) -> None:
         super().__init__()
         self.widths = widths
-        self.first = 0  # place of the first frame of those that the model runs now
+        self.first = 0  # position of the first frame of the current run of the model
         self.peaks = {node: np.zeros(frames, np.int64) for node in widths}
         self.clips = {node: np.zeros(frames, bool) for node in widths}
 
@@ -66,7 +66,7 @@ class Peaks(Monitor):
 
 
 def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) -> tuple[np.ndarray, list[Attempt]]:
-    """Return for each node the frame that drives it furthest: every pixel has the colour whose slopes add the most.
+    """Return for each node the frame that drives it furthest: every pixel has the colour whose slopes contribute most.
 
     Returns
     -------
@@ -95,7 +95,7 @@ def worst_frames(nodes: list[Node], calibration: Sensor, config: Configuration) 
 
 
 def _corners(codes: np.ndarray) -> np.ndarray:
-    """Bins on the hull of a table's slopes: one of them adds the most, whatever the response."""
+    """Return the bins on the convex hull of the slopes of a table; for every response one of them contributes most."""
     slopes, bins = np.unique(codes, axis=0, return_index=True)
     try:
         return bins[ConvexHull(slopes).vertices]
@@ -106,26 +106,27 @@ def _corners(codes: np.ndarray) -> np.ndarray:
 def check_model(frames: np.ndarray, attempts: list[Attempt], nodes: list[Node], peaks: Peaks) -> list[str]:
     """Compare the model's words for the frames with the certificate; return one line for each difference."""
     order = [node.name for node in nodes]
-    rounding = ROUNDING_STEPS * frames[0, ..., 0].size / (2 * math.pi**2)  # the solve amplifies the lowest mode so much
+    # The solve amplifies the lowest mode by pixels / (2 pi^2).
+    rounding = ROUNDING_STEPS * frames[0, ..., 0].size / (2 * math.pi**2)
     faults = []
     for attempt in attempts:
         name, frame = attempt.node.name, attempt.frame
         before = order[: order.index(name)]
         if any(peaks.clips[node][frame] for node in before):
-            continue  # the node never saw the input meant for it
+            continue  # the input of this frame did not reach the node
         peak, bound = int(peaks.peaks[name][frame]), attempt.node.slopes / attempt.node.form.lsb
         if not attempt.expected - rounding <= peak <= bound + rounding:
-            faults.append(f"{name} reached {peak:,}, the certificate says {attempt.expected:,.1f} of {bound:,.1f}")
+            faults.append(f"{name} reached {peak:,}, expected {attempt.expected:,.1f} of {bound:,.1f}")
     for node in nodes:
         for frame in np.flatnonzero(peaks.clips[node.name]).tolist():
             upstream = any(peaks.clips[name][frame] for name in order[: order.index(node.name)])
             if node.slopes_headroom_bits >= 0 and not upstream:
-                faults.append(f"{node.name} saturated, and the certificate says that it cannot")
+                faults.append(f"{node.name} saturated, which the certificate excludes")
     return faults
 
 
 def table(nodes: list[Node]) -> str:
-    """One line a node."""
+    """Return the table with one line per node."""
 
     def bits(headroom: float) -> str:
         return "-" if headroom == math.inf else f"{headroom:+.2f}"
@@ -214,7 +215,7 @@ def stream(request: run_request.Request, config: Configuration, calibration: Sen
     report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim_table.measure(played)}
     differences = sim_table.check_registers(played.registers, report, request.stalls)
     exact = bool((codes == model).all())
-    if config.solver == "tridiagonal":  # it puts the bottom row out first
+    if config.solver == "tridiagonal":  # this solver puts the bottom row out first
         codes = codes[..., ::-1, :]
     return Streamed(codes, clipped, played.registers, exact, differences)
 
@@ -226,7 +227,7 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
     calibration = run_request.load_sensor(request)
     run_request.check_grid(request)
     grid = Configuration(columns=request.columns, rows=request.rows, solver=request.solver)
-    # It holds for all slopes, whatever the colours: they are taken as a table without a reference reads them.
+    # The certificate holds for all slopes. The colours are those of a table without a reference.
     calibration = dataclasses.replace(calibration, flat_field=None).scaled(camera_scale(calibration, grid))
     pixel_pitch_mm = calibration.pixel_pitch_mm
     config = run_request.configure(dataclasses.replace(request, gradient=GRADIENT_MODELS[0]), calibration)
@@ -235,7 +236,7 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
     if request.depth_range_mm == math.inf:
         name += "-worst"
     out = request.out or repository.ROOT / "build" / "certify" / name
-    files.make(out, RESULTS)  # refused before minutes of work
+    files.make(out, RESULTS)  # refuse bad input before minutes of work
 
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
     with tqdm(total=1.0, desc="certifying", leave=False, disable=None, delay=3, bar_format=shape) as bar:

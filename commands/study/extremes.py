@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make extremes`: limits of the input range, one row each, in RTL, model and double precision.
 
-A row has the error, saturations by node, the hardware's sticky bit, and codes that wrapped around. Long runs measure
-drift, and the transforms are measured in the manner of IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the long
-runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
+Each row has the error, saturations by node, the sticky bit of the hardware, and the number of codes that wrapped. Long
+runs measure drift, and the transforms are measured like in IEEE 1180. Variables: N (64), SIM, OUT, SHORT=1 without the
+long runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ RESULTS = ("extremes.json",)
 CALIBRATION = "synthetic"
 LONG_MODEL, LONG_RTL = 10_000, 2_000  # frames of the runs for drift
 SHORT_MODEL = 96
-BATCH = 96  # frames a model run takes at a time
+BATCH = 96  # frames that the model runs at a time
 REST_COLOUR = round(REST)
 
 Draw = Callable[[Configuration], np.ndarray]  # frames for a configuration
@@ -46,13 +46,12 @@ Draw = Callable[[Configuration], np.ndarray]  # frames for a configuration
 
 @dataclass(frozen=True)
 class Extreme:
-    """A row of the table: what comes in, and what the pipeline is beside the default.
+    """Row of the table: frames, and options of the pipeline that differ from the default.
 
     Attributes
     ----------
-    saturates : bool
-        Whether it must, or must not. Slopes that are the same everywhere do not: with zero depth around the frame they
-        come to no more than the depth range.
+    saturates : bool True if values must saturate, False if they must not. Constant slopes do not saturate: with zero
+    depth around the frame their depth stays within the range.
     """
 
     name: str
@@ -77,7 +76,7 @@ class Row:
     rms_codes: float
     max_codes: float
     saturations: dict[str, int]
-    flagged: bool  # by the sticky bit of the hardware
+    flagged: bool  # sticky bit of the hardware
     wrapped: int
     bit_exact: bool
     registers_agree: bool
@@ -88,7 +87,7 @@ def _colour(*rgb: int) -> Draw:
 
 
 def _channels(config: Configuration) -> np.ndarray:
-    """Each channel by itself at its lowest and at its highest."""
+    """Return frames with one channel at its lowest and at its highest value."""
     frames = np.full((6, config.rows, config.columns, 3), REST_COLOUR, np.uint8)
     for index in range(6):
         frames[index, ..., index // 2] = 255 * (index % 2)
@@ -100,7 +99,7 @@ def _scene(name: str, press: Press | None = None) -> Draw:
 
 
 def _single_pixel(config: Configuration) -> np.ndarray:
-    """One pixel of the steepest slope on a gel at rest: in the middle, and in two corners."""
+    """Return frames with one pixel of the steepest slope, in the middle and in two corners, and no other contact."""
     frames = np.full((3, config.rows, config.columns, 3), REST_COLOUR, np.uint8)
     for frame, at in zip(frames, ((config.rows // 2, config.columns // 2), (0, 0), (-1, -1)), strict=True):
         frame[at] = _steepest(config)[0, 0, 0]
@@ -108,7 +107,7 @@ def _single_pixel(config: Configuration) -> np.ndarray:
 
 
 def _checkerboard(config: Configuration) -> np.ndarray:
-    """The steepest slopes, of the opposite sign in every next pixel."""
+    """Return a chequer board of the steepest slopes of both signs."""
     steep = _steepest(config)
     white = np.indices((config.rows, config.columns)).sum(axis=0)[..., None] % 2
     return np.where(white, steep[0], steep[1])[None].astype(np.uint8)
@@ -123,7 +122,7 @@ def _uniform(gx: float, gy: float) -> Draw:
 
 
 def _steepest(config: Configuration) -> np.ndarray:
-    """Everywhere the colour of the largest gx + gy, and of the smallest."""
+    """Return frames of one colour: that of the largest gx + gy, and that of the smallest."""
     total = load(CALIBRATION).table.sum(axis=-1)
     step = 256 >> config.bits_per_channel
     bins = [np.unravel_index(at, total.shape) for at in (total.argmax(), total.argmin())]
@@ -140,7 +139,7 @@ def _noise(config: Configuration) -> np.ndarray:
 
 
 def _too_deep(config: Configuration) -> np.ndarray:
-    """A cone, steep from the edge of the frame to its tip: nearly twice as deep as the default depth range."""
+    """Return a cone with the steepest slopes up to the edge of the frame, nearly twice as deep as the default range."""
     size = min(config.rows, config.columns)
     y, x = np.indices((config.rows, config.columns)) + 0.5
     distance = np.hypot(y - config.rows / 2, x - config.columns / 2)
@@ -177,12 +176,12 @@ def largest(solver: str) -> Extreme:
 
 
 def drift(frames: int) -> Extreme:
-    """The eight contacts over and over, back to back: every pass must give the codes of the first."""
+    """Stream the eight contacts repeatedly, back to back; every pass must give the codes of the first."""
     return Extreme(f"{frames:,} frames back to back", _scene("contacts"), repeat=frames // 8)
 
 
 def measure(extreme: Extreme, solver: str, size: int, simulator: str) -> Row:
-    """Stream it through the RTL, with the model beside it, and measure both against double precision."""
+    """Stream the frames through RTL and model, and measure both against double precision."""
     words = [*([] if any(v.startswith(("N=", "ROWS=")) for v in extreme.variables) else [f"N={size}"])]
     words += [f"SOLVER={solver}", f"SIM={simulator}", f"REPEAT={extreme.repeat}", *extreme.variables]
     request = run_request.parse(words)
@@ -221,9 +220,9 @@ def faults(extreme: Extreme, row: Row) -> list[str]:
     """Return one line for each result that is out of bounds."""
     broken = []
     if not row.bit_exact:
-        broken.append("RTL differs from the model, or a frame from its repetition")
+        broken.append("RTL differs from the model, or a frame differs from its repetition")
     if not row.registers_agree:
-        broken.append("the hardware's counters differ from the count at its pins")
+        broken.append("the counters of the hardware differ from the events at its pins")
     if row.flagged != bool(row.saturations):
         broken.append(
             "the status bit is set without a saturation" if row.flagged else "a saturation did not set the status bit"
@@ -235,15 +234,15 @@ def faults(extreme: Extreme, row: Row) -> list[str]:
     return [f"{row.extreme}, {row.solver}: {fault}" for fault in broken]
 
 
-# Drift of the model: does the error of a frame depend on how many came before?
+# Drift of the model: the error of a frame must not depend on the number of frames before it.
 
-DRIFT = 0.05  # by which the mean error of the first half of a run may differ from that of the second
+DRIFT = 0.05  # allowed relative difference of the mean errors of both halves of a run
 
 
 def model_drift(solver: str, size: int, count: int, advance: Callable[[int], object] = lambda frames: None) -> Row:
-    """Contacts in new noise, frame after frame; errors of all, wrap-around and saturations as in the other rows.
+    """Run contacts with new noise, frame after frame; return errors, wrapped codes and saturations as in other rows.
 
-    Here `bit_exact` says that the mean error of both halves is the same within DRIFT: the model is its own reference.
+    Here `bit_exact` means that the mean errors of both halves agree within DRIFT.
     """
     config = Configuration(columns=size, solver=solver)
     calibration = load(CALIBRATION)
@@ -305,7 +304,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     simulation.check(simulator)
     for solver in COLUMNS:
         Configuration(columns=size, solver=solver)
-    files.make(out, RESULTS)  # refused before minutes of work
+    files.make(out, RESULTS)  # refuse bad input before minutes of work
     plan = [
         (extreme, solver)
         for solver in COLUMNS

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make report`: one HTML page, and its figures as PNG: latency, throughput, depth, error, cost, extremes.
 
-Takes OUT=folder. What it shows it measures: the bench's contacts through the RTL of both solvers, a thousand frames and
-more on end; the sweep, which goes on where it stopped; the extremes. What `make reflex` and `make baselines` left in
-build/ it takes, and runs them when they have not been; of `make synth`, `make fpga` and `make asic` what is there.
-Each figure names the command that remakes it.
+Takes OUT=folder. It measures the contacts of the bench through the RTL of both solvers, over a thousand frames without
+a pause, the sweep, which continues where it stopped, and the extremes. It takes the results of `make reflex` and `make
+baselines` from build/, and runs the commands if there are none. It takes existing results of `make synth`, `make fpga`
+and `make asic`. Each figure names the command that makes it again.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ EXTREMES_COMMAND = f"make extremes N={EXTREMES_SIZE} SHORT=1"
 
 @dataclass(frozen=True)
 class Run:
-    """The bench's contacts through the RTL, over and over."""
+    """Repeated contacts of the bench through the RTL."""
 
     command: str
     report: dict[str, Any]
@@ -69,9 +69,9 @@ def run_rtl(solver: str, folder: Path) -> Run:
 
 
 def run_extremes(folder: Path) -> None:
-    """Raises Mismatch when a row is not as it must be."""
+    """Run `make extremes`. Raises Mismatch: a row is out of bounds."""
     if extremes.run(EXTREMES_SIZE, "verilator", folder, short=True):
-        raise variables.Mismatch(f"a row of the extremes is not as it must be: see {folder}")
+        raise variables.Mismatch(f"a row of the extremes is out of bounds: see {folder}")
 
 
 def document_of(command: Any, name: str) -> dict[str, Any]:
@@ -350,7 +350,7 @@ def extremes_figures(folder: Path) -> list[Figure]:
 
 
 def kept(command: Any, name: str) -> str:
-    """HTML that shows the picture beside the document."""
+    """Return HTML that shows the picture beside the document."""
     data = base64.b64encode((command.DEFAULT_OUT / f"{name}.png").read_bytes()).decode()
     return f"<img alt='{name}' src='data:image/png;base64,{data}'>"
 
@@ -382,7 +382,7 @@ def latest(flow: str, file: str) -> dict[str, Any] | None:
 def synth_figure(document: dict[str, Any]) -> Figure:
     head, *rows = synth.grid_rows(document)
     text = "On an XCZU7EV, as Yosys maps it, beside the published design. " + " ".join(synth.NOTES)
-    return Figure("synth", "On an FPGA: what it takes", text, document["command"], table(head, rows))
+    return Figure("synth", "Resources of an FPGA", text, document["command"], table(head, rows))
 
 
 def fpga_figure(document: dict[str, Any]) -> Figure:

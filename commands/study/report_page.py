@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The HTML page of make report: figures with their text and command, tables, style."""
+"""HTML page of make report: figures with text and command, tables, style."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PUBLISHED_LOOK["label"] = "published"
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture or table of the page."""
+    """Picture or table of the page."""
 
     name: str
     title: str
@@ -42,7 +42,7 @@ class Figure:
 
 
 def picture(figure: Any, folder: Path, name: str) -> str:
-    """Save a figure as PNG; the HTML that shows it."""
+    """Save a figure as PNG; return the HTML that shows it."""
     path = folder / f"{name}.png"
     figure.savefig(path, dpi=110)
     plt.close(figure)

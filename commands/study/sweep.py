@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make sweep`: accuracy against latency, multipliers and memory, by the bit-accurate models, into one CSV.
 
-Takes OUT=folder and DASK_SCHEDULER=host:port. Each row is on the disk before the next is begun: an interrupted sweep
-goes on where it stopped. Exit status: 0 complete, 2 bad input, 130 interrupted.
+Takes OUT=folder and DASK_SCHEDULER=host:port. Each row is written to the disk before the next begins, so an interrupted
+sweep continues where it stopped. Exit status: 0 complete, 2 bad input, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)
 ACCEPTED = ("OUT", "DASK_SCHEDULER")
 HEADER = (*CONFIGURATION, *MEASURED)
-CONNECT_S, WORKERS_S = 10, 60  # how long a cluster, and its first worker, is waited for
+CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker
 
 Choices = dict[str, Any]
 Key = tuple[str, ...]
@@ -43,11 +43,11 @@ Row = dict[str, str]
 
 
 def plan() -> list[Choices]:
-    """Every configuration of the sweep, by the arguments of `Configuration` in which it differs from the default.
+    """Return every configuration of the sweep, as the arguments of `Configuration` that differ from the default.
 
-    One axis at a time from the default (grid, boundary, the two widths), and the plane of the two widths; and a depth
-    range that nothing leaves (DEPTH_RANGE=worst), with each data width and at both boundaries. The widest grids come
-    first, so that no core is left alone with one at the end.
+    The sweep varies grid, boundary and the two widths one at a time, then both widths together, and the depth range
+    that no slopes exceed (DEPTH_RANGE=worst) with each data width and both boundaries. The widest grids come first, so
+    that all cores finish at about the same time.
     """
     default = Configuration()
     widths = [range(low, high + 1) for low, high in (DATA_WIDTHS, COEFFICIENT_WIDTHS)]
@@ -77,7 +77,7 @@ def key(choices: Choices) -> Key:
 
 
 def kept(path: Path, content: bytes) -> tuple[dict[Key, Row], int]:
-    """Rows of an earlier run and the length of what is whole; a last line without an end is not.
+    """Return the rows of an earlier run and the length of the complete lines; a last line without an end is incomplete.
 
     Raises InputError: the rows are not of these columns and these models.
     """
@@ -120,7 +120,8 @@ def _append(file: BinaryIO, cells: tuple[str, ...]) -> None:
 
 @contextlib.contextmanager
 def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
-    """The table in a folder, ready to append to, and the rows it holds. One sweep at a time. Raises InputError."""
+    """Yield the table in a folder, ready to append to, and its rows; it allows one sweep at a time. Raises
+    InputError."""
     path = folder / "sweep.csv"
     files.make(folder, [path.name])
     file = path.open("a+b")
@@ -132,7 +133,7 @@ def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
         file.seek(0)
         content = file.read()
         rows, length = kept(path, content)
-        if length < len(content):  # a line that was cut off by a crash
+        if length < len(content):  # removes a line that a crash cut off
             file.truncate(length)
         if not length:
             _append(file, HEADER)
@@ -140,21 +141,21 @@ def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
 
 
 def on_all_cores(rows: list[Choices]) -> Generator[Row]:
-    """Rows as they are done, in any order."""
+    """Yield the rows in the order in which they are finished."""
     parallel = joblib.Parallel(n_jobs=-1, return_as="generator_unordered", batch_size=1)
     yield from parallel(joblib.delayed(measure)(row) for row in rows)
 
 
 @contextlib.contextmanager
 def cluster(address: str) -> Iterator[Any]:
-    """A client of the Dask cluster at host:port that has workers. Raises InputError."""
+    """Return a client of the Dask cluster at host:port, which must have workers. Raises InputError."""
     if not re.fullmatch(r"(tcp://)?[\w.\-]+:\d{1,5}", address):
         raise InputError(f"DASK_SCHEDULER={address}: accepted is host:port")
     try:
-        import dask.distributed as dask  # nothing else needs it
+        import dask.distributed as dask  # only this function needs it
     except ImportError as error:
         raise InputError(f"DASK_SCHEDULER={address}: Dask is not installed: run `make setup`") from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # its long messages repeat what this command prints
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # its messages repeat those of this command
     try:
         client = dask.Client(address, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
@@ -168,7 +169,7 @@ def cluster(address: str) -> Iterator[Any]:
 
 
 def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
-    """The same on the workers of a cluster, which are sent the models; they need numpy and scipy.
+    """Yield the rows from the workers of a cluster, which get the models; they need numpy and scipy.
 
     Raises InputError: workers keep another version of the models; RuntimeError: the cluster failed on the way.
     """
@@ -184,13 +185,13 @@ def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
             yield row
     except InputError:
         raise
-    except Exception as error:  # whatever a remote machine can do
+    except Exception as error:  # a remote machine can fail in any way
         what = " ".join(f"{type(error).__name__} {error}".split())
         raise RuntimeError(f"DASK_SCHEDULER: the cluster failed ({what}); what it measured is kept") from error
 
 
 def _packed(folder: Path) -> Path:
-    """The models as workers import them."""
+    """Return the models as a package that workers can import."""
     path = folder / "tactile_depth_models.zip"
     with zipfile.ZipFile(path, "w") as archive:
         package = Path(accuracy.__file__).parent
@@ -200,9 +201,9 @@ def _packed(folder: Path) -> Path:
 
 
 def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> list[Row]:
-    """Measure the rows that the table in `folder` lacks; returns all of them, in the order of `rows`.
+    """Measure the rows that the table in `folder` lacks; return all of them in the order of `rows`.
 
-    Raises InputError, RuntimeError: what was measured before is kept.
+    Raises InputError or RuntimeError; rows measured before are kept.
     """
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(cluster(scheduler)) if scheduler else None
@@ -224,7 +225,7 @@ def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> li
 
 
 def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
-    """Return the accuracy that a depth range costs which no slopes can leave, and the bits that win it back."""
+    """Return the loss of accuracy with a depth range that no slopes exceed, and the word length that compensates it."""
     errors = {}
     for depth_range in ("default", "worst"):
         wanted = configuration_cells({"solver": solver}) | {"depth_range": depth_range}
@@ -242,7 +243,8 @@ def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
 
 
 def summary(rows: list[Row]) -> str:
-    """A line for each solver and boundary at the default, and the narrowest words that are good enough."""
+    """Return a line for each solver and boundary at the default, and the narrowest words that meet the published
+    error."""
     default = configuration_cells({})
     lines = [f"{'':28}{'mean RMS':>10}{'worst':>10}  % of peak{'cycles':>12}{'multipliers':>13}{'Mbit':>7}"]
     for row in rows:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rounding noise of the transform cores over blocks of random words, in the manner of IEEE 1180-1990.
+"""Rounding noise of the transform cores over blocks of random words, as in IEEE 1180-1990.
 
 Peak, mean square and mean error of each output word, in steps of that word, for several amplitudes and both signs. The
-limits of the standard are for one 8 x 8 transform of 9-bit words. Noise spreads over all modes and leaves the range of
-each nearly unused, so lone modes at full amplitude come too.
+limits of the standard are for one 8 x 8 transform of 9-bit words. Noise spreads over all modes and uses little of the
+range of each, so single modes at full amplitude are measured too.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from tactile_depth.transform.orders import bit_reversed, makhoul
 from tactile_depth.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.transform.twiddle_multiply import coefficient_gain
 
-BIAS = 5.0  # standard errors that a mean error may be from zero
-FEWEST = 32  # random blocks: a standard error from three says nothing
+BIAS = 5.0  # allowed distance of a mean error from zero, in standard errors
+FEWEST = 32  # random blocks: fewer give no standard error
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,8 @@ class Compliance:
 
 
 def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int]]:
-    """Name to core (blocks, monitor), the same in double precision, and dimensions; natural order at both ends."""
+    """Return name to core (blocks, monitor), the same in double precision, and dimensions; natural order at both
+    sides."""
     size = config.columns
     order = makhoul(size)
     place = size - 1 - bit_reversed(size)  # of the mode at each position of a burst
@@ -95,9 +96,9 @@ def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int
 def _blocks(
     core: str, size: int, dimensions: int, config: Configuration, count: int
 ) -> Iterator[tuple[str, int, np.ndarray]]:
-    """Name, amplitude and blocks: noise of several amplitudes and both signs, lone modes and lone words.
+    """Return name, amplitude and blocks: noise of several amplitudes and both signs, single modes and single words.
 
-    Full amplitude is what slopes, or a depth as deep as the range, can bring to the core.
+    Full amplitude is the largest that slopes, or a depth within the range, can cause at the core.
     """
     shape = (size,) * dimensions
     inverse = "inverse" in core
@@ -106,18 +107,18 @@ def _blocks(
     sines = np.sin(np.pi * np.outer(k, 2 * n + 1) / (2 * size))
     chosen = np.unique(np.concatenate((k[:4], k[size // 2 - 1 : size // 2 + 2], k[-4:]))) - 1
     if inverse:
-        # Modes of fields of depth from limit to limit within the range.
+        # Modes of depth fields at the limits of the range.
         depth = 2.0 ** (config.depth.width - 1) * config.depth_range_px / config.depth_limit_px  # type: ignore[operator]
         exact = transforms(config)[core][1]
         unit = np.zeros((1, *shape))
         unit[(0,) * (dimensions + 1)] = 1
-        per_mode = float(np.abs(exact(unit)).max())  # depth that a lone first mode of 1 makes
+        per_mode = float(np.abs(exact(unit)).max())  # depth of a single first mode of 1
         full = int(depth / per_mode)
         lone = np.zeros((len(chosen), *shape))
         for index, mode in enumerate(chosen):
             lone[(index,) + (mode,) * dimensions] = full
     else:
-        full = int(2 * config.gradient_limit / config.gradient_lsb)  # of the divergence of lone slopes
+        full = int(2 * config.gradient_limit / config.gradient_lsb)  # for the divergence of single slopes
         waves = sines[chosen]
         lone = full * (waves if dimensions == 1 else waves[:, :, None] * waves[:, None, :])
     yield "lone modes", full, np.rint(np.concatenate((lone, -lone))).astype(np.int64)
@@ -131,7 +132,8 @@ def _blocks(
 
 
 def compliance(config: Configuration, count: int) -> list[Compliance]:
-    """Every transform core of a spectral configuration, over `count` random blocks (2-D: a 32nd, at least `FEWEST`)."""
+    """Measure every transform core of a spectral configuration over `count` random blocks (2-D: count / 32, at least
+    `FEWEST`)."""
     rows = []
     for core, (fixed, exact, dimensions) in transforms(config).items():
         size = config.columns
@@ -150,7 +152,8 @@ def compliance(config: Configuration, count: int) -> list[Compliance]:
 
 
 def _standard_errors(error: np.ndarray) -> float:
-    """Distance of the mean error of blocks (blocks, ..) from zero, in standard errors; many of them mean a bias."""
+    """Return the distance of the mean error of blocks (blocks, ..) from zero in standard errors; a large one is a
+    bias."""
     means = error.reshape(len(error), -1).mean(axis=1)
     spread = float(means.std(ddof=1)) / np.sqrt(len(means))
     return float(abs(means.mean())) / spread if spread else 0.0

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make tune`: the cheapest configuration whose error on frames of the user is within a tolerance.
 
-Two thirds of the frames, drawn by SEED, are for tuning, by the bit-accurate model; on the rest the choice is proven in
-RTL. Cost is the share that a configuration takes of the multipliers plus the share it takes of the memory bits of the
-device of the published design; of two that cost the same the quicker wins. Takes the variables of docs/commands.md as
+Two thirds of the frames, drawn by SEED, tune the choice by the bit-accurate model; the others prove it in RTL. Cost is
+the fraction of the multipliers plus the fraction of the memory bits that a configuration takes of the device of the
+published design; of two with the same cost the faster is chosen. Takes the variables of docs/commands.md as
 KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
 """
 
@@ -33,7 +33,7 @@ from tactile_depth.frames import Frames, load_frames
 from tactile_depth.sensor import Sensor
 
 OWN = ("TOLERANCE", "MAX_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")  # in the order of `Limits`
-LIMITS = (1e-9, 1e9)  # of each of them
+LIMITS = (1e-9, 1e9)  # label of each
 OF_SIM = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
     *("REFERENCE", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
@@ -47,17 +47,18 @@ DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
 DEVICE_MULTIPLIERS = 1728
 DEVICE_MEMORY_BITS = 312 * 36 * 1024 + 96 * 288 * 1024
 
-PROOF = 1 / 3  # share of the frames
-# What the worst frame for tuning must leave, a bit. Of 100 tunings on the bench (tolerances of 0.01 to 0.5, 20 splits
-# each) frames that were kept out then missed the tolerance in none; with 1.75 in 1, with 1.5 in 9, with 1 in 22.
+PROOF = 1 / 3  # fraction of the frames
+# Factor between the tolerance and the worst frame for tuning. In 100 tunings on the bench (tolerances of 0.01 to 0.5,
+# 20 splits each) the other frames then always met the tolerance; they missed it in 1 with 1.75, in 9 with 1.5, and in
+# 22 with 1.
 MARGIN = 2.0
-NOISY_COPIES = 6  # of a frame that comes alone
+NOISY_COPIES = 6  # copies of a single frame
 NOISE_LEVELS = 1.0  # standard deviation of their noise, grey levels
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of the user; an infinite limit is none."""
+    """Limits of the user; an infinite value is no limit."""
 
     tolerance: float
     latency_us: float
@@ -78,7 +79,7 @@ class Limits:
 
 @dataclass(frozen=True, order=True)
 class Widths:
-    """A point of the search."""
+    """Point of the search."""
 
     solver: str
     data: int
@@ -90,17 +91,17 @@ class Widths:
 
 @dataclass
 class Search:
-    """The cheapest point within the tolerance and the limits.
+    """Search of the cheapest point within the tolerance and the limits.
 
-    The error falls as either width grows, within a little noise, and the cost grows. So for each data width only the
-    narrowest coefficient that meets the tolerance can be the cheapest, it does not grow with the data width, and both
-    are found by bisection. Whatever is returned has itself been measured.
+    As a width grows, the error falls (apart from little noise) and the cost grows. So for each data width only the
+    narrowest coefficient that meets the tolerance can be the cheapest. That coefficient does not grow with the data
+    width, and both are found by bisection. Every point that is returned has been measured.
     """
 
     build: Callable[[Widths], Configuration | None]  # None: cannot be built
     measure: Callable[[Configuration], float]  # largest error of the frames for tuning, % of peak
     limits: Limits
-    target: float  # of that error
+    target: float  # target of that error
     tried: dict[Widths, float] = field(default_factory=dict)
 
     def error(self, at: Widths) -> float:
@@ -137,7 +138,7 @@ class Search:
                 if self.build(least) is not None and (
                     not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
                 ):
-                    break  # no coefficient helps, nor do wider words
+                    break  # no coefficient meets the target, and wider words do not either
                 row = replace(widest, data=width)
                 coefficient = _least(
                     COEFFICIENT_WIDTHS[0],
@@ -150,7 +151,7 @@ class Search:
         return min(candidates, key=self.rank) if candidates else None
 
     def nearest(self, solvers: list[str]) -> Widths | None:
-        """Within the limits, the point of the smallest error."""
+        """Return the point of the smallest error within the limits."""
         corners = []
         for solver in solvers:
             for coefficient in range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1):
@@ -170,7 +171,7 @@ def _wider(a: Widths, b: Widths) -> bool:
 
 
 def _least(low: int, high: int, holds: Callable[[int], bool]) -> int:
-    """The least of low..high from which on something holds, by bisection; it is taken to hold at `high`."""
+    """Return the least value in low..high from which on a condition holds, by bisection; it must hold at `high`."""
     while low < high:
         middle = (low + high) // 2
         if holds(middle):
@@ -181,12 +182,14 @@ def _least(low: int, high: int, holds: Callable[[int], bool]) -> int:
 
 
 def weight(counted: Cost) -> float:
-    """Cost of a configuration: shares of the device, multipliers and memory bits added."""
+    """Return the cost of a configuration: the sum of its fractions of multipliers and memory bits of the device."""
     return counted.tiles / DEVICE_MULTIPLIERS + counted.memory_bits / DEVICE_MEMORY_BITS
 
 
 def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames, str]:
-    """Frames for tuning, frames to prove on, and a line that says how; frames without contact are in neither.
+    """Return the frames for tuning, the frames for the proof, and a line that describes the split.
+
+    Frames without contact are in neither.
 
     Raises InputError: no contact in any frame.
     """
@@ -204,7 +207,7 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
         labels = (label, *(f"{label} + noise {i}" for i in range(1, NOISY_COPIES)))
         frames, contacts = replace(frames, pixels=pixels, labels=labels), np.arange(NOISY_COPIES)
         how = f"one frame{left_out}: tuned on it and copies with noise, proven on copies with other noise"
-        order = contacts  # the frame itself is tuned on
+        order = contacts  # the frame itself is for tuning
     else:
         order = rng.permutation(contacts)
         how = ""
@@ -219,7 +222,7 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
 
 
 def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]:
-    """KEY=VALUE arguments to a request of make sim, the limits and the solvers to choose from. Raises InputError."""
+    """Return the request of make sim, the limits and the solvers to choose from. Raises InputError."""
     values = variables.given(arguments, OWN + OF_SIM)
     own = {key: value for key, value in values.items() if key in OWN}
     passed = {"FRAMES": DEFAULT_FRAMES} | {key: value for key, value in values.items() if key not in OWN}
@@ -230,7 +233,7 @@ def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]
 
 
 def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int | float]:
-    """The variables of make sim that choose this configuration."""
+    """Return the variables of make sim that choose this configuration."""
     square = request.rows == request.columns
     chosen: dict[str, str | int | float] = {
         "SOLVER": at.solver,

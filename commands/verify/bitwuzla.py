@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The solver bitwuzla as yosys-smtbmc calls it: SMT-LIB on standard input, answers on standard output.
+"""Program for yosys-smtbmc around the solver bitwuzla: SMT-LIB on standard input, answers on standard output.
 
-The wheel brings a library and no program. Commands are handed over one by one, as they are complete, because an answer
-decides what is asked next.
+The wheel contains a library but no program. Each command goes to the solver as soon as it is complete, because
+yosys-smtbmc waits for the answer before it sends more.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import bitwuzla
 
 
 def commands(stream: TextIO) -> Iterator[str]:
-    """S-expressions of the top level. Strings and quoted symbols may hold parentheses, comments end with the line."""
+    """Yield the S-expressions of the top level; strings, quoted symbols and comments may hold parentheses."""
     text, depth, quote = "", 0, ""
     for line in stream:
         for place, character in enumerate(line):

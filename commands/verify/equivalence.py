@@ -53,10 +53,10 @@ opt -fast
 aigmap
 opt_clean
 """
-# With two clocks a cycle is a step of time, in which each clock rises or not.
+# With two clocks a cycle is a step of time in which each clock may rise.
 ONE_CLOCK = {"steps": "", "legalize": "dfflegalize -cell $_DFF_P_ 01\n"}
 TWO_CLOCKS = {"steps": "clk2fflogic\nopt_clean\n", "legalize": ""}
-# Of a multiplexer's selects a mutant may have two high: as in what Yosys writes for simulators, the lowest wins.
+# A mutant may have two selects of a multiplexer high: the lowest wins, as in the Verilog that Yosys writes.
 FIRST_WINS = """(* techmap_celltype = "$pmux" *)
 module first_wins (A, B, S, Y);
   parameter WIDTH = 1;
@@ -83,7 +83,7 @@ class Graph:
     """An and-inverter graph in AIGER's numbering: literal 2 v is node v, 2 v + 1 its inverse, 0 is false."""
 
     inputs: dict[str, int]  # name of the bit to its literal
-    latches: list[tuple[int, int, int]]  # literal, next, start: 0, 1, or the literal itself for anything
+    latches: list[tuple[int, int, int]]  # literal, next, start: 0, 1, or the literal itself for any value
     outputs: dict[str, int]
     ands: list[tuple[int, int, int]]
 
@@ -166,7 +166,7 @@ def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int |
         match = re.fullmatch(r"([io])(\d+) (\S+)", line)
         if match:
             names[match[1], int(match[2])] = match[3]
-    # Those without a name are undefined values, such as words beyond the end of a memory: anything, in both copies.
+    # Inputs without a name are undefined values, such as words beyond the end of a memory: any value, the same in both.
     inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)}
 
     return Graph(
@@ -267,7 +267,7 @@ class Miter(Gates):
             value[literal] = self.state(self.latch[literal], literal, start)
         for out, a, b in source.ands:
             value[out] = self.both(read(value, a), read(value, b))
-        # The second copy, as far as it differs: what depends on the selector's bits, then what that reaches.
+        # The part of the second copy that can differ: logic that depends on the selector, then logic that it reaches.
         other = dict(value)
         users: dict[int, list[int]] = {}
         for index, (_, a, b) in enumerate(source.ands):
@@ -276,7 +276,7 @@ class Miter(Gates):
         loaded: dict[int, list[int]] = {}
         for index, (_, following, _) in enumerate(source.latches):
             loaded.setdefault(following & ~1, []).append(index)
-        apart: set[int] = set()  # latches of their own
+        apart: set[int] = set()  # latches with a second copy
         changed = []
         for literal, bit in self.selector.items():
             if self.number >> bit & 1:
@@ -285,7 +285,7 @@ class Miter(Gates):
         while changed:
             reached: set[int] = set()
             stack = list(changed)
-            while stack:  # gates that may change
+            while stack:  # gates whose value may differ
                 for index in users.get(stack.pop(), ()):
                     if index not in reached:
                         reached.add(index)

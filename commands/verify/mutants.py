@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All mutants of a core in one netlist, behind a register that selects one; and the core's testbench run on each.
+"""Netlist with all mutants of a core and a register that selects one, and runs of the testbench on each mutant.
 
-The structure of the core comes from its own test, see structures.py.
+structures.py reads the structure of the core from its test.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from commands.common import simulator as simulation
 from commands.verify.structures import Structure
 
 SELECTOR = "mutsel"
-MANY = 60  # of what tests repeat to meet what comes seldom (tb/stream.py), where it is counted what they meet
-# A register becomes an input, its value, and an output, what it takes next.
+MANY = 60  # repetitions of rare cases in tests (tb/stream.py), for mutants and coverage
+# A register becomes an input (its value) and an output (its next value).
 OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
 dffunmap @register
 expose -evert-dff -sep __ w:{name} @register %u
 opt_clean
 """
-# Only the wrapper's signals are seen from Python. Warnings in what Yosys wrote are not ours.
+# Python sees only the signals of the wrapper. Warnings in Verilog of Yosys are off.
 PUBLIC = """`verilator_config
 public_flat_rw -module "{core}" -var "*"
 lint_off -file "*mutants.v"
@@ -54,7 +54,7 @@ def read_commands(core: str, structure: Structure, options: str = "") -> str:
 @dataclass(frozen=True)
 class Mutant:
     number: int
-    what: str  # for a reader: kind, cell's port, wire, place in the source
+    what: str  # description for the report: kind, port of the cell, wire, position in the source
 
 
 def described(line: str) -> str:
@@ -71,7 +71,7 @@ def described(line: str) -> str:
 
 
 def initialised(names: Mapping) -> set[int]:
-    """Bits that begin with a value of their own. `names`: of the nets, in Yosys' JSON."""
+    """Return the bits with an initial value; `names` are the nets in Yosys' JSON."""
     return {
         bit
         for net in names.values()
@@ -81,11 +81,11 @@ def initialised(names: Mapping) -> set[int]:
 
 
 def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
-    """Return True if a mutant tells something about the tests.
+    """Return True if a mutant measures the tests.
 
-    A register without a clock does not, nor a constant in place of itself. Constant pins of a memory say what kind
-    it is. Behind a register with an initial value Yosys would put the mutant in the register's place, and lose the
-    value: the pins that it drives are mutated too.
+    A register without a clock does not, nor a constant replaced by itself, nor a constant pin that configures a memory.
+    After a register with an initial value Yosys would replace the register by the mutant and lose the value; the pins
+    that the register drives are mutated instead.
     """
     words = line.split()
     mode, name, port, bit = (words[words.index(option) + 1] for option in ("-mode", "-cell", "-port", "-portbit"))
@@ -99,11 +99,11 @@ def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
 
 
 def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: bool = True) -> str:
-    """Script that makes one netlist of a core, base.il, and ports.json; not `flat`: with the cores in it as they are.
+    """Return the script that makes the netlist base.il of a core, and ports.json; unless `flat`, it keeps the cores
+    inside.
 
-    The units have no runs of their own: they become a part of the top.
-
-    `outside`: registers that become ports of the netlist, to be where a testbench can write them.
+    The units have no testbenches and become a part of the top. The registers `outside` become ports of the netlist, so
+    that a testbench can write them.
     """
     read = read_commands(core, structure, "" if flat else "--keep-hierarchy")
     units = " ".join(f"{unit}$*" for unit in repository.UNITS)
@@ -119,10 +119,11 @@ def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: boo
 def make(
     core: str, structure: Structure, count: int, seed: int, folder: Path, outside: Sequence[str] = (), flat: bool = True
 ) -> tuple[list[Mutant], bool]:
-    """Write <folder>/mutants.v and mutants.il, module <core>_netlist; the mutants, and whether those are all there are.
+    """Write <folder>/mutants.v and mutants.il, module <core>_netlist; return the mutants, and True if there are no
+    more.
 
-    `outside` as in `base`; not `flat`: of its own cells and of the pins of the cores in it alone. Constant logic goes
-    first, so that no mutant is dead from the start.
+    `outside` is as in `base`. Unless `flat`, only the core's own cells and the pins of the cores inside are mutated.
+    Constant logic is removed first, so that every mutant can have an effect.
     """
     if structure.roms:
         structure.roms(folder)
@@ -154,13 +155,14 @@ def ports(core: str, folder: Path) -> dict[str, tuple[str, int]]:
 
 
 def registers_outside(core: str, folder: Path) -> dict[str, int]:
-    """Name to bits of each."""
+    """Return the registers outside, name to bits."""
     module = json.loads((folder / "ports.json").read_text())["modules"][core]
     return {name[:-3]: len(port["bits"]) for name, port in module["ports"].items() if name.endswith("__q")}
 
 
 def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
-    """The netlist as a cell named `netlist`, and its registers outside. Verilog. Without a `selector`: no mutants."""
+    """Return Verilog of the netlist as a cell `netlist` with its registers outside; without `selector` it has no
+    mutants."""
     outside = registers_outside(core, folder)
     connections = [f".{name}({name})" for name in (*ports(core, folder), *([selector] if selector else []))]
     lines = []
@@ -172,7 +174,8 @@ def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
 
 
 def wrapper(core: str, folder: Path, selector: str = SELECTOR) -> str:
-    """A module with the core's name, parameters and ports, around the netlist and the register that selects, if any."""
+    """Return a module with name, parameters and ports of the core, around the netlist and the selecting register, if
+    any."""
     header = re.search(rf"^module {core}\b.*?^\);\n", repository.cores()[core].hdl.read_text(), re.S | re.M)
     assert header is not None, core
     selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""
@@ -189,7 +192,7 @@ def run(
     seed: int,
     repeats: int = MANY,
 ) -> list[dict]:
-    """The core's testbench on each mutant; a dict of each with its verdict, the device itself being number 0.
+    """Run the testbench of the core on each mutant; return a dict with the verdict of each, with the core as number 0.
 
     `repeats`: of what the testbench repeats (MANY of tb/stream.py).
 

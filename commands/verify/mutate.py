@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make mutate`: mutants of every core in hdl/ through its own testbench, survivors settled by formal proof.
+"""`make mutate`: mutants of every core in hdl/ in its testbench; formal proofs settle the survivors.
 
 CORE=name,.. MUTANTS=200 SEED=1 JOBS=2 SECONDS=60 (of the solver, for each step of each survivor).
 
-Each core gets MUTANTS mutants, or all there are, in one netlist (mutants.py). Its own testbench runs on each mutant
-up to the first failure (tb/mutants.py). A formal proof (equivalence.py) compares each survivor with the core, for every
-use that the protocol of the core allows (formal/). An equivalent mutant does not count. A different one is a hole
-in the tests, and one that stays open counts as a hole. As a check of the protocols, some killed mutants go to the
-solver, which must not prove them equivalent.
+Each core gets MUTANTS mutants, or as many as exist, in one netlist (mutants.py). Its testbench runs on each mutant up
+to the first failure (tb/mutants.py). A formal proof (equivalence.py) compares each survivor with the core, for every
+use that the protocol of the core allows (formal/). An equivalent mutant does not count. A different mutant is a hole in
+the tests, and an open one counts as a hole. To check the protocols, some killed mutants go to the solver, which must
+not prove them equivalent.
 
 Exit status: 1 if all cores together score below 97 %, or a core below 95 %.
 """
@@ -35,25 +35,25 @@ from commands.verify.structures import structure
 
 OUT = repository.ROOT / "build" / "mutate"
 CORE_BAR, TOTAL_BAR = 95.0, 97.0  # per cent of the mutants that are not equivalent: each core, all cores together
-CONTROLS = 4  # killed mutants of each structure that are also put to the solver
+CONTROLS = 4  # killed mutants of each structure that the solver checks too
 
 
 @dataclass(frozen=True)
 class Core:
     """Settings for mutating a core.
 
-    `structures` are places in the list of those that tests/test_<name>.py builds: small ones, that together have
-    every generate branch that matters.
+    `structures` are positions in `structures.structures`, of small builds that together contain every relevant generate
+    branch.
     """
 
     structures: tuple[int, ...] = (0,)
     protocol: str = ""  # formal/protocols/protocol_<protocol>.sv; by default protocol_<name>.sv, if there is one
-    rows_are: str = ""  # parameter of the core that the protocol knows as Rows
-    # One after the other gets what the one before let live. Icarus needs no build, and sees X.
+    rows_are: str = ""  # parameter of the core that the protocol calls Rows
+    # Each simulator gets the survivors of the one before. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
-    repeats: int = mutants.MANY  # of what its testbench repeats; few where each repetition meets everything
-    flat: bool = True  # else of its own cells and of the pins of the cores in it alone: those have runs of their own
+    repeats: int = mutants.MANY  # repetitions of rare cases; fewer if each repetition reaches every case
+    flat: bool = True  # False: mutants of its own cells and of the pins of the cores inside, which have their own runs
 
 
 QUICK_FIRST = ("verilator", "icarus")
@@ -127,7 +127,7 @@ CORES = {
     "tridiagonal_solver": Core((4,), "words", simulators=QUICK_FIRST, flat=False),
     "tactile_depth": Core((1,), simulators=("verilator",), flat=False),
 }
-# Nothing in them to mutate.
+# Files without mutants of their own.
 LEFT_OUT = {
     **dict.fromkeys(("register_map_pkg", "camera_map_pkg"), "constants, which the registers are built of"),
     "default_parameters_pkg": "constants",
@@ -143,7 +143,7 @@ def score(killed: int, counted: int) -> float:
 
 @dataclass
 class Outcome:
-    """Counts of one core, all its structures together."""
+    """Counts of one core over all its structures."""
 
     core: str
     mutants: int = 0
@@ -152,8 +152,8 @@ class Outcome:
     different: int = 0
     open: int = 0
     settled_by: dict[str, int] = field(default_factory=dict)  # survivors by the step that settles them
-    contradictions: int = 0  # killed, and proven equivalent: the protocol allows less than the testbench does
-    every: bool = True  # those are all there are
+    contradictions: int = 0  # killed, but proven equivalent: the protocol allows less than the testbench drives
+    every: bool = True  # True: the core has no more mutants
     seconds: float = 0.0
     survivors: list[dict] = field(default_factory=list)
 
@@ -168,7 +168,7 @@ class Outcome:
 
 @contextmanager
 def progress(what: str, count: int, path: Path) -> Iterator[None]:
-    """A bar that moves with the lines of a file."""
+    """Show a bar that moves with the lines of a file."""
     done = threading.Event()
     with tqdm(total=count, desc=what, leave=False, disable=None) as bar:
 
@@ -220,7 +220,7 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
             if settle(graph, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
                 survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
-                outcome.survivors.append(survivor | {"how": "killed, yet proven equivalent"})
+                outcome.survivors.append(survivor | {"how": "killed, but proven equivalent"})
     outcome.seconds = time.monotonic() - began
     (OUT / name / "outcome.json").write_text(json.dumps(asdict(outcome) | {"score": outcome.score}, indent=1) + "\n")
     return outcome
@@ -232,7 +232,7 @@ HEAD = f"{'core':<22}" + "".join(f"{name:>{width}}" for name, width in COLUMNS.i
 
 def row(outcome: Outcome) -> str:
     values = {name: f"{getattr(outcome, name):.0f}" for name in COLUMNS} | {"score": f"{outcome.score:.1f}%"}
-    notes = ["all there are"] if outcome.every else []
+    notes = ["all mutants"] if outcome.every else []
     notes += [f"{outcome.contradictions} CONTRADICTIONS"] if outcome.contradictions else []
     notes += [] if outcome.passed else ["MISSED"]
     cells = "".join(f"{values[name]:>{width}}" for name, width in COLUMNS.items())
@@ -264,7 +264,7 @@ def main() -> None:
 
 
 def run(names: list[str], choices: dict[str, str]) -> int:
-    """Mutate each core and print a row of it; returns the exit status."""
+    """Mutate each core and print its row; return the exit status."""
     OUT.mkdir(parents=True, exist_ok=True)
     numbers = {name.lower(): int(choices[name]) for name in ("SEED", "JOBS", "SECONDS")}
     outcomes = []

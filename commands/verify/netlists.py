@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make netlists`: every core after synthesis through its own testbench, and the whole at 32 x 32 with each solver.
+"""`make netlists`: every core after synthesis in its testbench, and the top at 32 x 32 with each solver.
 
-CORE=name,.. SEED=1. The netlist is that of Yosys for 7-series logic, whose cells have simulation models in Yosys'
-library: LUT1 to LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as in ram.sv and rom.sv:
-they are where a macro goes. The testbench compares every output with the bit-accurate model, as it does for the RTL.
-Parameters are those at which `make mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
+Takes CORE=name,.. and SEED=1. Yosys maps to 7-series logic, whose cells have simulation models in its library: LUT1 to
+LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as in ram.sv and rom.sv, because a macro replaces them. The
+testbench compares every output with the bit-accurate model, as it does for the RTL. Parameters are those at which `make
+mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ OUT = repository.ROOT / "build" / "netlists"
 LIBRARY = "share/xilinx/cells_sim.v"  # Yosys' simulation models of the cells
 WHOLE = "tactile_depth"
 WHOLE_SIZE = 32
-# How far the testbench of the whole goes, by simulator (tb/selection.py). Icarus sees X, but plays 500 clocks a minute.
+# Last level of the testbench of the top, by simulator (tb/selection.py). Icarus sees X, but plays 500 cycles a minute.
 WHOLE_LEVELS = {"icarus": "first", "verilator": "stream"}
 LIBRARY_AS_IT_IS = "".join(
     f'lint_off {rule}-file "*{file}"\n'
@@ -44,7 +44,7 @@ LIBRARY_AS_IT_IS = "".join(
 
 @dataclass(frozen=True)
 class Case:
-    """A core as its test builds it."""
+    """Structure of a core, and the levels of its run."""
 
     core: str
     name: str
@@ -54,7 +54,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Result:
-    """Cells of a netlist, and how many tests it ran and failed."""
+    """Cells of a netlist, tests run and tests failed."""
 
     case: Case
     cells: Mapping[str, int]
@@ -64,18 +64,18 @@ class Result:
 
 
 def cases(names: Sequence[str]) -> list[Case]:
-    """Return the structures of `make mutate` for each core named, and both solvers for the whole."""
+    """Return the structures of `make mutate` for each core in `names`, and both solvers for the top."""
     listed = []
     for name in names:
         if name == WHOLE:
-            listed += [whole(solver) for solver in COLUMNS]
+            listed += [whole_design(solver) for solver in COLUMNS]
             continue
         for index in mutate.CORES[name].structures:
             listed.append(Case(name, f"{name}-{index}", structure(name, index)))
     return listed
 
 
-def whole(solver: str) -> Case:
+def whole_design(solver: str) -> Case:
     choices: dict[str, Any] = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
     config = Configuration(**choices)
     built = Structure(
@@ -89,7 +89,7 @@ def whole(solver: str) -> Case:
 
 
 def netlist(case: Case, folder: Path) -> dict[str, int]:
-    """Write netlist.v and wrapper.sv; its cells by type. Raises RuntimeError."""
+    """Write netlist.v and wrapper.sv; return the number of cells by type. Raises RuntimeError."""
     core, outside = case.core, mutate.CORES[case.core].outside
     if case.structure.roms:
         case.structure.roms(folder)
@@ -106,7 +106,7 @@ def netlist(case: Case, folder: Path) -> dict[str, int]:
 
 
 def run(case: Case, seed: int) -> Result:
-    """Synthesis, and the testbench on what comes of it. Raises RuntimeError."""
+    """Synthesise a structure and run its testbench on the netlist. Raises RuntimeError."""
     began = time.monotonic()
     folder = OUT / case.name
     folder.mkdir(parents=True, exist_ok=True)
@@ -155,7 +155,7 @@ def row(result: Result) -> str:
 
 
 def parse(arguments: list[str]) -> tuple[list[str], int]:
-    """Names of cores, and the seed. Raises InputError."""
+    """Return the names of cores, and the seed. Raises InputError."""
     values = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
     values |= variables.given(arguments, values)
     names = repository.tested(repository.chosen(values["CORE"]))
@@ -180,7 +180,7 @@ def main() -> None:
 
 
 def verdict(results: list[Result]) -> int:
-    """Print whether all netlists agree; returns the exit status."""
+    """Print the number of netlists and those that differ; return the exit status."""
     wrong = [result.case.name for result in results if result.failed or not result.tests]
     tests = sum(result.tests for result in results)
     print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make quick`: tests and lint of what differs from BASE, and one run of the whole, in under two minutes.
 
-BASE is a commit, by default the merge base with origin/main. Changes that are not committed and files that git does not
-know yet count. Shared files, on which too much depends for a quick test, are named: run `make test` for them.
+BASE is a commit, by default the merge base with origin/main. Uncommitted changes and untracked files count. The command
+names changed files that many tests depend on: run `make test` for these.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def base_commit(base: str) -> str:
 
 
 def changed_files(commit: str) -> list[str]:
-    """Return the files that differ from a commit, those that git does not know included."""
+    """Return the files that differ from a commit, untracked files included."""
     tracked = git("diff", "--name-only", "-z", commit)
     untracked = git("ls-files", "--others", "--exclude-standard", "-z")
     return sorted({name for name in (tracked + untracked).split("\0") if name})
@@ -104,7 +104,7 @@ def test_of(path: Path) -> str | None:
 
 
 def plan(changes: Affected) -> list[Sequence[str]]:
-    """Return the processes to run, those that fail soonest first."""
+    """Return the processes to run, the fastest to fail first."""
     tests = [*tests_of(changes.cores), *changes.tests]
     return [
         *([pytest(tests)] if tests else []),

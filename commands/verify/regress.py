@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make regress`: what `make test` samples, in full; a table of it all. Exit status 1 if anything failed.
+"""`make regress`: all tests that `make test` samples, and a table of them. Exit status 1 if anything failed.
 
 Parts, chosen with PARTS=a,b: `faults` (tests/test_faults.py, the full product), `codes` (RTL against model in bulk),
 `power_ups` (the quick tests of every core and of the top from 100 random states), `seeds` (every test of RTL with
-another seed, of single cores on Icarus, and all that `make test` leaves out for its length). JOBS is the number of
+another seed, of single cores on Icarus, and all tests that are too long for `make test`). JOBS is the number of
 processes, 2 by default.
 """
 
@@ -39,14 +39,14 @@ ROOT = repository.ROOT
 POWER_UPS = 100
 SEEDS = (2,)
 SEEDED = "seeds or regress"  # markers of tests/conftest.py
-CODES = 5_000_000  # of each job of `codes`, or more: what makes a whole frame
-MODEL_PIXELS = 1 << 20  # that go through the models at a time
-SCENES_RENDERED = 160  # of a job, at most
+CODES = 5_000_000  # codes of each job of `codes`, rounded up to whole frames
+MODEL_PIXELS = 1 << 20  # pixels that go through the models at a time
+SCENES_RENDERED = 160  # most scenes of a job
 
 
 @dataclass(frozen=True)
 class Job:
-    """One device and what disturbs it."""
+    """Device and its disturbances."""
 
     columns: int
     solver: str
@@ -56,7 +56,7 @@ class Job:
     rows: int = 0
     gaps: float = 0.0
     stalls: float = 0.0
-    depth_share: float = 0.25  # of the shorter side: the deepest that does not saturate
+    depth_share: float = 0.25  # depth range as a fraction of the shorter side
     simulator: str = "verilator"
     codes: int = CODES
 
@@ -99,7 +99,7 @@ JOBS = (
 
 
 def frames_of(job: Job, count: int, rng: np.random.Generator) -> Iterator[np.ndarray]:
-    """`count` frames, uint8 (rows, columns, 3), all different: noise, extremes and scenes by turns."""
+    """Yield `count` different frames, uint8 (rows, columns, 3): noise, extremes and scenes in turn."""
     shape = (job.rows or job.columns, job.columns, 3)
     names = [name for name in SCENES if name != "flat"]
     scenes: list[np.ndarray] = []
@@ -127,7 +127,7 @@ def frames_of(job: Job, count: int, rng: np.random.Generator) -> Iterator[np.nda
 
 
 def compare(job: Job, seed: int) -> dict[str, Any]:
-    """Stream the job's frames through its device and compare every code and what the hardware counted."""
+    """Stream the frames of a job through its device; compare every code and the counters of the hardware."""
     depth = job.depth_share * min(job.rows or job.columns, job.columns)
     config = Configuration(
         columns=job.columns,
@@ -188,7 +188,7 @@ class Part:
 
 
 class Progress:
-    """One line that is rewritten on a terminal; elsewhere a line a minute."""
+    """Progress line: rewritten on a terminal, otherwise printed once a minute."""
 
     def __init__(self, part: str):
         self.part, self.began, self.printed = part, time.monotonic(), 0.0
@@ -204,7 +204,7 @@ class Progress:
 
 
 def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str], environment: dict[str, str]) -> None:
-    """Run tests; what they recorded becomes the part's lines."""
+    """Run tests; their records become the lines of the part."""
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records.jsonl"
         options = ["-vv", "-n", str(jobs), "--dist", "worksteal", f"--basetemp={folder}/tests"]
@@ -260,7 +260,7 @@ def codes(part: Part, progress: Progress, jobs: int) -> None:
         for future in as_completed(waiting):
             try:
                 part.lines.append(future.result())
-            except Exception as error:  # one that fails must not hide the others
+            except Exception as error:  # a failed job must not hide the others
                 part.failures.append(f"{waiting[future].label}: {error}")
             progress.say(f"{len(part.lines)} of {len(JOBS)}  {waiting[future].label}")
 
@@ -274,7 +274,7 @@ PARTS: dict[str, Callable[[Part, Progress, int], None]] = {
 
 
 def table(parts: list[Part]) -> str:
-    """A row for each thing done, the sum of each part below."""
+    """Return a table with a row for each line of a part, and the sum of the part below."""
     rows = [f"{'part':10}{'what':52}{'simulator':>10}{'runs':>8}{'codes':>13}{'different':>10}{'seconds':>9}"]
     for part in parts:
         totals = [0, 0, 0]
@@ -292,7 +292,7 @@ def table(parts: list[Part]) -> str:
 
 
 def matrix(part: Part) -> str:
-    """Count how often each kind of fault was played on each device."""
+    """Return the table of the number of faults of each kind on each device."""
     counts: dict[str, Counter[str]] = {}
     for line in part.lines:
         for kind, number in line.get("kinds", {}).items():
@@ -315,7 +315,7 @@ def main() -> None:
 
 
 def run(names: list[str], jobs: int) -> int:
-    """Run the parts and print a table of them; returns the exit status."""
+    """Run the parts and print their table; return the exit status."""
     parts = []
     for name in names:
         part = Part(name)

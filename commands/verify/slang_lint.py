@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elaborates and analyses SystemVerilog with slang, every warning on, and leaves out what is waived.
+"""Lint by slang: it elaborates and analyses SystemVerilog with every warning on, and leaves out waived findings.
 
     python -m commands.verify.slang_lint TOP[,TOP..] [-GName=Value ..] FILE..
 
-prints what it finds; exit status 1 when there is anything.
+prints the findings; exit status 1 if there are any.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from pyslang import DiagnosticSeverity, driver
 
 @dataclass(frozen=True)
 class Finding:
-    """A diagnostic of slang."""
+    """Diagnostic of slang."""
 
-    option: str  # the warning's name; empty for an error that has none
+    option: str  # name of the warning; empty for an error without a name
     place: str
     text: str
-    source: str  # from the place to the end of its line
-    types: tuple[str, ...]  # that it speaks of
+    source: str  # text from the position to the end of its line
+    types: tuple[str, ...]  # names and types in the message
 
     def __str__(self) -> str:
         return f"{self.place}: {self.text}" + (f" [-W{self.option}]" if self.option else "")
 
 
 def width(name: str) -> int | None:
-    """Bits of a packed type by its name; None: not one."""
+    """Return the bits of a packed type by its name; None for other types."""
     if match := re.fullmatch(r"(?:logic|bit|reg)(?: signed)?(?:\[(-?\d+):(-?\d+)\])?", name):
         return abs(int(match[1]) - int(match[2])) + 1 if match[1] else 1
     return {"int": 32, "integer": 32}.get(name)
@@ -49,7 +49,7 @@ def same_width(finding: Finding) -> bool:
 
 @dataclass(frozen=True)
 class Waiver:
-    """Findings that are left out, and why."""
+    """Findings that are left out, and the reason."""
 
     option: str
     holds: Callable[[Finding], bool]
@@ -99,7 +99,7 @@ WAIVERS = (
     Waiver("unused-wildcard-import", lambda f: "build/" in f.place, "a generated wrapper imports every package"),
 )
 
-# Only for one structure of the whole or one core, which leaves other cores and what they use of the packages aside.
+# Only for one structure or one core, which does not use other cores and all constants of the packages.
 NOT_IN_A_STRUCTURE = ("unused-def", *(f"unused-package-{kind}" for kind in ("parameter", "subroutine", "typedef")))
 
 
@@ -123,7 +123,7 @@ def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str
     parsed = engine_driver.parseAllSources()
     compilation = engine_driver.createCompilation()
     diagnostics = [*compilation.getAllDiagnostics()]
-    engine_driver.diagEngine.clearClients()  # they would print what is waived
+    engine_driver.diagEngine.clearClients()  # they would print waived findings
     if parsed and not any(diagnostic.isError() for diagnostic in diagnostics):
         diagnostics += engine_driver.runAnalysis(compilation).getDiagnostics()
     engine, manager = engine_driver.diagEngine, engine_driver.sourceManager
@@ -141,7 +141,7 @@ def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str
 
 
 def waiver(finding: Finding) -> Waiver | None:
-    """The waiver that leaves a finding out, if any."""
+    """Return the waiver that leaves a finding out, if any."""
     return next((w for w in WAIVERS if w.option == finding.option and w.holds(finding)), None)
 
 

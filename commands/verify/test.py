@@ -15,7 +15,7 @@ from commands.common import repository, variables
 from commands.common.simulator import SIMULATORS
 from tactile_depth.errors import InputError
 
-WIDE = {"COLUMNS": "200"}  # so that the summary shows a whole message
+WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
 ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from several random power-up states
 
 
@@ -54,7 +54,7 @@ def main() -> None:
             environment["SIM"] = values["SIM"]
         if "CORE" in values:
             cores = repository.chosen(values["CORE"])
-            processes = [pytest(tests_of(cores)), lint(cores)]  # a wrong result is of more interest than style
+            processes = [pytest(tests_of(cores)), lint(cores)]  # a wrong result is more important than style
             environment |= ONE_POWER_UP
         else:
             processes = [lint(), pytest()]

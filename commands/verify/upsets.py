@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make upsets`: flips bits of registers and memories while frames stream through, and counts what becomes of it."""
+"""`make upsets`: flips bits of registers and memories while frames stream through, and counts the outcomes."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ CASES: dict[str, dict[str, Any]] = {
 OUTCOMES = {
     "hang": "a frame sent after the flip did not come out",
     "stays wrong": "a frame sent after the flip came out wrong",
-    "flagged": "a frame in flight was damaged or lost, and a sticky bit says so",
-    "not flagged": "a frame in flight was damaged or lost, and nothing says so",
+    "flagged": "a frame in flight was damaged or lost, and a sticky bit is set",
+    "not flagged": "a frame in flight was damaged or lost, and no bit is set",
     "false alarm": "a sticky bit, but every frame was right",
     "masked": "every frame right, no sticky bit",
 }
 
 
 def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]:
-    """Experiments on one structure, `upsets` for each module and for its memories."""
+    """Run `upsets` experiments on one structure for each module and for its memories."""
     config = Configuration(**CASES[case])
     write_roms(folder, synthetic(config.bits_per_channel), config)
-    (folder / "sim.vvp").unlink(missing_ok=True)  # the runner would keep one of other parameters
+    (folder / "sim.vvp").unlink(missing_ok=True)  # the runner would keep a build with other parameters
     log = folder / "run.log"
     simulation.build("icarus", "tactile_depth", repository.sources(), top_parameters(config), folder, log=log)
     count, failed = simulation.run(
@@ -54,7 +54,7 @@ def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]
 
 
 def table(results: list[dict[str, Any]]) -> str:
-    """A row for each module, a column for each outcome; settings, which software rewrites, by themselves."""
+    """Return a table with a row per module and a column per outcome; settings, which software rewrites, come last."""
     rows: dict[str, Counter[str]] = {}
     for result in results:
         name = "settings (held until rewritten)" if result["setting"] else result["group"]
@@ -75,7 +75,7 @@ def main() -> None:
 
 
 def campaign(upsets: int, seed: int) -> int:
-    """Flip bits in every case and print tables of the outcomes; returns the exit status."""
+    """Flip bits in every case and print tables of the outcomes; return the exit status."""
     folders = {case: repository.ROOT / "build" / "upsets" / case for case in CASES}
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)

@@ -34,7 +34,7 @@ async def play(dut: Any, levels: Any) -> Any:
     """Drive the pin with levels, the first of them in a reset; return the bytes received."""
     dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
     edge = RisingEdge(dut.clk)
-    found: list[Any] = []
+    received: list[Any] = []
     (divider,) = parameters(dut, "Divider")
     dut.rst.value, dut.line.value = 1, levels[0]
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
@@ -45,10 +45,10 @@ async def play(dut: Any, levels: Any) -> Any:
         await edge
         assert not (dut.out_valid.value and dut.broken.value)
         if dut.broken.value:
-            found.append(None)
+            received.append(None)
         elif dut.out_valid.value:
-            found.append(int(dut.out_data.value))
-    return found
+            received.append(int(dut.out_data.value))
+    return received
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

@@ -143,14 +143,14 @@ class Board:
         """Return the record of each frame, and whether its light is on, from its thresholds and its time."""
         depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
         events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
-        found = []
+        expected_records = []
         for codes, (on, off), time in zip(depth, thresholds, times, strict=True):
             settings = Settings(on, off, 1, 1)
             for place, code in enumerate(codes.flat):
                 row_end = place % self.columns == self.columns - 1
                 record = events.beat(int(code), place == 0, row_end, place == codes.size - 1, settings, time)
-            found.append((record.words, bool((codes > on).any())))  # type: ignore[union-attr]
-        return found
+            expected_records.append((record.words, bool((codes > on).any())))  # type: ignore[union-attr]
+        return expected_records
 
     def setting(self, name: str, writes: Any, pixels: int) -> Any:
         """Return the value of a register when the frame with this last pixel leaves; tests write between frames."""
@@ -163,12 +163,12 @@ class Board:
         depth_clocks = 2 * self.rows * self.columns + 8 * self.columns + 1000
         await ClockCycles(self.dut.clk_25mhz, depth_clocks + 120 * BITS * self.bit_clocks)
         expected = self.records()
-        found = [words_of(content) for content in packets(self.replies)]
-        assert [words for words, _ in expected] == found
+        received = [words_of(content) for content in packets(self.replies)]
+        assert [words for words, _ in expected] == received
         ends = [place for place, byte in enumerate(self.replies) if byte == END][1::2]
         assert [bool(self.lights[place] & 1) for place in ends] == [light for _, light in expected]
         assert [self.lights[place] >> 1 & 1 for place in ends] == [(number + 1) % 2 for number in range(len(ends))]
-        return len(found)
+        return len(received)
 
 
 @case(Level.FIRST, milliseconds=1)
@@ -199,18 +199,18 @@ async def broken_transfers(dut: Any) -> None:
     board = Board(dut)
     await board.start()
     rng = random.Random(cocotb.RANDOM_SEED)
-    whole = frame_packet(board.touched())
-    middle = len(whole) // 2
+    frame_bytes = frame_packet(board.touched())
+    middle = len(frame_bytes) // 2
     broken = [
-        whole[:middle],  # without its end: the first End of the next packet closes it
-        whole[:middle] + whole[middle + 1 :],  # a byte is missing
-        whole[:-1] + whole[1:4] + whole[-1:],  # a pixel too many
-        (*whole[:middle], None, *whole[middle:]),  # a break
-        (*whole[:middle], ESCAPE, 0, *whole[middle:]),  # a wrong escape
-        whole[:5] + whole[1:],  # no End before
+        frame_bytes[:middle],  # without its end: the first End of the next packet closes it
+        frame_bytes[:middle] + frame_bytes[middle + 1 :],  # a byte is missing
+        frame_bytes[:-1] + frame_bytes[1:4] + frame_bytes[-1:],  # a pixel too many
+        (*frame_bytes[:middle], None, *frame_bytes[middle:]),  # a break
+        (*frame_bytes[:middle], ESCAPE, 0, *frame_bytes[middle:]),  # a wrong escape
+        frame_bytes[:5] + frame_bytes[1:],  # no End before
         packet([3, 1, 2]),  # nothing known
         bytes(rng.randrange(256) for _ in range(40)),  # noise
-        (None, None, *whole[:30], *whole[:9], END, END, END, *packet([FRAME])),
+        (None, None, *frame_bytes[:30], *frame_bytes[:9], END, END, END, *packet([FRAME])),
     ]
     for transfer in broken:
         await board.send(transfer)

@@ -78,16 +78,16 @@ class Field:
         The other bank is selected after `change` words."""
         chance = self.bench.random
         for _ in range(frames):
-            given = chance.choice((0, 1, 16, 100, 255)) if level is None else level
-            frame = picture(self.config.rows, self.config.columns, chance, given) if pixels is None else pixels
+            chosen_level = chance.choice((0, 1, 16, 100, 255)) if level is None else level
+            frame = picture(self.config.rows, self.config.columns, chance, chosen_level) if pixels is None else pixels
             words = list(zip(pack(frame).ravel().tolist(), self.places, strict=True))
             while chance.random() < self.gap:
                 await self.bench.clocks(1)
             gains = self.gains.begin_frame().copy()
-            self.expected.append(self.model(frame, gains, self.config, given, self.monitor))
-            self.dark += int(dark_pixels(frame, gains, self.config, given).sum())
+            self.expected.append(self.model(frame, gains, self.config, chosen_level, self.monitor))
+            self.dark += int(dark_pixels(frame, gains, self.config, chosen_level).sum())
             self.sent += words
-            self.dut.dark_level.value = given
+            self.dut.dark_level.value = chosen_level
             await send_apart(self.bench, self.driver, words[:1], 0.0)
             self.dut.dark_level.value = chance.randrange(256)
             await send_apart(self.bench, self.driver, words[1:named], self.gap)

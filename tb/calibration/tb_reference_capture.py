@@ -81,9 +81,9 @@ class Capture:
                         self.sums += self.row_sums(self.frame[0], not self.taken or self.taken[-1][1])
                         self.taken.append((*self.frame, int(dut.log2_frames.value)))
                 if place & 12 == 12 and self.inside:
-                    found = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)  # type: ignore[arg-type, call-arg]
-                    if found:
-                        self.due, self.gains, self.divided = clock + self.clocks, found[1], 0
+                    captured = reference_capture(*zip(*self.taken, strict=True), self.largest, self.config)  # type: ignore[arg-type, call-arg]
+                    if captured:
+                        self.due, self.gains, self.divided = clock + self.clocks, captured[1], 0
                         if self.flipped is not None:
                             self.gains = self.gains_behind_flips(self.taken[-1][0])
             if dut.request.value:
@@ -140,8 +140,8 @@ class Capture:
         """Return the writes of a frame in order: node, colours of a block's row, whether they begin a sum."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
-        whole = frame[: rows * block, : columns * block].astype(np.int64)
-        sums = whole.reshape(rows * block, columns, block, 3).sum(axis=2)
+        in_blocks = frame[: rows * block, : columns * block].astype(np.int64)
+        sums = in_blocks.reshape(rows * block, columns, block, 3).sum(axis=2)
         return [
             (row // block * columns + column, sums[row, column].tolist(), first and row % block == 0)
             for row in range(rows * block)
@@ -152,8 +152,8 @@ class Capture:
         """Return the gains of the sums: words of the memory plus sums of the last frame, modulo their width."""
         block = 1 << self.config.reference_block_log2
         rows, columns = self.config.reference_nodes
-        whole = frame[: rows * block, : columns * block].astype(np.int64)
-        sums = whole.reshape(rows, block, columns, block, 3).sum(axis=(1, 3)).reshape(-1, 3)
+        in_blocks = frame[: rows * block, : columns * block].astype(np.int64)
+        sums = in_blocks.reshape(rows, block, columns, block, 3).sum(axis=(1, 3)).reshape(-1, 3)
         sums = sums + self.flipped & (1 << self.config.gain_width) - 1
         dividend = 2 * len(self.taken) * block * block << self.config.gain_fraction
         return np.minimum((dividend // np.maximum(sums, 1) + 1) >> 1, (1 << self.config.gain_width) - 1)

@@ -46,7 +46,7 @@ class Bench:
 
     def frame(self, samples: np.ndarray, gap: float = 0.0, pixels: int | None = None) -> None:
         """Append a frame, of which only the first `pixels` pixels are sent."""
-        blue_row, blue_column = (self.slots.random.getrandbits(1) for _ in "rc")
+        blue_row, blue_column = (self.slots.random.getrandbits(1) for _ in range(2))
         colour = (blue_row, blue_column) if self.bayer else None
         means = area_average(samples, self.bits, self.numerator, self.denominator, colour).reshape(-1, 3)
         completes = self.window.completes().reshape(-1)
@@ -81,14 +81,14 @@ class Bench:
 
     async def check(self, pause: float = 0.0) -> None:
         self.stimuli += [self.slots.idle() for _ in range(AREA_AVERAGE + 1)]
-        seen = await drive(self.dut, self.stimuli, OUTPUTS, pause)
+        outputs = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         aborts = {word[0] for word in self.expected if word[1] < 0}
         got = []
         for clock in range(len(self.stimuli)):
-            if int(seen["out_valid"][clock]):
-                slot, pixel = clock - AREA_AVERAGE, seen["out_pixel"][clock]
+            if int(outputs["out_valid"][clock]):
+                slot, pixel = clock - AREA_AVERAGE, outputs["out_pixel"][clock]
                 colours = [-1] * 3 if slot in aborts else [int(pixel) >> shift & 255 for shift in (16, 0, 8)]
-                got.append([slot, *colours, int(seen["out_last"][clock]), int(seen["out_user"][clock])])
+                got.append([slot, *colours, int(outputs["out_last"][clock]), int(outputs["out_user"][clock])])
         check_words(np.array(got), np.array(self.expected), self.columns, self.rows)
 
 

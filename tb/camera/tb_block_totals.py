@@ -66,13 +66,13 @@ class Bench:
 
     async def check(self, pause: float = 0.0) -> None:
         self.stimuli += [self.slots.idle() for _ in range(BLOCK_TOTALS + 1)]
-        seen = await drive(self.dut, self.stimuli, OUTPUTS, pause)
+        outputs = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         total_width, area_width = len(self.dut.out_totals) // 3, len(self.dut.out_areas) // 3
         got = []
         for clock in range(BLOCK_TOTALS, len(self.stimuli)):
-            if int(seen["out_valid"][clock]):
-                totals = unpacked(seen["out_totals"][clock], total_width, 3)
-                areas = [area % (1 << area_width) for area in unpacked(seen["out_areas"][clock], area_width, 3)]
+            if int(outputs["out_valid"][clock]):
+                totals = unpacked(outputs["out_totals"][clock], total_width, 3)
+                areas = [area % (1 << area_width) for area in unpacked(outputs["out_areas"][clock], area_width, 3)]
                 got.append((clock - BLOCK_TOTALS, (totals, areas)))
         assert got == self.expected
 

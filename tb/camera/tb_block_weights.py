@@ -23,11 +23,11 @@ async def axes(dut: Any, pause: float) -> None:
         axis = [{"step": int(chance.random() < 0.7), "restart": 0} for _ in range(chance.randrange(LONGEST))]
         stimuli += [{"step": 0, "restart": int(chance.random() < 0.5)}, {"step": 1, "restart": 1}, *axis]
     del stimuli[0]
-    seen = await drive(dut, stimuli, ["weight", "block_ends"], pause)
+    pins = await drive(dut, stimuli, ["weight", "block_ends"], pause)
     place = 0  # position of the pixel that is taken next
     for clock in range(len(stimuli)):
-        present = 0 if seen["restart"][clock] else place
-        got = int(seen["weight"][clock]), bool(seen["block_ends"][clock])
+        present = 0 if pins["restart"][clock] else place
+        got = int(pins["weight"][clock]), bool(pins["block_ends"][clock])
         assert got == (weights[present], ends[present]), f"clock {clock}, pixel {present}"
-        if seen["step"][clock]:
+        if pins["step"][clock]:
             place = present + 1

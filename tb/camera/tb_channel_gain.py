@@ -49,37 +49,37 @@ class Bench:
         words[0] |= self.settings()
         self.stimuli += self.slots.apart(words, gap)
 
-    def expected(self, seen: Any) -> list[Any]:
+    def expected(self, pin_values: Any) -> list[Any]:
         """Return what was taken in each cycle: None, "abort", or samples, colour and marks."""
         out: list[Any] = []
         black, gains = 0, np.zeros(3, np.int64)
         for clock in range(len(self.stimuli)):
             word: Any = None
-            if seen["rst"][clock]:
+            if pin_values["rst"][clock]:
                 out[-CHANNEL_GAIN + 1 :] = [None] * min(len(out), CHANNEL_GAIN - 1)
-            elif seen["in_abort"][clock]:
+            elif pin_values["in_abort"][clock]:
                 word = "abort"
-            elif seen["in_valid"][clock]:
-                if seen["in_frame_start"][clock]:
-                    black = int(seen["black_level"][clock])
-                    gains = np.array([int(seen[gain][clock]) for gain in GAINS])
-                samples = np.array(unpacked(seen["in_samples"][clock], self.width, self.channels))
-                colour = int(seen["in_colour"][clock])
+            elif pin_values["in_valid"][clock]:
+                if pin_values["in_frame_start"][clock]:
+                    black = int(pin_values["black_level"][clock])
+                    gains = np.array([int(pin_values[gain][clock]) for gain in GAINS])
+                samples = np.array(unpacked(pin_values["in_samples"][clock], self.width, self.channels))
+                colour = int(pin_values["in_colour"][clock])
                 factor = gains[[COLOUR_OF_SITE[colour]]] if self.bayer else gains
-                marks = [int(seen[f"in_{mark}"][clock]) for mark in ("row_start", "frame_start")]
+                marks = [int(pin_values[f"in_{mark}"][clock]) for mark in ("row_start", "frame_start")]
                 word = (channel_gain(samples, black, factor, self.width).tolist(), colour, *marks)
             out.append(word)
         return out
 
     async def check(self, pause: float = 0.0) -> None:
         self.stimuli += [self.slots.idle() for _ in range(CHANNEL_GAIN + 1)]
-        seen = await drive(self.dut, self.stimuli, OUTPUTS, pause)
-        for clock, want in enumerate(self.expected(seen)[:-CHANNEL_GAIN], CHANNEL_GAIN):
-            got: Any = "abort" if int(seen["out_abort"][clock]) else None
-            if int(seen["out_valid"][clock]):
-                samples = unpacked(seen["out_samples"][clock], self.width, self.channels)
-                marks = [int(seen[f"out_{mark}"][clock]) for mark in ("row_start", "frame_start")]
-                got = (samples, int(seen["out_colour"][clock]), *marks)
+        pin_values = await drive(self.dut, self.stimuli, OUTPUTS, pause)
+        for clock, want in enumerate(self.expected(pin_values)[:-CHANNEL_GAIN], CHANNEL_GAIN):
+            got: Any = "abort" if int(pin_values["out_abort"][clock]) else None
+            if int(pin_values["out_valid"][clock]):
+                samples = unpacked(pin_values["out_samples"][clock], self.width, self.channels)
+                marks = [int(pin_values[f"out_{mark}"][clock]) for mark in ("row_start", "frame_start")]
+                got = (samples, int(pin_values["out_colour"][clock]), *marks)
             assert got == want, f"clock {clock}"
 
 

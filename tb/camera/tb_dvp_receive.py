@@ -89,15 +89,15 @@ class Bench:
             if "system" in pins:
                 at = pins["system"]
                 sink = bool(at["rst"]), bool(at["m_axis_tready"])
-                seen = None
+                beat_at_pins = None
                 if at["m_axis_tvalid"]:
                     flags = bool(at["m_axis_tlast"]), bool(at["m_axis_tuser"])
-                    seen = Beat(int(at["m_axis_tdata"]), *flags)
-                assert seen == model.beat, f"at {time} ps"
+                    beat_at_pins = Beat(int(at["m_axis_tdata"]), *flags)
+                assert beat_at_pins == model.beat, f"at {time} ps"
                 assert int(at["frames_lost"]) == model.frames_lost, f"frames_lost at {time} ps"
                 self.lost += [model.frames_lost] * (model.frames_lost > 0)
-            given = Pins(bool(camera["vsync"]), bool(camera["href"]), int(camera["data"])) if camera else None
-            model.edges(given, sink)
+            sampled = Pins(bool(camera["vsync"]), bool(camera["href"]), int(camera["data"])) if camera else None
+            model.edges(sampled, sink)
 
     def frames(self, count: int) -> np.ndarray:
         """Return random pictures (count, ROWS, BYTES) of bytes."""

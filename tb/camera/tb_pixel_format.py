@@ -95,16 +95,16 @@ class Bench:
 
     async def check(self, pause: float = 0.0) -> None:
         self.stimuli += [self.slots.idle() for _ in range(self.latency + 2)]
-        seen = await drive(self.dut, self.stimuli, OUTPUTS, pause)
+        pins = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         got: list[Any] = []
         channels = 1 if self.bayer else 3
         for clock in range(len(self.stimuli)):
-            if int(seen["out_abort"][clock]):
+            if int(pins["out_abort"][clock]):
                 got.append((clock, "abort"))
-            if int(seen["out_valid"][clock]):
-                samples = unpacked(seen["out_samples"][clock], self.camera.sample_width, channels)
-                colour = int(seen["out_colour"][clock]) if self.bayer else None
-                marks = int(seen["out_row_start"][clock]), int(seen["out_frame_start"][clock])
+            if int(pins["out_valid"][clock]):
+                samples = unpacked(pins["out_samples"][clock], self.camera.sample_width, channels)
+                colour = int(pins["out_colour"][clock]) if self.bayer else None
+                marks = int(pins["out_row_start"][clock]), int(pins["out_frame_start"][clock])
                 got.append((clock, samples, colour, *marks))
         for number, (word, want) in enumerate(zip(got, self.expected, strict=False)):
             assert word == want, f"word {number}"

@@ -30,8 +30,8 @@ async def means(dut: Any, pause: float) -> None:
         operands.append((chance.randint(-2 * divisor, 300 * divisor), weight))
     stimuli = [{"total": total, "weight": weight} for total, weight in operands if low <= total <= high]
     stimuli += [{"total": 0, "weight": 1}] * ROUND_DIVIDE
-    seen = await drive(dut, stimuli, ["mean"], pause)
-    totals = np.array([word.to_signed() for word in seen["total"]])
-    divisors = np.array([int(word) for word in seen["weight"]])
-    got = [int(word) for word in seen["mean"][ROUND_DIVIDE:]]
+    pins = await drive(dut, stimuli, ["mean"], pause)
+    totals = np.array([word.to_signed() for word in pins["total"]])
+    divisors = np.array([int(word) for word in pins["weight"]])
+    got = [int(word) for word in pins["mean"][ROUND_DIVIDE:]]
     np.testing.assert_array_equal(got, round_divide(totals, divisors, drop)[:-ROUND_DIVIDE])

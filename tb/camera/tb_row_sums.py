@@ -41,27 +41,27 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
         stimuli += slots.apart(words, gap)
     stimuli += [slots.idle() for _ in range(ROW_SUMS + 1)]
     outputs = ["out_ends", "out_sums", "out_red_columns"]
-    seen = await drive(dut, stimuli, outputs, pause)
+    pins = await drive(dut, stimuli, outputs, pause)
 
     taken: list[Any] = []  # pixels of the row, as they came in
     for clock in range(len(stimuli) - ROW_SUMS):
-        if seen["rst"][clock]:
+        if pins["rst"][clock]:
             continue
         ends = False
-        if seen["in_valid"][clock]:
-            if seen["in_row_start"][clock]:
+        if pins["in_valid"][clock]:
+            if pins["in_row_start"][clock]:
                 taken = []
             ends = bool(window.column_ends[len(taken)])
-            taken.append((unpacked(seen["in_samples"][clock], width, channels), int(seen["in_blue_column"][clock])))
+            taken.append((unpacked(pins["in_samples"][clock], width, channels), int(pins["in_blue_column"][clock])))
         after = clock + ROW_SUMS
-        assert bool(seen["out_ends"][after]) == ends, f"clock {clock}"
+        assert bool(pins["out_ends"][after]) == ends, f"clock {clock}"
         if ends:
             row, columns = np.array([pixel for pixel, _ in taken]), np.array([blue for _, blue in taken]) == 1
             args = (numerator, denominator)
             want = row_sums(row[None, :, 0], columns, *args) if bayer else row_sums(row[None], None, *args)
-            assert unpacked(seen["out_sums"][after], sum_width, lanes) == want[0, -1].tolist(), f"clock {clock}"
+            assert unpacked(pins["out_sums"][after], sum_width, lanes) == want[0, -1].tolist(), f"clock {clock}"
             if bayer:
-                assert int(seen["out_red_columns"][after]) == red_columns(columns, *args)[-1]
+                assert int(pins["out_red_columns"][after]) == red_columns(columns, *args)[-1]
 
 
 @cocotb.test()
@@ -74,8 +74,8 @@ async def a_reset_forgets_what_is_inside(dut: Any) -> None:
     stimuli: list[Slot] = []
     for length in range(1, width + 1):
         stimuli += [*row[:length], slots.idle(rst=1), *[slots.idle() for _ in range(ROW_SUMS + 1)]]
-    seen = await drive(dut, stimuli, ["out_ends"])
+    pins = await drive(dut, stimuli, ["out_ends"])
     silent = 0  # clocks since a reset, without a pixel
     for clock in range(len(stimuli)):
-        assert not (silent and int(seen["out_ends"][clock])), f"clock {clock}"
-        silent = 0 if seen["in_valid"][clock] else silent + int(seen["rst"][clock] or silent > 0)
+        assert not (silent and int(pins["out_ends"][clock])), f"clock {clock}"
+        silent = 0 if pins["in_valid"][clock] else silent + int(pins["rst"][clock] or silent > 0)

@@ -23,9 +23,9 @@ async def check(dut: Any, pause: float, before: int) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     lost = [{"rst": 0, "start": int(n == 0)} for n in range(before)] + [{"rst": 1, "start": 0}]
     kept = [{"rst": 0, "start": start} for start in (0, *starts(size, chance))]
-    seen = await drive(dut, [*lost, *kept], ["position", "active"], pause)
-    begun = [bool(start) for start in seen["start"][len(lost) :]]
-    pairs = zip(seen["position"][len(lost) :], seen["active"][len(lost) :], strict=True)
+    pins = await drive(dut, [*lost, *kept], ["position", "active"], pause)
+    begun = [bool(start) for start in pins["start"][len(lost) :]]
+    pairs = zip(pins["position"][len(lost) :], pins["active"][len(lost) :], strict=True)
     got = [int(position) if active else None for position, active in pairs]
     assert got == burst_counter(begun, size)
 

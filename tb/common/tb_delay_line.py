@@ -17,7 +17,7 @@ async def shift(dut: Any, pause: float, before: Any) -> None:
     chance = random.Random(cocotb.RANDOM_SEED)
     lost = [{"rst": 0, "in": chance.getrandbits(width)} for _ in range(before)] + [{"rst": 1, "in": 0}]
     kept = [{"rst": 0, "in": chance.getrandbits(width)} for _ in range(5 * delay + 20)]
-    seen = await drive(dut, [*lost, *kept], ["out"], pause)
-    words = [int(word) for word in seen["in"][len(lost) :]]
-    got = [int(word) for word in seen["out"][len(lost) + delay :]]
+    pins = await drive(dut, [*lost, *kept], ["out"], pause)
+    words = [int(word) for word in pins["in"][len(lost) :]]
+    got = [int(word) for word in pins["out"][len(lost) + delay :]]
     assert got == delay_line(words, delay)[delay:]

@@ -51,20 +51,20 @@ async def quotients(dut: Any) -> None:
                 }
             )
     stimuli += [{"rst": 0, "start": 0, "numerator": 0, "divisor": 1}] * latency
-    seen = await drive(dut, stimuli, ["done", "quotient", "remainder", "overflow"])
+    pins = await drive(dut, stimuli, ["done", "quotient", "remainder", "overflow"])
     due: dict[int, tuple[int, int]] = {}
     finished = 0
-    for clock, given in enumerate(stimuli):
+    for clock, inputs in enumerate(stimuli):
         expected = due.pop(clock, None)
-        assert bool(seen["done"][clock]) == (expected is not None), f"done in clock {clock}"
+        assert bool(pins["done"][clock]) == (expected is not None), f"done in clock {clock}"
         if expected is not None:
             finished += 1
             result = divide(*expected, quotient_width)
-            assert bool(seen["overflow"][clock]) == (result is None), f"overflow of {expected}"
+            assert bool(pins["overflow"][clock]) == (result is None), f"overflow of {expected}"
             if result is not None:
-                assert (int(seen["quotient"][clock]), int(seen["remainder"][clock])) == result, expected
-        if given["rst"] or given["start"]:
+                assert (int(pins["quotient"][clock]), int(pins["remainder"][clock])) == result, expected
+        if inputs["rst"] or inputs["start"]:
             due.clear()
-        if given["start"] and not given["rst"]:
-            due[clock + latency] = given["numerator"], given["divisor"]
+        if inputs["start"] and not inputs["rst"]:
+            due[clock + latency] = inputs["numerator"], inputs["divisor"]
     assert finished > 300

@@ -24,7 +24,7 @@ async def products(dut: Any, pause: float) -> None:
     operands = [*itertools.product(*limits)]
     operands += [tuple(chance.randint(low, high) for low, _, high in limits) for _ in range(300)]
     operands += [(0, 0, 0, 0)] * DOT_PRODUCT
-    seen = await drive(dut, [dict(zip(FACTORS, words, strict=True)) for words in operands], ["sum"], pause)
-    factors = [np.array([word.to_signed() for word in seen[pin]]) for pin in FACTORS]
-    got = [word.to_signed() for word in seen["sum"][DOT_PRODUCT:]]
+    pins = await drive(dut, [dict(zip(FACTORS, words, strict=True)) for words in operands], ["sum"], pause)
+    factors = [np.array([word.to_signed() for word in pins[pin]]) for pin in FACTORS]
+    got = [word.to_signed() for word in pins["sum"][DOT_PRODUCT:]]
     np.testing.assert_array_equal(got, dot_product(*factors)[:-DOT_PRODUCT])

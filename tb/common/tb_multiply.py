@@ -21,7 +21,7 @@ async def products(dut: Any, pause: float) -> None:
     operands = list(itertools.product(*((low, -1, 0, 1, high) for low, high in limits)))
     operands += [tuple(chance.randint(low, high) for low, high in limits) for _ in range(300)]
     operands += [(0, 0)] * MULTIPLY
-    seen = await drive(dut, [{"a": a, "b": b} for a, b in operands], ["product"], pause)
-    factors = [np.array([word.to_signed() for word in seen[pin]]) for pin in ("a", "b")]
-    got = [word.to_signed() for word in seen["product"][MULTIPLY:]]
+    pins = await drive(dut, [{"a": a, "b": b} for a, b in operands], ["product"], pause)
+    factors = [np.array([word.to_signed() for word in pins[pin]]) for pin in ("a", "b")]
+    got = [word.to_signed() for word in pins["product"][MULTIPLY:]]
     np.testing.assert_array_equal(got, multiply(*factors)[:-MULTIPLY])

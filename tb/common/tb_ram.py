@@ -34,11 +34,11 @@ async def reads_and_writes(dut: Any) -> None:
         read, write = (place if chance.random() < 0.5 else None for place in chance.sample(range(depth), 2))
         every.append(clock(read, write))
     every += [clock(read_address=place) for place in range(depth)]
-    seen = await drive(dut, [*every, clock()], ["read_data"])
+    outputs = await drive(dut, [*every, clock()], ["read_data"])
 
     pins = ("write_en", "write_address", "write_data", "read_en", "read_address")
-    _, expected = ram(before, list(zip(*(map(int, seen[pin]) for pin in pins), strict=True))[:-1])  # type: ignore[arg-type]
-    compared = [(int(seen["read_data"][n + 1]), word) for n, word in enumerate(expected) if word is not None]
+    _, expected = ram(before, list(zip(*(map(int, outputs[pin]) for pin in pins), strict=True))[:-1])  # type: ignore[arg-type]
+    compared = [(int(outputs["read_data"][n + 1]), word) for n, word in enumerate(expected) if word is not None]
     assert len(compared) > 20 * depth
     for n, (got, word) in enumerate(compared):
         assert got == word, f"read {n}: {got:#x}, expected {word:#x}"

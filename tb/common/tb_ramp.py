@@ -21,10 +21,10 @@ async def ramps(dut: Any, pause: float) -> None:
     pairs = list(itertools.product((0, 1, largest >> 1, largest), (-high - 1, -1, 0, 1, high)))
     pairs += [(chance.randint(0, largest), chance.randint(-high - 1, high)) for _ in range(300)]
     clocks = latency(count)
-    seen = await drive(dut, [{"first": a, "step": b} for a, b in [*pairs, *[(0, 0)] * clocks]], ["out"], pause)
+    pins = await drive(dut, [{"first": a, "step": b} for a, b in [*pairs, *[(0, 0)] * clocks]], ["out"], pause)
     words = np.array(pairs, np.int64)
     expected = ramp(words[:, 0], words[:, 1], count, width)
     for index, want in enumerate(expected):
-        word = int(seen["out"][index + clocks])
+        word = int(pins["out"][index + clocks])
         got = [word >> width * n & largest for n in range(count)]
         assert got == want.tolist(), f"{pairs[index]}: {got}, not {want.tolist()}"

@@ -19,6 +19,6 @@ async def every_word(dut: Any, pause: float) -> None:
     words = [int(line, 16) for line in Path("rom.hex").read_text().split()]
     places = random.Random(cocotb.RANDOM_SEED).sample(range(depth), depth)
     stimuli = [{"address": place} for place in (*range(depth), *places, *[0] * MEMORY_READ)]
-    seen = await drive(dut, stimuli, ["data"], pause)
-    addresses = [int(address) for address in seen["address"]]
-    assert [int(word) for word in seen["data"][MEMORY_READ:]] == rom(words, addresses)[:-MEMORY_READ]
+    pins = await drive(dut, stimuli, ["data"], pause)
+    addresses = [int(address) for address in pins["address"]]
+    assert [int(word) for word in pins["data"][MEMORY_READ:]] == rom(words, addresses)[:-MEMORY_READ]

@@ -45,11 +45,11 @@ async def random_beats(dut: Any) -> None:
         for above, depths in sent
     ]
     names = [field.name for field in fields(BeatSums)]
-    seen = await drive(dut, [*stimuli, *[stimuli[-1]] * latency(lanes)], names)
+    pins = await drive(dut, [*stimuli, *[stimuli[-1]] * latency(lanes)], names)
     for index, (above, depths) in enumerate(sent):
         wanted = beat_sums(above, depths)
         for name, value in asdict(wanted).items():
             if value is not None:
-                pin = seen[name][index + latency(lanes)]
+                pin = pins[name][index + latency(lanes)]
                 have = pin.to_signed() if name in SIGNED else int(pin)
                 assert have == value, f"{name} of beat {index}: {have}, the model says {value}"

@@ -42,15 +42,15 @@ async def means(dut: Any) -> None:
                 }
             )
     stimuli += [{"rst": 0, "start": 0, "column_sum": 0, "row_sum": 0, "area": 1}] * (latency + 1)
-    seen = await drive(dut, stimuli, ["done", "column", "row"])
+    outputs = await drive(dut, stimuli, ["done", "column", "row"])
     due: dict[int, tuple[int, int]] = {}
     finished = 0
     for clock, pins in enumerate(stimuli):
         expected = due.pop(clock, None)
-        assert bool(seen["done"][clock]) == (expected is not None), f"done in clock {clock}"
+        assert bool(outputs["done"][clock]) == (expected is not None), f"done in clock {clock}"
         if expected is not None:
             finished += 1
-            assert (int(seen["column"][clock]), int(seen["row"][clock])) == expected, f"in clock {clock}"
+            assert (int(outputs["column"][clock]), int(outputs["row"][clock])) == expected, f"in clock {clock}"
         if pins["rst"] or pins["start"]:
             due.clear()
         if pins["start"] and not pins["rst"]:

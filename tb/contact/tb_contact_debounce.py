@@ -36,14 +36,14 @@ async def check(dut: Any, frames: Iterable[Frame | None], gap: float = 0.5) -> l
         else:
             stimuli.append({"rst": 0, "area_valid": 1, **frame._asdict()})
     stimuli += [{"rst": 0, "area_valid": 0, **noise()} for _ in range(2)]
-    seen = await drive(dut, stimuli, ["touching", "touching_next", "began", "ended"])
+    outputs = await drive(dut, stimuli, ["touching", "touching_next", "began", "ended"])
 
     model, status, every = ContactDebounce(), None, []
     for clock, pins in enumerate(stimuli):
-        assert bool(seen["touching"][clock]) == model.touching, f"touching in clock {clock}"
+        assert bool(outputs["touching"][clock]) == model.touching, f"touching in clock {clock}"
         if status is not None:
-            assert bool(seen["began"][clock]) == bool(status & BEGAN), f"began in clock {clock}"
-            assert bool(seen["ended"][clock]) == bool(status & ENDED), f"ended in clock {clock}"
+            assert bool(outputs["began"][clock]) == bool(status & BEGAN), f"began in clock {clock}"
+            assert bool(outputs["ended"][clock]) == bool(status & ENDED), f"ended in clock {clock}"
         if pins["rst"]:
             model.reset()
             status = None
@@ -51,7 +51,7 @@ async def check(dut: Any, frames: Iterable[Frame | None], gap: float = 0.5) -> l
         if pins["area_valid"]:
             status = model.frame(pins["area"], pins["minimum_area"], pins["debounce"])
             every.append(status)
-        assert bool(seen["touching_next"][clock]) == model.touching, f"touching_next in clock {clock}"
+        assert bool(outputs["touching_next"][clock]) == model.touching, f"touching_next in clock {clock}"
     return every
 
 

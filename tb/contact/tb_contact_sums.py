@@ -22,7 +22,7 @@ class Bench(DepthBench):
         self.model = ContactSums(self.rows, self.columns, bool(self.bottom_first))
         self.cycles_to_sums = cycles_to_sums(self.lanes)
         self.touching = False  # of the frame that enters
-        self.seen: list[Sums] = []
+        self.received: list[Sums] = []
         self.due: dict[int, Sums] = {}  # by the cycle of the frame's last depth
         self.changes: dict[int, bool] = {}  # values of `touching` by cycle
 
@@ -58,14 +58,14 @@ class Bench(DepthBench):
             value = int(dut.sums.value)
             words = tuple(value >> 32 * word & 0xFFFF_FFFF for word in range(len(sums.words)))
             assert words == sums.words, f"sums {words}, expected {sums}"
-            self.seen.append(sums)
+            self.received.append(sums)
 
     async def reset(self) -> None:
         self.dut.rst.value = 1
         await self.edge(False, [0] * self.lanes, (0, 0, 0))
         self.dut.rst.value = 0
         self.due.clear()
-        self.seen.clear()
+        self.received.clear()
 
     async def settle(self) -> None:
         await self.idle(self.cycles_to_sums + 1)
@@ -82,7 +82,7 @@ async def random_frames(dut: Any, gap: float) -> None:
         depth = bench.random_map(rng)
         await bench.frame(depth, Thresholds(*bench.random_thresholds(rng, depth)))
     await bench.settle()
-    areas = [sums.area for sums in bench.seen]
+    areas = [sums.area for sums in bench.received]
     assert len(areas) == FRAMES
     assert areas.count(0) > FRAMES // 50, "the test is void: too few frames have no depth above"
     assert areas.count(bench.pixels) > FRAMES // 50, "the test is void: too few frames have all depths above"
@@ -98,9 +98,9 @@ async def ties_and_edges(dut: Any) -> None:
         await bench.frame(depth, Thresholds(0, 0))
     await bench.frame(bench.full(bench.low), Thresholds(WORD_LOW, WORD_LOW))
     await bench.settle()
-    assert len(bench.seen) == len(maps) + 1
+    assert len(bench.received) == len(maps) + 1
     first_row = bench.rows - 1 if bench.bottom_first else 0
-    assert bench.seen[4].peak_position == (first_row, 0), "the peak is not the first of the equal ones"
+    assert bench.received[4].peak_position == (first_row, 0), "the peak is not the first of the equal ones"
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
@@ -114,7 +114,7 @@ async def interrupted_frames(dut: Any) -> None:
         if words % 3 == 0:
             await bench.frame(bench.random_map(rng), Thresholds(0, 0))
             await bench.settle()
-    assert len(bench.seen) > bench.beats // 3 - 1
+    assert len(bench.received) > bench.beats // 3 - 1
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -130,4 +130,4 @@ async def resets(dut: Any) -> None:
         await bench.idle(int(rng.integers(0, bench.cycles_to_sums + 2)))
         await bench.frame(bench.random_map(rng), Thresholds(0, 0))
         await bench.settle()
-        assert len(bench.seen) == 1
+        assert len(bench.received) == 1

@@ -32,20 +32,20 @@ def stimuli(words: int, accepts: str, chance: random.Random) -> list[dict[str, i
 async def packets(dut: Any, accepts: str) -> None:
     """Receive whole packets in order; with a slow sink as many are missing as record_lost counts."""
     (words,) = parameters(dut, "Words")
-    given = stimuli(words, accepts, random.Random(cocotb.RANDOM_SEED))
+    inputs = stimuli(words, accepts, random.Random(cocotb.RANDOM_SEED))
     outputs = ["record_valid", "record", "record_lost", "m_event_tvalid", "m_event_tdata", "m_event_tlast"]
-    seen = await drive(dut, given, outputs)
+    outputs_seen = await drive(dut, inputs, outputs)
     model, record, was_new = RecordPackets(), 0, False
     taken: list[int] = []
     lost = 0
-    for clock, pins in enumerate(given):
+    for clock, pins in enumerate(inputs):
         sending = model.sending
-        assert bool(seen["record_valid"][clock]) == was_new, f"record_valid in clock {clock}"
-        assert int(seen["record"][clock]) == record, f"record in clock {clock}"
-        assert bool(seen["m_event_tvalid"][clock]) == bool(sending), f"m_event_tvalid in clock {clock}"
+        assert bool(outputs_seen["record_valid"][clock]) == was_new, f"record_valid in clock {clock}"
+        assert int(outputs_seen["record"][clock]) == record, f"record in clock {clock}"
+        assert bool(outputs_seen["m_event_tvalid"][clock]) == bool(sending), f"m_event_tvalid in clock {clock}"
         if sending:
-            assert int(seen["m_event_tdata"][clock]) == sending[0], f"m_event_tdata in clock {clock}"
-            assert bool(seen["m_event_tlast"][clock]) == (len(sending) == 1), f"m_event_tlast in clock {clock}"
+            assert int(outputs_seen["m_event_tdata"][clock]) == sending[0], f"m_event_tdata in clock {clock}"
+            assert bool(outputs_seen["m_event_tlast"][clock]) == (len(sending) == 1), f"m_event_tlast in clock {clock}"
             taken += [sending[0]] * pins["m_event_tready"]
         if pins["rst"]:
             model.reset()
@@ -54,7 +54,7 @@ async def packets(dut: Any, accepts: str) -> None:
         was_new = bool(pins["new_valid"])
         new = tuple(pins["new_record"] >> 32 * word & 0xFFFF_FFFF for word in range(words)) if was_new else None
         lost_now = model.clock(new, bool(pins["m_event_tready"]))
-        assert bool(seen["record_lost"][clock]) == lost_now, f"record_lost in clock {clock}"
+        assert bool(outputs_seen["record_lost"][clock]) == lost_now, f"record_lost in clock {clock}"
         lost += lost_now
         record = pins["new_record"] if was_new else record
     assert taken, "the test is void: no word left"

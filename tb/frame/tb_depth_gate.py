@@ -206,7 +206,7 @@ async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
         await bench.drain()
         bench.accepts = iter([False] * (stands + gap + 3 * ready_after) + [True] * (1 << 20))
         bench.drop_frames = True
-        for word in rest(bench, total, stands):
+        for word in remaining_words(bench, total, stands):
             while not await bench.clock(word):
                 pass
         await bench.idle(gap)
@@ -217,7 +217,7 @@ async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
         bench.check()
 
 
-def rest(bench: Any, total: int, stands: int) -> Any:
+def remaining_words(bench: Any, total: int, stands: int) -> Any:
     """Return the remaining words of the current frame."""
     words = []
     for place in range(total - stands, total):

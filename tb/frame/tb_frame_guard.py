@@ -267,7 +267,7 @@ async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
     """Send random streams: good and broken frames, several faults in one, stray words, flipped marks, long silences."""
     bench = Bench(dut, *STALLS[stalls])
     await bench.start(timeout)
-    rng, seen = bench.random, set()
+    rng, faults_reached = bench.random, set()
     for index in range(RANDOM_FRAMES):
         words = bench.frame()
         for _ in range(rng.choice((0, 0, 1, 1, 2, 3))):
@@ -292,9 +292,9 @@ async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
         await bench.source.send([*words[:place], *silent, *words[place:]])
         if index % 10 == 9:
             await bench.source.send(bench.frame())
-            seen |= set((await bench.check(f"random stream {index}")).faults)
+            faults_reached |= set((await bench.check(f"random stream {index}")).faults)
             await bench.reset(1)
     if stalls in ("none", "en"):  # with gaps most frames time out before another fault can occur
-        assert seen >= set(FAULTS) - ({"timed_out"} if not timeout else set()), (
-            f"the test is void: it reached only {seen}"
+        assert faults_reached >= set(FAULTS) - ({"timed_out"} if not timeout else set()), (
+            f"the test is void: it reached only {faults_reached}"
         )

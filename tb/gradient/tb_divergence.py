@@ -45,9 +45,9 @@ async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, i
     await interrupt(bench, send, interrupts, (source, sink), quiet=DIVERGENCE + 2)
     await send_apart(bench, driver, pixels(gradient), gap)
     await bench.clocks(DIVERGENCE + 2)
-    seen = np.array(source.words)[:, :2].reshape(gradient.shape)
-    np.testing.assert_array_equal(seen, gradient, "the driver sent other words than the test gave it")
-    np.testing.assert_array_equal(np.array(sink.words).reshape(gradient.shape[:3]), divergence(seen, bool(neumann)))
+    sent = np.array(source.words)[:, :2].reshape(gradient.shape)
+    np.testing.assert_array_equal(sent, gradient, "the driver sent other words than the test gave it")
+    np.testing.assert_array_equal(np.array(sink.words).reshape(gradient.shape[:3]), divergence(sent, bool(neumann)))
     assert sink.starts == [clock + DIVERGENCE for clock in source.starts]
     check_frame_starts([sink], gradient[0, ..., 0].size)
 

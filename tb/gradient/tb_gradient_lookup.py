@@ -187,7 +187,9 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
         nonlocal changes
         while running:
             for _ in range(random.randrange(6)):
-                await lookup.write(random.randrange(lookup.bins), *(random.getrandbits(lookup.width - 1) for _ in "xy"))
+                await lookup.write(
+                    random.randrange(lookup.bins), *(random.getrandbits(lookup.width - 1) for _ in range(2))
+                )
             for _ in range(random.randrange(4)):
                 await lookup.read(random.randrange(lookup.bins))
             await ClockCycles(dut.clk, random.randrange(1, 4))

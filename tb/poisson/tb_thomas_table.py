@@ -19,8 +19,8 @@ async def every_entry(dut: Any, pause: float) -> None:
     places = [(row, position) for row in range(config.rows) for position in range(config.columns)]
     stimuli = [{"row": row, "position": position} for row, position in places]
     stimuli += THOMAS_TABLE * stimuli[-1:]
-    seen = await drive(dut, stimuli, ["coefficient", "shift"], pause)
+    pins = await drive(dut, stimuli, ["coefficient", "shift"], pause)
     coefficients = np.vstack((table.rows(config.rows - 1), table.last)).ravel()
     shifts = np.vstack((np.zeros((config.rows - 1, config.columns), np.int64), table.last_shift)).ravel()
-    np.testing.assert_array_equal([v.to_signed() for v in seen["coefficient"][THOMAS_TABLE:]], coefficients)
-    np.testing.assert_array_equal([int(v) for v in seen["shift"][THOMAS_TABLE:]], shifts)
+    np.testing.assert_array_equal([v.to_signed() for v in pins["coefficient"][THOMAS_TABLE:]], coefficients)
+    np.testing.assert_array_equal([int(v) for v in pins["shift"][THOMAS_TABLE:]], shifts)

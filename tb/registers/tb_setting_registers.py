@@ -17,8 +17,8 @@ class Bench(RegisterBench):
 
     def __init__(self, dut: Any) -> None:
         super().__init__(dut)
-        given = int(dut.Resets.value)
-        self.model = SettingRegisters({name: given >> 32 * n & WORD for n, name in enumerate(SETTINGS)})
+        reset_values = int(dut.Resets.value)
+        self.model = SettingRegisters({name: reset_values >> 32 * n & WORD for n, name in enumerate(SETTINGS)})
 
     def word(self, name: str) -> int:
         return self.model.values.get(name, 0)

@@ -111,23 +111,23 @@ async def interrupts(dut: Any) -> None:
     pipeline = await started(dut)
     good, malformed = pipeline.frame(), broken(pipeline.frame(), "row_long", pipeline.columns - 1, pipeline.columns)
 
-    async def seen(cleared: int = 0) -> tuple[int, bool]:
+    async def status(cleared: int = 0) -> tuple[int, bool]:
         await pipeline.write("INTERRUPT_STATUS", cleared)
         await ClockCycles(dut.clk, 2)
         return await pipeline.read("INTERRUPT_STATUS"), bool(dut.irq.value)
 
     for mask in (0, *(INTERRUPT.pack(**{name: 1}) for name in ("record", "frame_dropped"))):
         await pipeline.write("INTERRUPT_MASK", mask)
-        assert await seen() == (0, False)
+        assert await status() == (0, False)
         for stream, bits in (
             ((good,), INTERRUPT.pack(record=1)),
             ((malformed, good), INTERRUPT.pack(record=1, frame_dropped=1)),
         ):
             await pipeline.send(*stream)
             await pipeline.check()
-            assert await seen() == (bits, bool(bits & mask)), f"INTERRUPT_MASK {mask:#x}"
-            assert await seen(cleared=bits & ~mask) == (bits & mask, bool(bits & mask))
-            assert await seen(cleared=bits) == (0, False)
+            assert await status() == (bits, bool(bits & mask)), f"INTERRUPT_MASK {mask:#x}"
+            assert await status(cleared=bits & ~mask) == (bits & mask, bool(bits & mask))
+            assert await status(cleared=bits) == (0, False)
 
 
 @case()

@@ -57,14 +57,14 @@ async def ties(dut: Any, part: Any) -> None:
     """
     size, width, drop = parameters(dut, "Size", "InWidth", "Drop")
     half, modulus = 1 << drop - 1, 1 << drop + 1
-    rests = [half, *(half + (1 << bit) for bit in range(drop - 1))]
-    words = uniform((len(rests), size, 2), width, 0.3)
+    remainders = [half, *(half + (1 << bit) for bit in range(drop - 1))]
+    words = uniform((len(remainders), size, 2), width, 0.3)
     factors = [tuple(map(int, pair)) for pair in factors_of(dut)] * (size // len(factors_of(dut)))
-    for burst, rest in zip(words, rests, strict=True):
+    for burst, remainder in zip(words, remainders, strict=True):
         for word, (re, im) in zip(burst, factors, strict=True):
             if re % 2:
                 other = int(word[1 - part]) * im * (-1 if part else 1)
-                wanted = (rest + other) * pow(re, -1, modulus) % modulus
+                wanted = (remainder + other) * pow(re, -1, modulus) % modulus
                 word[part] = wanted - modulus * (wanted >= modulus // 2)
     assert any(re % 2 for re, _ in factors), "the test is void: no factor is odd"
     await check(dut, words)

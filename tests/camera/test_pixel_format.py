@@ -93,8 +93,8 @@ def test_a_pattern_has_the_colours_of_its_name(phase: int) -> None:
 
 def test_bytes_of_a_pixel_come_back_in_either_order() -> None:
     picture = np.random.default_rng(1).integers(0, 256, (4, 8, 3), dtype=np.uint8)
-    whole = CameraConfiguration((4, 8), (1, 1), "rgb565")
-    serial = replace(whole, byte_serial=True)
+    parallel = CameraConfiguration((4, 8), (1, 1), "rgb565")
+    serial = replace(parallel, byte_serial=True)
     np.testing.assert_array_equal(
-        pixel_format(photograph(picture, whole), whole), pixel_format(photograph(picture, serial), serial)
+        pixel_format(photograph(picture, parallel), parallel), pixel_format(photograph(picture, serial), serial)
     )

@@ -47,8 +47,8 @@ def test_methods_equal_the_reference(method: Any, threads: Any) -> None:
         pytest.skip(f"{problem}: `make baselines` installs it")
     prepared = method.prepare(32, threads)
     f, wanted = baselines.frames(32)
-    for given, want in zip(f, wanted, strict=True):
-        depth = np.array(prepared.take(prepared.solve(prepared.give(given))), np.float64)
+    for frame, want in zip(f, wanted, strict=True):
+        depth = np.array(prepared.take(prepared.solve(prepared.give(frame))), np.float64)
         assert baselines.percent_of_peak(depth, want) <= baselines.TOLERANCE_PERCENT
 
 

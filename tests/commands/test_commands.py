@@ -80,7 +80,7 @@ def test_an_out_that_is_too_long_is_refused(
     if command == "asic":
         monkeypatch.setattr(module, "TOOLS", {})
         if not module.DEFAULT_LIB.exists():
-            pytest.skip(f"{module.DEFAULT_LIB} is not installed")
+            pytest.skip(f"{module.DEFAULT_LIB} is not installed: apt-get install qflow-tech-osu018")
     line = refusal(monkeypatch, capsys, command, f"OUT={tmp_path / ('x' * 300)}")
     assert "cannot be written (File name too long): give a folder that can" in line
     assert list(tmp_path.iterdir()) == []

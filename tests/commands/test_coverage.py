@@ -94,7 +94,7 @@ def test_a_waiver_that_matches_nothing_is_an_error() -> None:
 
 def test_a_waiver_of_what_is_reached_is_an_error() -> None:
     judged = judge({point("line", 1, "block"): 1}, [waiver(kind="line")], SOURCES)
-    assert [error.partition(":")[0] for error in judged.errors] == ["a waiver matches what is reached"]
+    assert [error.partition(":")[0] for error in judged.errors] == ["a waiver matches a point that is reached"]
 
 
 def test_what_is_excluded_does_not_count_either_way() -> None:
