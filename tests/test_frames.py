@@ -364,6 +364,7 @@ def test_a_reference_of_another_size_is_named(tmp_path: Path) -> None:
 def test_a_missing_reference_is_named(tmp_path: Any) -> None:
     frame = picture(tmp_path / "1.png", noise(20, 20, 3))
     assert "absent.png: no such file" in refused(frame, reference=tmp_path / "absent.png")
+    assert f"{tmp_path}: a folder: give an 8-bit RGB picture" in refused(frame, reference=tmp_path)
 
 
 def test_an_empty_folder_is_named(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import struct
 from collections.abc import Iterable
@@ -82,7 +83,8 @@ def read_picture(path: Path) -> np.ndarray:
         The file is missing, truncated, too large, or not an 8-bit colour picture.
     """
     if not is_file(path):
-        raise InputError(f"{path}: no such file: give an 8-bit RGB picture, PNG or JPEG")
+        problem = "a folder" if os.path.isdir(path) else "no such file"
+        raise InputError(f"{path}: {problem}: give an 8-bit RGB picture, PNG or JPEG")
     try:
         with path.open("rb") as file:
             head = file.read(26)
