@@ -256,6 +256,12 @@ def check_words(got: Any, expected: Any, size: int, rows: int) -> None:
         )
 
 
+def check_maps(got: Any, expected: Any) -> None:
+    """Compare maps, int array (frames, rows, columns); a message names frame, row and column."""
+    maps = np.asarray(expected)
+    check_words(np.reshape(got, (-1, 1)), maps.reshape(-1, 1), maps.shape[2], maps.shape[1])
+
+
 def plain(word: Any) -> Any:
     """Return a word as a number, or as a list of the numbers of its fields."""
     return word.tolist() if len(word) > 1 else int(word[0])

@@ -12,7 +12,7 @@ from tactile_depth.calibration.floor_map import latency, side
 from tactile_depth.configuration import Configuration
 from tb.depth_frames import packed
 from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
-from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, places, sample, send_apart
+from tb.stream import Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
 
 BEATS = 1024  # that a test sends, at least
 
@@ -82,9 +82,8 @@ class Map:
         assert self.source.words == sent, "the driver sent other words than the test gave it"
         words = packed(np.concatenate([words.reshape(-1, self.lanes) for words in self.expected]), self.gains.width)
         want = [(word, beat) for word, (beat,) in zip(words, sent, strict=True)]
-        for index, (got, wanted) in enumerate(zip(self.sink.words, want, strict=True)):
-            frame, beat = divmod(index, len(self.beats))
-            assert got == wanted, f"frame {frame} of {len(self.expected)}, beat {beat}: {got}, not {wanted}"
+        rows, columns = self.expected[0].shape[:2]
+        check_words(np.array(self.sink.words), np.array(want), columns // self.lanes, rows)  # columns are beats
         assert self.sink.starts == [clock + self.latency for clock in self.source.starts]
 
 

@@ -11,7 +11,7 @@ from tactile_depth.calibration.flat_field import interpolated_gains
 from tactile_depth.configuration import Configuration
 from tactile_depth.latency import GAIN_MAP
 from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
-from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, parameters, places, sample, send_apart
+from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
 
 PLACES = 2048  # that a test sends, at least
 
@@ -73,9 +73,8 @@ class Map:
             (sum(gain << self.gains.width * channel for channel, gain in enumerate(word)), place)
             for word, (place,) in zip(words, sent, strict=True)
         ]
-        for index, (got, wanted) in enumerate(zip(self.sink.words, want, strict=True)):
-            frame, pixel = divmod(index, len(self.places))
-            assert got == wanted, f"frame {frame} of {len(self.expected)}, pixel {pixel}: {got}, not {wanted}"
+        rows, columns = self.expected[0].shape[:2]
+        check_words(np.array(self.sink.words), np.array(want), columns, rows)
         assert self.sink.starts == [clock + GAIN_MAP for clock in self.source.starts]
 
 

@@ -15,6 +15,7 @@ from tb.stream import (
     StreamDriver,
     StreamMonitor,
     check_frame_starts,
+    check_maps,
     configuration,
     corners,
     interrupt,
@@ -55,7 +56,7 @@ async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrup
     np.testing.assert_array_equal(np.array(source.words), words, "the driver sent other words than the test gave it")
     monitor = Monitor()
     z = spectral_solver(np.array(source.words).reshape(f.shape), config, monitor)
-    np.testing.assert_array_equal(np.array(sink.words).reshape(f.shape), z)
+    check_maps(sink.words, z)
     assert strays or bench.saturations == monitor.saturations.total()
     check_frame_starts([source], size * size)
     check_frame_starts([sink], size)
