@@ -159,11 +159,11 @@ module camera_registers
   assign unused_pins = ^{read, s_axil_awprot, s_axil_arprot};
 
   // A module that does not exist stops every tool where a parameter is refused.
-  if (((PictureColumns | PictureRows | WindowX | WindowY | WindowColumns | WindowRows) >> 13) != 0)
+  if (((PictureColumns | PictureRows | WindowX | WindowY | WindowColumns | WindowRows) >>> 13) != 0)
   begin : g_refused_0
     pictures_and_windows_have_up_to_8191_rows_and_columns u_refused ();
   end
-  if ((BlackLevel >> 12) != 0 || ((RedGain | GreenGain | BlueGain) >> 16) != 0) begin : g_refused_1
+  if ((BlackLevel >>> 12) != 0 || ((RedGain | GreenGain | BlueGain) >>> 16) != 0) begin : g_refused_1
     BlackLevel_must_fit_12_bits_and_gains_16 u_refused ();
   end
 
