@@ -89,6 +89,13 @@ def places(dut: Any) -> list[Place]:
     return places_of_module
 
 
+def lanes_of(bits: str, lanes: int) -> list[int | None]:
+    """Return the codes of a beat, the first from the lowest bits; None: it depends on a place never written."""
+    width = len(bits) // lanes
+    words = [bits[len(bits) - width * (lane + 1) : len(bits) - width * lane] for lane in range(lanes)]
+    return [int(word, 2) - (word[0] == "1") * (1 << width) if {*word} <= {*"01"} else None for word in words]
+
+
 class Device:
     """Driver of the pins, one cycle at a time."""
 
@@ -156,8 +163,9 @@ class Device:
             if sent < len(self.words) and ready.value:
                 sent += 1
             if m_valid.value and m_ready.value:
-                code = dut.m_axis_tdata.value  # unknown if it depends on a place that was never written
-                beats.append((code.to_signed() if code.is_resolvable else None, int(dut.m_axis_tuser.value)))
+                codes = lanes_of(str(dut.m_axis_tdata.value), self.config.lanes)
+                starts = [int(dut.m_axis_tuser.value), *[0] * (self.config.lanes - 1)]
+                beats += zip(codes, starts, strict=True)
                 quiet = 0
         valid.value = 0
         status = await self.status()

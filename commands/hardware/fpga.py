@@ -56,8 +56,8 @@ POINTER_BITS = 2 * (FIFO_LOG2 + 1)
 MISSES = "misses-its-clock"  # in the file name of such a bitstream
 SENSOR_FORMAT = "raw8"  # that the lists of registers set
 CHOICES = (
-    *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "FRAMES", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
+    *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH"),
+    *("GAIN_WIDTH", "DEPTH_RANGE", "FRAMES", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
 )
 LARGEST_SEED = 2**31 - 1
 
@@ -354,7 +354,8 @@ def run(request: Request, command: str) -> int:
     colours = f"-{config.gradient_model}-g{config.gain_width}" if config.flat_field else ""
     colours += "-zero" if config.auto_zero else ""
     colours += f"-{request.sensor.name}" if request.sensor else ""
-    name = f"{request.target}-{design.solver}-{design.boundary}-{config.rows}x{config.columns}{colours}"
+    lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""
+    name = f"{request.target}-{design.solver}{lanes}-{design.boundary}-{config.rows}x{config.columns}{colours}"
     out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
     with synthesis.workspace(out, ["fpga.json"]) as work:
         report = {**build(request, work), "command": command}

@@ -373,7 +373,9 @@ def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
         totals, details = design["totals"], design["details"]
         cells = [f"{totals[name]:,g}" if name in totals else "-" for name in RESOURCES]
         stores = f"{details['memory in UltraRAM']:,.1f}" if details else "-"
-        rows.append([design["configuration"]["solver"], f"{height} x {width}", *cells, stores, design["misfit"]])
+        lanes = design["configuration"]["lanes"]
+        name = design["configuration"]["solver"] + (f", {lanes} lanes" if lanes > 1 else "")
+        rows.append([name, f"{height} x {width}", *cells, stores, design["misfit"]])
     return rows
 
 

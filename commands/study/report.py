@@ -37,6 +37,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.ticker import MaxNLocator
 
+from commands.study.report_lanes import lanes_figure
 from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Figure, page, picture, table, titled
 
 DEFAULT_OUT = ROOT / "build" / "report"
@@ -208,6 +209,8 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
 
 
 def buildable(rows: Sequence[sweep.Row], **wanted: str) -> list[sweep.Row]:
+    """Return the rows with these cells, and with one lane."""
+    wanted = {"lanes": "1"} | wanted
     return [row for row in rows if not row["problem"] and all(row[name] == value for name, value in wanted.items())]
 
 
@@ -441,6 +444,7 @@ def build(folder: Path) -> Path:
         error_figure(runs, folder),
         word_figure(rows, folder),
         front_figure(rows, folder),
+        lanes_figure(rows, folder),
         *extremes_figures(folder / "extremes"),
         *hardware_figures(),
         reflex_figure(done[-2]),

@@ -28,11 +28,12 @@ from commands.common import published, variables
 from commands.common.repository import ROOT
 from tactile_depth import accuracy, files
 from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
 from tactile_depth.errors import InputError
 
 DEFAULT_OUT = ROOT / "build" / "sweep"
 GRIDS = (32, 64, 128, 256, 512)
+LANE_GRIDS = (128, 256)  # on the second the tridiagonal solver can have the most lanes
 ACCEPTED = ("OUT", "DASK_SCHEDULER")
 HEADER = (*CONFIGURATION, *MEASURED)
 CONNECT_S, WORKERS_S = 10, 60  # wait for a cluster, and for its first worker
@@ -45,9 +46,9 @@ Row = dict[str, str]
 def plan() -> list[Choices]:
     """Return every configuration of the sweep, as the arguments of `Configuration` that differ from the default.
 
-    The sweep varies grid, boundary and the two widths one at a time, then both widths together, and the depth range
-    that no slopes exceed (DEPTH_RANGE=worst) with each data width and both boundaries. The widest grids come first, so
-    that all cores finish at about the same time.
+    The sweep varies grid, boundary and the two widths one at a time, then both widths together, the depth range that no
+    slopes exceed (DEPTH_RANGE=worst) with each data width and both boundaries, and the lanes at the grids of
+    LANE_GRIDS. The widest grids come first, so that all cores finish at about the same time.
     """
     default = Configuration()
     widths = [range(low, high + 1) for low, high in (DATA_WIDTHS, COEFFICIENT_WIDTHS)]
@@ -61,7 +62,15 @@ def plan() -> list[Choices]:
             rows += [{"solver": solver, "data_width": data, "coefficient_width": c} for c in widths[1]]
             rows.append({"solver": solver, "data_width": data, "depth_range_px": WORST})
         rows.append({"solver": solver, "neumann": True, "depth_range_px": WORST})
+    for columns in LANE_GRIDS:
+        grid = {"solver": "tridiagonal"} | ({"columns": columns} if columns != default.columns else {})
+        rows += [grid | {"lanes": lanes} for lanes in lane_counts(columns)[1:]]
     return sorted(rows, key=pixels, reverse=True)
+
+
+def lane_counts(columns: int) -> list[int]:
+    """Return every number of lanes that a tridiagonal solver of so many columns can have: 1, 2, 4, .."""
+    return [1 << log2 for log2 in range(most_lanes(columns).bit_length())]
 
 
 def pixels(choices: Choices) -> int:
@@ -242,8 +251,25 @@ def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
     return [f"{line}; as good again with DATA_WIDTH={min(enough)}" if enough else f"{line}; no words are as good"]
 
 
+def lanes_table(rows: list[Row]) -> list[str]:
+    """Return a line for each number of lanes: what it takes, and when the first and the last depth come."""
+    lines = [
+        f"{'lanes':28}{'first depth':>12}{'last depth':>12}  cycles after the last pixel{'multipliers':>13}{'Mbit':>7}"
+    ]
+    for columns in LANE_GRIDS:
+        for lanes in lane_counts(columns):
+            wanted = configuration_cells({"solver": "tridiagonal", "columns": columns, "lanes": lanes})
+            for row in rows:
+                if not row["problem"] and all(row[name] == wanted[name] for name in CONFIGURATION):
+                    cycles = f"{int(row['last_pixel_to_first_depth_cycles']):12,}"
+                    cycles += f"{int(row['last_pixel_to_last_depth_cycles']):12,}{'':29}"
+                    area = f"{int(row['multipliers']):13}{int(row['memory_bits']) / 1e6:7.2f}"
+                    lines.append(f"{f'{columns} x {columns}, {lanes}':28}{cycles}{area}")
+    return lines if len(lines) > 1 else []
+
+
 def summary(rows: list[Row]) -> str:
-    """Return a line for each solver and boundary at the default, and the narrowest words that meet the published
+    """Return a line for each solver, boundary and number of lanes, and the narrowest words that meet the published
     error."""
     default = configuration_cells({})
     lines = [f"{'':28}{'mean RMS':>10}{'worst':>10}  % of peak{'cycles':>12}{'multipliers':>13}{'Mbit':>7}"]
@@ -266,6 +292,7 @@ def summary(rows: list[Row]) -> str:
         if narrow:
             lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
         lines += cost_of_worst(rows, solver)
+    lines += lanes_table(rows)
     refused = sum(bool(row["problem"]) for row in rows)
     lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")
     return "\n".join(lines)

@@ -3,8 +3,9 @@
 
 Two thirds of the frames, drawn by SEED, tune the choice by the bit-accurate model; the others prove it in RTL. Cost is
 the fraction of the multipliers plus the fraction of the memory bits that a configuration takes of the device of the
-published design; of two with the same cost the faster is chosen. Takes the variables of docs/commands.md as
-KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
+published design; of two with the same cost the faster is chosen. Lanes change no depth: the tridiagonal solver gets the
+fewest with which the last depth comes within MAX_MAP_LATENCY_US of the last pixel. Takes the variables of
+docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -26,22 +27,26 @@ from commands.common import simulator as simulation
 from commands.run import sim
 from tactile_depth import files, reference
 from tactile_depth.accuracy import SMALLEST_PEAK_PX, depth_px, errors
-from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
+from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
 from tactile_depth.cost import Cost, cost
 from tactile_depth.errors import InputError
 from tactile_depth.frames import Frames, load_frames
+from tactile_depth.latency import last_pixel_to_last_depth
 from tactile_depth.sensor import Sensor
 
-OWN = ("TOLERANCE", "MAX_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")  # in the order of `Limits`
-LIMITS = (1e-9, 1e9)  # label of each
+OWN = (  # in the order of `Limits`
+    *("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT"),
+)
+LIMITS = (1e-9, 1e9)  # of each
 OF_SIM = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
     *("REFERENCE", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
 )
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
 DEFAULT_TOLERANCE = 0.1  # % of peak
 DEFAULT_WIDTHS = (Configuration().data_width, Configuration().coefficient_width)
+CHOOSE = 0  # number of lanes of a request without LANES
 
 # The XCZU7EV: DSP48E2 slices; block RAMs of 36 Kbit and UltraRAMs of 288 Kbit.
 DEVICE_MULTIPLIERS = 1728
@@ -61,7 +66,8 @@ class Limits:
     """Limits of the user; an infinite value is no limit."""
 
     tolerance: float
-    latency_us: float
+    latency_us: float  # first pixel to first depth
+    map_latency_us: float  # last pixel to last depth
     clock_mhz: float
     multipliers: float
     memory_kbit: float
@@ -71,6 +77,7 @@ class Limits:
         latency = counted.first_depth_cycles / self.clock_mhz
         checks = (
             ("MAX_LATENCY_US", latency, self.latency_us),
+            ("MAX_MAP_LATENCY_US", counted.map_cycles / self.clock_mhz, self.map_latency_us),
             ("MAX_DSP", counted.tiles, self.multipliers),
             ("MAX_MEMORY_KBIT", counted.memory_bits / 1000, self.memory_kbit),
         )
@@ -84,9 +91,11 @@ class Widths:
     solver: str
     data: int
     coefficient: int
+    lanes: int = 1
 
     def __str__(self) -> str:
-        return f"SOLVER={self.solver} DATA_WIDTH={self.data} COEFF_WIDTH={self.coefficient}"
+        lanes = f" LANES={self.lanes}" if self.lanes > 1 else ""
+        return f"SOLVER={self.solver} DATA_WIDTH={self.data} COEFF_WIDTH={self.coefficient}{lanes}"
 
 
 @dataclass
@@ -102,7 +111,11 @@ class Search:
     measure: Callable[[Configuration], float]  # largest error of the frames for tuning, % of peak
     limits: Limits
     target: float  # target of that error
+    lanes: Mapping[str, int] = field(default_factory=dict)  # of a solver, by default one
     tried: dict[Widths, float] = field(default_factory=dict)
+
+    def point(self, solver: str, data: int, coefficient: int) -> Widths:
+        return Widths(solver, data, coefficient, self.lanes.get(solver, 1))
 
     def error(self, at: Widths) -> float:
         if at not in self.tried:
@@ -128,13 +141,13 @@ class Search:
     def cheapest(self, solvers: list[str]) -> Widths | None:
         candidates: list[Widths] = []
         for solver in solvers:
-            widest = Widths(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])
+            widest = self.point(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])
             if not self.meets(widest):
                 continue
             coefficient = COEFFICIENT_WIDTHS[1]
             data = _least(*DATA_WIDTHS, lambda d: self.meets(replace(widest, data=d)))  # noqa: B023
             for width in range(data, DATA_WIDTHS[1] + 1):
-                least = Widths(solver, width, COEFFICIENT_WIDTHS[0])
+                least = self.point(solver, width, COEFFICIENT_WIDTHS[0])
                 if self.build(least) is not None and (
                     not self.allowed(least) or (candidates and self.rank(least) >= min(map(self.rank, candidates)))
                 ):
@@ -155,7 +168,7 @@ class Search:
         corners = []
         for solver in solvers:
             for coefficient in range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1):
-                row = [Widths(solver, data, coefficient) for data in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1)]
+                row = [self.point(solver, data, coefficient) for data in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1)]
                 if self.allowed(row[-1]):
                     corners.append(row[-1])
                     continue
@@ -229,7 +242,28 @@ def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]
     defaults = dict.fromkeys(OWN, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
     limits = Limits(*(variables.number(own, name, default, *LIMITS, float) for name, default in defaults.items()))
     request = run_request.parse([f"{key}={value}" for key, value in passed.items()])
-    return request, limits, [request.solver] if "SOLVER" in passed else list(COLUMNS)
+    solvers = [request.solver] if "SOLVER" in passed else list(COLUMNS)
+    if "LANES" in passed:
+        run_request.check_grid(replace(request, solver=solvers[-1]))
+    else:
+        request = replace(request, lanes=CHOOSE)
+    return request, limits, solvers
+
+
+def lanes_within(
+    build: Callable[[Widths], Configuration | None], request: run_request.Request, limits: Limits, solver: str
+) -> int:
+    """Return the lanes of LANES, or else the fewest with which the last depth comes within its limit.
+
+    Where no number of lanes is enough, the most: the limit is then broken by the least.
+    """
+    if request.lanes != CHOOSE or solver != "tridiagonal":
+        return request.lanes or 1
+    for lanes in (1 << log2 for log2 in range(most_lanes(request.columns).bit_length())):
+        config = build(Widths(solver, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes))
+        if config is None or last_pixel_to_last_depth(config) <= limits.map_latency_us * limits.clock_mhz:
+            break
+    return lanes
 
 
 def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int | float]:
@@ -238,6 +272,7 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
     chosen: dict[str, str | int | float] = {
         "SOLVER": at.solver,
         "BOUNDARY": request.boundary,
+        **({"LANES": at.lanes} if at.lanes > 1 else {}),
         **({"N": request.columns} if square else {"ROWS": request.rows, "COLS": request.columns}),
         "DATA_WIDTH": at.data,
         "COEFF_WIDTH": at.coefficient,
@@ -263,7 +298,8 @@ def compared(counted: Cost, base: Cost | None, limits: Limits) -> str:
     return (
         f"{counted.tiles} multipliers{change('tiles')}, "
         f"{counted.memory_bits / 1000:,.0f} kbit of memory{change('memory_bits')}, "
-        f"{counted.first_depth_cycles / limits.clock_mhz:,.1f} us to the first depth{change('first_depth_cycles')}"
+        f"{counted.first_depth_cycles / limits.clock_mhz:,.1f} us to the first depth{change('first_depth_cycles')}, "
+        f"{counted.map_cycles / limits.clock_mhz:,.1f} us from the last pixel to the last depth{change('map_cycles')}"
     )
 
 
@@ -274,7 +310,8 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     calibration = run_request.load_sensor(request)
 
     def shaped(at: Widths) -> run_request.Request:
-        return replace(request, solver=at.solver, data_width=at.data, coefficient_width=at.coefficient)
+        widths = {"data_width": at.data, "coefficient_width": at.coefficient}
+        return replace(request, solver=at.solver, lanes=at.lanes, **widths)
 
     _check_grid(request, solvers)
     shape = (request.rows, request.columns)
@@ -292,10 +329,11 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
                 refusals.append(error)
         return built[at]
 
-    solvers = [s for s in solvers if build(Widths(s, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1])) is not None]
+    lanes = {solver: lanes_within(build, request, limits, solver) for solver in solvers}
+    solvers = [s for s in solvers if build(Widths(s, DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes[s])) is not None]
     if not solvers:
         raise refusals[-1]
-    widest = build(Widths(solvers[0], DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1]))
+    widest = build(Widths(solvers[0], DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes[solvers[0]]))
     assert widest is not None
     exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
@@ -304,7 +342,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
         measure = _measurement(tuning, calibration, widest, bar)
-        search = Search(build, measure, limits, limits.tolerance / MARGIN)
+        search = Search(build, measure, limits, limits.tolerance / MARGIN, lanes)
         best = search.cheapest(solvers)
         if best is None:
             print(_none(search, solvers))
@@ -367,6 +405,8 @@ def _costs(counted: Cost, limits: Limits) -> dict[str, Any]:
         "memory_bits": counted.memory_bits,
         "first_depth_cycles": counted.first_depth_cycles,
         "first_depth_us": counted.first_depth_cycles / limits.clock_mhz,
+        "map_cycles": counted.map_cycles,
+        "map_us": counted.map_cycles / limits.clock_mhz,
         "share_of_device": weight(counted),
     }
 
@@ -376,7 +416,9 @@ def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     refused = []
     for solver in solvers:
         try:
-            Configuration(columns=request.columns, rows=request.rows, solver=solver, data_width=DATA_WIDTHS[1])
+            lanes = request.lanes or 1
+            shape = {"columns": request.columns, "rows": request.rows, "solver": solver, "lanes": lanes}
+            Configuration(**shape, data_width=DATA_WIDTHS[1])
             return
         except InputError as error:
             refused.append(error)
@@ -404,10 +446,10 @@ def _none(search: Search, solvers: list[str]) -> str:
         error = f"{search.error(near):.4g} % of peak on the worst frame tuned on"
         return f"no configuration is good enough within the limits; the nearest is {near}: {error}, {wanted}"
     least = [
-        Widths(solver, data, COEFFICIENT_WIDTHS[0])
+        search.point(solver, data, COEFFICIENT_WIDTHS[0])
         for solver in solvers
         for data in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1)
-        if search.cost(Widths(solver, data, COEFFICIENT_WIDTHS[0])) is not None
+        if search.cost(search.point(solver, data, COEFFICIENT_WIDTHS[0])) is not None
     ]
     counts = {at: counted for at in least if (counted := search.cost(at)) is not None}
     near = min(counts, key=lambda at: (len(limits.broken(counts[at])), search.rank(at)))

@@ -59,12 +59,13 @@ class Job:
     depth_share: float = 0.25  # depth range as a fraction of the shorter side
     simulator: str = "verilator"
     codes: int = CODES
+    lanes: int = 1
 
     @property
     def label(self) -> str:
         boundary = "neumann" if self.neumann else "dirichlet"
         disturbed = f"{' gaps' * bool(self.gaps)}{' stalls' * bool(self.stalls)}"
-        shape = f"{self.rows or self.columns}x{self.columns}"
+        shape = f"{self.rows or self.columns}x{self.columns}{f'/{self.lanes}' * (self.lanes > 1)}"
         return f"{self.solver} {boundary} {shape} {self.data_width}/{self.coefficient_width}{disturbed}"
 
 
@@ -93,8 +94,13 @@ JOBS = (
     Job(256, "tridiagonal", True, 24, 18, rows=240),
     Job(512, "tridiagonal", False),
     Job(1024, "tridiagonal", True, 27, 18),
+    Job(32, "tridiagonal", True, rows=9, lanes=4, gaps=0.2, stalls=0.3),
+    Job(64, "tridiagonal", False, rows=50, lanes=8, stalls=0.2),
+    Job(128, "tridiagonal", True, lanes=16),
+    Job(256, "tridiagonal", False, lanes=32, gaps=0.1),
     Job(16, "spectral", False, simulator="icarus", codes=60_000),
     Job(16, "tridiagonal", True, rows=8, simulator="icarus", codes=60_000),
+    Job(16, "tridiagonal", False, rows=9, simulator="icarus", codes=60_000, lanes=2),
 )
 
 
@@ -133,6 +139,7 @@ def compare(job: Job, seed: int) -> dict[str, Any]:
         columns=job.columns,
         rows=job.rows,
         solver=job.solver,
+        lanes=job.lanes,
         neumann=job.neumann,
         data_width=job.data_width,
         coefficient_width=job.coefficient_width,

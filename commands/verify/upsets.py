@@ -19,6 +19,7 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 CASES: dict[str, dict[str, Any]] = {
     "spectral": {"columns": 16, "bits_per_channel": 2},
     "tridiagonal": {"columns": 16, "rows": 8, "solver": "tridiagonal", "neumann": True, "bits_per_channel": 2},
+    "tridiagonal-lanes": {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "bits_per_channel": 2},
 }
 OUTCOMES = {
     "hang": "a frame sent after the flip did not come out",

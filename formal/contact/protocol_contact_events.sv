@@ -5,7 +5,8 @@
 
 module protocol_contact_events #(
   parameter int Rows    = 128,
-  parameter int Columns = 128
+  parameter int Columns = 128,
+  parameter int Lanes   = 1    // depths in a beat
 ) (
   input  logic       clk,
   input  logic       rst,
@@ -20,7 +21,7 @@ module protocol_contact_events #(
 
   logic reset;
   assign {counts_m_event_tdata, counts_m_event_tlast} = {2{counts & m_event_tvalid}};
-  depth_frames #(.Rows(Rows), .Columns(Columns)) u_frames (
+  depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (
     .clk, .rst, .in_valid, .in_position, .holds, .reset, .counts
   );
 

@@ -5,7 +5,8 @@
 
 module protocol_contact_sums #(
   parameter int Rows    = 128,
-  parameter int Columns = 128
+  parameter int Columns = 128,
+  parameter int Lanes   = 1    // depths in a beat
 ) (
   input  logic       clk,
   input  logic       rst,
@@ -22,7 +23,7 @@ module protocol_contact_sums #(
   logic reset;
   assign counts_area = counts & area_valid;
   assign counts_sums = counts & sums_valid;
-  depth_frames #(.Rows(Rows), .Columns(Columns)) u_frames (
+  depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (
     .clk, .rst, .in_valid, .in_position, .holds, .reset, .counts
   );
 

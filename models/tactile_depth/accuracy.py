@@ -96,7 +96,7 @@ def _bench(size: int, neumann: bool) -> _Bench:
 
 
 WORST = math.inf  # as a depth range: the largest depth that any slopes can reach
-CONFIGURATION = ("solver", "boundary", "rows", "columns", "data_width", "coefficient_width", "depth_range")
+CONFIGURATION = ("solver", "boundary", "rows", "columns", "lanes", "data_width", "coefficient_width", "depth_range")
 MEASURED = (
     "problem",
     "depth_range_mm",
@@ -113,6 +113,7 @@ MEASURED = (
     "saturations",
     "first_depth_cycles",
     "last_pixel_to_first_depth_cycles",
+    "last_pixel_to_last_depth_cycles",
     "multipliers",
     "memory_bits",
     "frame_store_bits",
@@ -133,6 +134,7 @@ def configuration_cells(choices: dict[str, Any]) -> dict[str, str]:
         "boundary": "neumann" if choices.get("neumann") else "dirichlet",
         "rows": str(choices.get("rows", columns)),
         "columns": str(columns),
+        "lanes": str(choices.get("lanes", default.lanes)),
         "data_width": str(choices.get("data_width", default.data_width)),
         "coefficient_width": str(choices.get("coefficient_width", default.coefficient_width)),
         "depth_range": {None: "default", WORST: "worst"}.get(depth_range, str(depth_range)),
@@ -189,6 +191,7 @@ def measure(choices: dict[str, Any]) -> dict[str, str]:
         "saturations": monitor.saturations.total(),
         "first_depth_cycles": counted.first_depth_cycles,
         "last_pixel_to_first_depth_cycles": counted.last_pixel_cycles,
+        "last_pixel_to_last_depth_cycles": counted.map_cycles,
         "multipliers": counted.tiles,
         "memory_bits": counted.memory_bits,
         "frame_store_bits": counted.bits_of("frame stores"),

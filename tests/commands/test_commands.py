@@ -72,6 +72,27 @@ def test_a_value_that_is_not_accepted_is_named(
     assert refusal(monkeypatch, capsys, *words.split()) == f"make {command}: {REFUSED[words]}"
 
 
+LANES = {
+    "LANES=2 SOLVER=spectral": "LANES=2 with SOLVER=spectral: it puts out one depth value per clock: set LANES=1, or "
+    "SOLVER=tridiagonal",
+    "LANES=32 SOLVER=tridiagonal": "LANES=32 with N=128: accepted are 1 to 16",
+    "LANES=6 SOLVER=tridiagonal": "LANES=6 is not a power of two: try LANES=4 or LANES=8",
+    "LANES=0 SOLVER=tridiagonal": "LANES=0 with N=128: accepted are 1 to 16",
+    "LANES=many": "LANES=many: accepted is a whole number",
+}
+
+
+@pytest.mark.parametrize("words", LANES)
+@pytest.mark.parametrize(
+    "command", ["asic", "certify", "fpga TARGET=ulx3s", "sim", "synth TARGET=xczu7ev", "tune", "wrap NAME=finger"]
+)
+def test_lanes_that_cannot_be_built_are_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str, words: str
+) -> None:
+    line = refusal(monkeypatch, capsys, *command.split(), *words.split())
+    assert line == f"make {command.split()[0]}: {LANES[words]}"
+
+
 @pytest.mark.parametrize("command", ["asic", "baselines", "certify", "extremes", "reflex", "report", "sweep", "synth"])
 def test_an_out_that_is_too_long_is_refused(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, command: Any

@@ -78,6 +78,39 @@ def test_rows_are_in_the_order_of_the_input(tmp_path: Path) -> None:
     np.testing.assert_allclose(depth["spectral"], depth["tridiagonal"], atol=1e-3 * depth["spectral"].max())
 
 
+@pytest.mark.parametrize(
+    ("rows", "columns", "lanes", "words"),
+    [
+        (9, 16, 2, ["SIM=icarus", "FRAMES=ball", "REPEAT=2", "GAPS=0.3"]),
+        *(
+            pytest.param(*case, marks=pytest.mark.regress)
+            for case in (
+                (64, 64, 8, ["FRAMES=contacts", "GAPS=0.3", "BOUNDARY=neumann"]),
+                (100, 128, 16, ["FRAMES=contacts", "GAPS=0.3", "REFERENCE=flat", "FLOOR=flat", "GRADIENT=quadratic"]),
+                (256, 256, 32, ["FRAMES=ball", "REPEAT=2"]),
+                (21, 64, 8, ["SIM=icarus", "FRAMES=ball", "REPEAT=2", "BOUNDARY=neumann"]),
+            )
+        ),
+    ],
+)
+def test_lanes_bring_the_same_depth_earlier(
+    tmp_path: Path, rows: int, columns: int, lanes: int, words: list[str]
+) -> None:
+    grid = [f"ROWS={rows}", f"COLS={columns}", "SOLVER=tridiagonal", *words]
+    one = run(tmp_path, *grid)
+    depth = np.load(tmp_path / "out" / "depth.npy")
+    several = run(tmp_path, *grid, f"LANES={lanes}")
+    assert (one["lanes"], several["lanes"]) == (1, lanes)
+    assert several["registers_agree"]
+    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), depth)
+    first = only(one["last_pixel_to_first_depth_cycles"])
+    assert only(several["last_pixel_to_first_depth_cycles"]) <= first + 8
+    assert only(several["last_pixel_to_last_depth_cycles"]) <= first + rows * columns // lanes + 15
+
+    run(tmp_path, *grid, f"LANES={lanes}", "GAPS=0.2", "STALLS=0.3")
+    np.testing.assert_array_equal(np.load(tmp_path / "out" / "depth.npy"), depth)
+
+
 @pytest.mark.regress
 def test_the_largest_grid(tmp_path: Path) -> None:
     report = run(tmp_path, "N=1024", "SOLVER=tridiagonal")

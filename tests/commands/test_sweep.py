@@ -21,7 +21,7 @@ from commands.study import sweep
 from tactile_depth import accuracy
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.cost import cost
-from tactile_depth.latency import first_depth_latency
+from tactile_depth.latency import first_depth_latency, last_pixel_to_last_depth
 
 SMALL = [{"columns": 16, "solver": solver, "data_width": width} for solver in COLUMNS for width in (12, 18, 24) * 1] + [
     {"columns": 16, "neumann": True}
@@ -38,7 +38,7 @@ def test_the_plan_is_the_issue_s() -> None:
     assert len({tuple(row.values()) for row in rows}) == len(rows)
     default = sweep.configuration_cells({})
     for solver in COLUMNS:
-        mine = [row for row in rows if row["solver"] == solver]
+        mine = [row for row in rows if row["solver"] == solver and row["lanes"] == "1"]
         plane = {
             (int(row["data_width"]), int(row["coefficient_width"]))
             for row in mine
@@ -54,6 +54,22 @@ def test_the_plan_is_the_issue_s() -> None:
             assert sum(row[name] != default[name] for name in ("columns", "boundary", "data_width")) == 1
         assert {row["columns"] for row in others} == {"32", "64", "128", "256", "512"}
         assert Counter(row["boundary"] for row in others)["neumann"] == 1
+    lanes = [(row["columns"], int(row["lanes"])) for row in rows if row["lanes"] != "1"]
+    assert Counter(lanes) == Counter([("128", 1 << n) for n in range(1, 5)] + [("256", 1 << n) for n in range(1, 6)])
+
+
+def test_lanes_change_the_cost_and_the_last_depth_alone() -> None:
+    one, two = (accuracy.measure({"columns": 32, "solver": "tridiagonal", "lanes": lanes}) for lanes in (1, 2))
+    config = Configuration(columns=32, solver="tridiagonal", lanes=2)
+    assert int(two["last_pixel_to_last_depth_cycles"]) == last_pixel_to_last_depth(config)
+    assert int(two["multipliers"]) == cost(config).tiles > int(one["multipliers"])
+    same = [name for name in sweep.HEADER if name.startswith(("rms_", "max_", "true_", "sat"))]
+    assert [two[name] for name in same] == [one[name] for name in same]
+    assert "32 x 32" not in sweep.summary([one, two])
+
+    wide = {"columns": "128", "rows": "128"}
+    text = sweep.summary([one | wide, two | wide])
+    assert f"128 x 128, 2{'':16}" in text
 
 
 def test_a_range_that_nothing_leaves() -> None:

@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from commands.common import run_request
+from commands.common import published, run_request
 from commands.run import sim
 from commands.study import tune
 from commands.study.tune import Limits, Search, Widths
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration
 from tactile_depth.cost import cost
 from tactile_depth.frames import load_frames
+from tactile_depth.latency import last_pixel_to_last_depth
 
 NONE = math.inf
 
@@ -57,7 +58,7 @@ def all_points() -> list[Any]:
 def test_the_search_finds_the_cheapest_of_all(
     tolerance: Any, latency: Any, multipliers: Any, memory: Any, bits: int
 ) -> None:
-    limits = Limits(tolerance, latency, 166, multipliers, memory)
+    limits = Limits(tolerance, latency, NONE, 166, multipliers, memory)
     search = Search(built, falling(bits), limits, tolerance)
     within = [at for at in all_points() if not limits.broken(cost_of(at))]
     enough = [at for at in within if search.measure(built(at)) <= tolerance]
@@ -136,6 +137,31 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
             assert again[key.lower()] == value
 
 
+def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def choose(limit_us: float) -> int:
+        words = ["N=32", "SIM=icarus", f"MAX_MAP_LATENCY_US={limit_us}"]
+        request, limits, _ = tune.parse(words)
+        return tune.lanes_within(lambda at: config(at.lanes), request, limits, "tridiagonal")
+
+    def config(lanes: int) -> Configuration:
+        return Configuration(columns=32, solver="tridiagonal", lanes=lanes)
+
+    for lanes in (1, 2, 4):
+        exact_us = last_pixel_to_last_depth(config(lanes)) / published.CLOCK_MHZ
+        assert choose(exact_us + 1e-6) == lanes
+        assert choose(exact_us - 1e-6) == min(2 * lanes, 4)
+    assert tune.lanes_within(lambda at: None, *tune.parse(["LANES=2", "N=32"])[:2], "tridiagonal") == 2
+
+    assert run(tmp_path, "FRAMES=ball", f"MAX_MAP_LATENCY_US={exact_us + 1e-6}") == 0
+    chosen = json.loads((tmp_path / "out" / "config.json").read_text())
+    assert (chosen["SOLVER"], chosen["LANES"]) == ("tridiagonal", 4)
+    proof = json.loads((tmp_path / "out" / "proof" / "report.json").read_text())
+    assert proof["lanes"] == 4
+    costs = json.loads((tmp_path / "out" / "report.json").read_text())["chosen"]
+    assert set(proof["last_pixel_to_last_depth_cycles"]) == {costs["map_cycles"]}
+    assert "us from the last pixel to the last depth" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
@@ -143,6 +169,7 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
         (["TOLERANCE=0.001", "MAX_DSP=24"], "the nearest is SOLVER=tridiagonal DATA_WIDTH=24 COEFF_WIDTH="),
         (["MAX_DSP=4"], "beyond MAX_DSP=4"),
         (["MAX_LATENCY_US=1"], "beyond MAX_LATENCY_US=1"),
+        (["SOLVER=tridiagonal", "MAX_MAP_LATENCY_US=2"], "COEFF_WIDTH=10 LANES=4: beyond MAX_MAP_LATENCY_US=2"),
         (["MAX_MEMORY_KBIT=1"], "beyond MAX_MEMORY_KBIT=1"),
     ],
 )
@@ -159,7 +186,7 @@ def test_no_configuration_meets_it(
     [
         *("TOLERANCE=0", "TOLERANCE=-1", "TOLERANCE=little", "MAX_DSP=0", "MAX_LATENCY_US=nan", "CLOCK_MHZ=0"),
         *("DATA_WIDTH=20", "WIDTH=20", "FRAMES=flat", "FRAMES=cube", "N=100", "N=2048", "SOLVER=multigrid"),
-        "OUT=/proc/tune",
+        *("LANES=0", "LANES=3", "LANES=4", "MAX_MAP_LATENCY_US=0", "OUT=/proc/tune"),
     ],
 )
 def test_bad_input(

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section of `make report` on depth lanes: what each number of lanes takes, and how early the whole map comes.
+
+Latencies, multipliers and memories are those of the sweep. LUTs and the routed clock are those of the results of `make
+synth` and `make fpga` in build/, where there are any for the same configuration.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib import pyplot as plt
+
+from commands.common import run_request
+from commands.common.published import CLOCK_MHZ
+from commands.common.repository import ROOT
+from commands.study import sweep
+from commands.study.report_page import Figure, picture, table
+from tactile_depth.configuration import Configuration
+
+HEAD = (
+    *("grid", "lanes", "last pixel to first depth, cycles", "last pixel to last depth, cycles"),
+    *(f"the same at {CLOCK_MHZ:g} MHz, us", "multipliers of 27 x 18", "memory, Mbit"),
+    *("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM", "routed on the ULX3S, MHz"),
+)
+
+
+def rows_of(rows: Sequence[sweep.Row], columns: int) -> list[sweep.Row]:
+    """Return the rows of a sweep that differ in their lanes alone, by rising number of lanes."""
+    default = sweep.configuration_cells({"solver": "tridiagonal", "columns": columns})
+    others = [name for name in sweep.CONFIGURATION if name != "lanes"]
+    alike = [row for row in rows if not row["problem"] and all(row[name] == default[name] for name in others)]
+    return sorted(alike, key=lambda row: int(row["lanes"]))
+
+
+def hardware(build: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Return the designs that `make synth` left below a folder, and the reports of `make fpga`, the latest last."""
+
+    def documents(pattern: str) -> list[dict[str, Any]]:
+        paths = sorted(build.glob(pattern), key=lambda path: path.stat().st_mtime)
+        return [json.loads(path.read_text()) for path in paths]
+
+    designs = [design for document in documents("synth/*/resources.json") for design in document["designs"]]
+    return designs, documents("fpga/*/fpga.json")
+
+
+def cells(row: sweep.Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str, Any]]) -> tuple[str, ...]:
+    """Return a line of the table; "-" where a flow has not run on this configuration."""
+    columns, lanes = int(row["columns"]), int(row["lanes"])
+    wanted = run_request.described(Configuration(columns=columns, solver="tridiagonal", lanes=lanes))
+    whole = int(row["last_pixel_to_last_depth_cycles"])
+    synthesized = [design["totals"] for design in designs if wanted.items() <= design["configuration"].items()]
+    clocks = [report["fmax_mhz"] for report in routed if wanted.items() <= report.items()]
+    names = ("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM")
+    return (
+        *(f"{columns} x {columns}", str(lanes), f"{int(row['last_pixel_to_first_depth_cycles']):,}", f"{whole:,}"),
+        *(f"{whole / CLOCK_MHZ:.1f}", row["multipliers"], f"{int(row['memory_bits']) / 1e6:.2f}"),
+        *(f"{synthesized[-1][name]:,g}" if synthesized else "-" for name in names),
+        f"{clocks[-1]:.1f}" if clocks else "-",
+    )
+
+
+def lanes_figure(rows: Sequence[sweep.Row], folder: Path, build: Path = ROOT / "build") -> Figure:
+    """Plot the whole map's latency against multipliers and memory, a point for each number of lanes."""
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
+    designs, routed = hardware(build)
+    lines = []
+    for columns, colour in zip(sweep.LANE_GRIDS, ("#08306b", "#e6550d"), strict=True):
+        points = rows_of(rows, columns)
+        lines += [cells(row, designs, routed) for row in points]
+        micros = [int(row["last_pixel_to_last_depth_cycles"]) / CLOCK_MHZ for row in points]
+        areas = ([int(row["multipliers"]) for row in points], [int(row["memory_bits"]) / 1e6 for row in points])
+        for axis, area in zip(axes, areas, strict=True):
+            axis.plot(area, micros, color=colour, marker="o", label=f"{columns} x {columns}")
+            for row, *at in zip(points, area, micros, strict=True):
+                axis.annotate(row["lanes"], at, textcoords="offset points", xytext=(4, 4), fontsize=8)
+    for axis, name in zip(axes, ("multipliers of 27 x 18", "memory, Mbit"), strict=True):
+        axis.set(xlabel=name, yscale="log")
+        axis.set_xlim(left=0)
+        axis.grid(alpha=0.3)
+    axes[0].set_ylabel(f"last pixel to last depth, us at {CLOCK_MHZ:g} MHz")
+    axes[0].legend()
+    text = (
+        "The tridiagonal solver with 1, 2, 4, .. depth values per clock (LANES, beside the points). Lanes change no "
+        "depth and no error: they bring the last depth earlier and take area. Resources of an FPGA and the routed "
+        "clock are shown where `make synth` and `make fpga` have run with this grid and LANES."
+    )
+    content = picture(figure, folder, "lanes") + table(HEAD, lines)
+    return Figure("lanes", "Depth lanes: speed against area", text, "make sweep; make synth LANES=..", content)

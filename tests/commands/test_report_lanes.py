@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section of `make report` on lanes: a line for each number of lanes, with what the hardware flows left for it."""
+
+import json
+from pathlib import Path
+
+from commands.common import run_request
+from commands.study import report_lanes, sweep
+from tactile_depth.configuration import Configuration
+from tactile_depth.cost import cost
+from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+
+
+def row(columns: int, lanes: int) -> sweep.Row:
+    """Return what the section reads of a row of the sweep."""
+    config = Configuration(columns=columns, solver="tridiagonal", lanes=lanes)
+    return sweep.configuration_cells({"solver": "tridiagonal", "columns": columns, "lanes": lanes}) | {
+        "problem": "",
+        "last_pixel_to_first_depth_cycles": str(last_pixel_to_first_depth(config)),
+        "last_pixel_to_last_depth_cycles": str(last_pixel_to_last_depth(config)),
+        "multipliers": str(cost(config).tiles),
+        "memory_bits": str(cost(config).memory_bits),
+    }
+
+
+def test_every_number_of_lanes_has_a_line(tmp_path: Path) -> None:
+    rows = [row(columns, lanes) for columns in sweep.LANE_GRIDS for lanes in sweep.lane_counts(columns)]
+    described = run_request.described(Configuration(columns=128, solver="tridiagonal", lanes=8))
+    totals = {"DSP48E2": 151, "LUT": 45678, "FF": 23456, "BRAM36": 77.5, "UltraRAM": 0}
+    other = described | {"lanes": 4}
+    for flow, name, content in (
+        ("synth", "resources.json", {"designs": [{"configuration": described, "totals": totals}]}),
+        ("fpga", "fpga.json", other | {"fmax_mhz": 98.76}),
+    ):
+        folder = tmp_path / flow / "one"
+        folder.mkdir(parents=True)
+        (folder / name).write_text(json.dumps(content))
+    html = report_lanes.lanes_figure(list(reversed(rows)), tmp_path, tmp_path).section()
+    lines = html.split("<tr>")[2:]
+    assert len(lines) == len(rows)
+    for expected, line in zip(rows, lines, strict=True):
+        assert f"<td>{expected['columns']} x {expected['columns']}</td><td>{expected['lanes']}</td>" in line
+        assert f"<td>{int(expected['last_pixel_to_last_depth_cycles']):,}</td>" in line
+        assert ("45,678" in line) == ((expected["columns"], expected["lanes"]) == ("128", "8"))
+        assert ("98.8" in line) == ((expected["columns"], expected["lanes"]) == ("128", "4"))
+    assert (tmp_path / "lanes.png").exists()
