@@ -72,11 +72,13 @@ def lanes_figure(rows: Sequence[sweep.Row], folder: Path, build: Path = ROOT / "
         points = rows_of(rows, columns)
         lines += [cells(row, designs, routed) for row in points]
         micros = [int(row["last_pixel_to_last_depth_cycles"]) / CLOCK_MHZ for row in points]
-        areas = ([int(row["multipliers"]) for row in points], [int(row["memory_bits"]) / 1e6 for row in points])
+        areas = [
+            [scale * int(row[name]) for row in points] for name, scale in (("multipliers", 1), ("memory_bits", 1e-6))
+        ]
         for axis, area in zip(axes, areas, strict=True):
             axis.plot(area, micros, color=colour, marker="o", label=f"{columns} x {columns}")
-            for row, *at in zip(points, area, micros, strict=True):
-                axis.annotate(row["lanes"], at, textcoords="offset points", xytext=(4, 4), fontsize=8)
+            for row, x, y in zip(points, area, micros, strict=True):
+                axis.annotate(row["lanes"], (x, y), textcoords="offset points", xytext=(4, 4), fontsize=8)
     for axis, name in zip(axes, ("multipliers of 27 x 18", "memory, Mbit"), strict=True):
         axis.set(xlabel=name, yscale="log")
         axis.set_xlim(left=0)

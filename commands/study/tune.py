@@ -310,8 +310,8 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     calibration = run_request.load_sensor(request)
 
     def shaped(at: Widths) -> run_request.Request:
-        widths = {"data_width": at.data, "coefficient_width": at.coefficient}
-        return replace(request, solver=at.solver, lanes=at.lanes, **widths)
+        own = replace(request, data_width=at.data, coefficient_width=at.coefficient)
+        return replace(own, solver=at.solver, lanes=at.lanes)
 
     _check_grid(request, solvers)
     shape = (request.rows, request.columns)
@@ -417,8 +417,8 @@ def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     for solver in solvers:
         try:
             lanes = request.lanes or 1
-            shape = {"columns": request.columns, "rows": request.rows, "solver": solver, "lanes": lanes}
-            Configuration(**shape, data_width=DATA_WIDTHS[1])
+            shape: dict[str, Any] = {"columns": request.columns, "rows": request.rows, "solver": solver}
+            Configuration(**shape, lanes=lanes, data_width=DATA_WIDTHS[1])
             return
         except InputError as error:
             refused.append(error)
