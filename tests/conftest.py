@@ -22,7 +22,7 @@ from tb.stream import CLOCK_NS, REGRESS
 from tests.records import record
 
 SEED = int(os.environ.get("SEED", "1"))
-POWER_UPS = int(os.environ.get("POWER_UPS", "3"))  # random states to begin from
+POWER_UPS = int(os.environ.get("POWER_UPS", "2"))  # random states to begin from
 STATES_OF_A_BOARD = 8
 QUICK_CLOCKS = 1000
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")

@@ -117,5 +117,5 @@ def test_words_side_by_side_in_the_frame_store(run_tb: Callable[..., None], simu
 @pytest.mark.seeds
 @pytest.mark.structures("name", verilator=[("tridiagonal-8x16",)], regress=[("tridiagonal-8x16",)])
 def test_a_second_client(run_tb: Callable[..., None], name: str) -> None:
-    """Run the tests that send whole rows through cocotbext-axi."""
-    run(run_tb, STRUCTURES[name][0], {"CLIENT": "second"})
+    """Run the tests that send whole rows through cocotbext-axi; `make test` plays them up to the level formats."""
+    run(run_tb, STRUCTURES[name][0], {"CLIENT": "second", **(ALL if REGRESS else FORMATS)})

@@ -36,7 +36,7 @@ def test_a_wrapper_has_every_port_and_parameter_of_the_top() -> None:
     assert {"clk", "s_axis_tdata", "m_axis_tuser", "contact", "m_event_tready", "s_axil_rready"} <= set(names)
 
 
-@pytest.mark.parametrize("simulator", ["verilator", "icarus"], indirect=True)
+@pytest.mark.parametrize("simulator", [pytest.param("verilator", marks=pytest.mark.regress), "icarus"], indirect=True)
 def test_two_pipelines_with_two_calibrations_in_one_simulation(
     run_tb: Callable[..., None], simulator: str, tmp_path: Path
 ) -> None:

@@ -16,7 +16,7 @@ from commands.common.simulator import SIMULATORS
 from tactile_depth.errors import InputError
 
 WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
-ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from several random power-up states
+ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from a second random power-up state too
 
 
 def lint(cores: Sequence[str] = ()) -> list[str]:
