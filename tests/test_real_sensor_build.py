@@ -23,8 +23,9 @@ from tactile_depth.sensor import Sensor, load
 from tactile_depth.tactile_depth import tactile_depth
 from tests.ball_presses import read, real_folder, write_folder
 
-FULL_WORDS: dict[str, int] = {}  # the defaults, 24 bits
+FULL_WORDS: dict[str, Any] = {}  # the defaults, 24 bits
 REAL_SENSOR_WORDS = {"data_width": 15, "coefficient_width": 18, "gain_width": 16}
+DEPTH_RANGE_MM = 2.0  # twice the deepest press; words of 15 bits need a range that fits
 HEIGHT_BAR = 0.01  # of a cap height
 
 
@@ -32,7 +33,7 @@ def on_grid(sensor: Sensor, presses: GridPresses) -> Sensor:
     return replace(sensor, pixel_pitch_mm=presses.grid_pitch_mm, reference=presses.background_on_grid)
 
 
-def real_sensor(sensor: Sensor, presses: GridPresses, words: dict[str, int]) -> Configuration:
+def real_sensor(sensor: Sensor, presses: GridPresses, words: dict[str, Any]) -> Configuration:
     """Return what a real sensor needs: flat field, quadratic, zero slope at the edge, zero offset."""
     choices: dict[str, Any] = {"columns": presses.size, "solver": "tridiagonal", "neumann": True, "auto_zero": True}
     return on_grid(sensor, presses).configuration("quadratic", **choices, **words)
@@ -88,7 +89,8 @@ def test_caps_keep_their_height_at_the_words_of_the_real_sensor_build(tmp_path: 
     sensor, presses = load("gelsight-mini"), read(folder)
     views = [view for view in presses.views if view.is_whole]
     recovered = {}
-    for name, words in (("full", FULL_WORDS), ("real", REAL_SENSOR_WORDS)):
+    fitting: dict[str, Any] = {**REAL_SENSOR_WORDS, "depth_range_px": DEPTH_RANGE_MM / presses.grid_pitch_mm}
+    for name, words in (("full", FULL_WORDS), ("real", fitting)):
         config = real_sensor(sensor, presses, words)
         recovered[name] = heights(views, depth_of("verilator", sensor, config, presses, views, tmp_path / name))
     change = np.abs(recovered["real"] / recovered["full"] - 1)

@@ -141,7 +141,7 @@ module fv_camera_window #(
           out_valid, out_abort, out_data, out_inside, out_odd_row, out_odd_column, out_row_start, out_frame_start});
       end
 
-      window_passes: cover (out_valid && out_inside && passed && x == 8'd1 && y == 8'd1);
+      window_passes: cover (out_valid && out_inside && passed && x == (PixelPairs != 0 ? 8'd0 : 8'd1) && y == 8'd1);
       harmless: cover (en && misplaced && passed);
       harmless_start: cover (en && early && passed);
       leaves_the_picture: cover (en && outside && c == 8'd4 && x == 8'd3);

@@ -179,19 +179,37 @@ async def events(dut: Any) -> None:
         assert await value_of(dut, "CAMERA_STATUS") == 0
 
 
+async def preset(checker: Checker, **values: int) -> None:
+    """Set counters, by their registers in the RTL and in the model."""
+    await RisingEdge(checker.dut.clk)
+    for name, value in values.items():
+        getattr(checker.dut, name).value = value
+    await RisingEdge(checker.dut.clk)
+    checker.model.values.update({f"CAMERA_{name.upper()}": value for name, value in values.items()})
+
+
 @cocotb.test(timeout_time=1, timeout_unit="ms")
-async def counters_stay_at_their_end(dut: Any) -> None:
-    """They do not wrap; an event in the clock of a clearing write is kept."""
+async def counters_have_32_bits(dut: Any) -> None:
+    """They count on from any value, and stay at the largest."""
+    async with checked(dut) as checker:
+        rng = random.Random(cocotb.RANDOM_SEED)
+        values = [(1 << bit) - 1 for bit in range(1, 33)] + [
+            WORD - 1,
+            WORD - 200,
+            *(rng.getrandbits(32) for _ in range(2)),
+        ]
+        for value in values:
+            await preset(checker, dropped=value, lost=value)
+            await pulse(dut, faults=fault("row_long"), frames_lost=200)
+            assert await value_of(dut, "CAMERA_DROPPED") == min(value + 1, WORD)
+            assert await value_of(dut, "CAMERA_LOST") == min(value + 200, WORD)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def an_event_in_the_clock_of_a_clearing_write_is_kept(dut: Any) -> None:
     async with checked(dut) as checker:
         control = CAMERA_REGISTERS["CAMERA_CONTROL"]
-        for pin, register, value in (("dropped", "CAMERA_DROPPED", WORD - 1), ("lost", "CAMERA_LOST", WORD - 300)):
-            if hasattr(dut, pin):  # not in a netlist
-                await RisingEdge(dut.clk)
-                getattr(dut, pin).value = value
-                await RisingEdge(dut.clk)
-                checker.model.values[register] = value
-        for _ in range(3):
-            await pulse(dut, faults=fault("row_long"), frames_lost=200)
+        await preset(checker, dropped=WORD, lost=WORD)
         dut.faults.value, dut.frames_lost.value = fault("row_short"), 3
         await axil.write(dut, control.offset, control.field("clear_counters").mask)
         dut.faults.value, dut.frames_lost.value = 0, 0
