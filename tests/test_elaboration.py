@@ -21,7 +21,9 @@ INVALID = {
     "frame_guard": ["Rows=1", "Columns=1"],
     "frame_output": ["Columns=12", "Rows=1"],
     "divergence": ["Columns=1"],
-    "threshold_comparator": ["Width=33"],
+    "threshold_comparator": ["Width=33", "Lanes=0"],
+    "beat_sums": ["Lanes=1", "Lanes=12"],
+    "contact_sums": ["Lanes=3", "Lanes=64"],
     "contact_events": [
         *("Width=1", "Width=33", "Rows=1", "Rows=1025", "Columns=1", "Columns=1025", "Rows=4 Columns=4"),
     ],
@@ -53,7 +55,16 @@ INVALID = {
     "twiddle_multiply": ["Size=12", "Size=1", "Block=12", "Block=1", "Block=256"],
     "tactile_depth": ["Quadratic=1", "Rows=64", "DataWidth=33", "AutoZero=2"],
     "poisson_unit": [
-        *("Tridiagonal=2", "Neumann=-1", "Rows=64", "Columns=12", "DataWidth=33", "DataWidth=28", "Width=49"),
+        *(
+            "Tridiagonal=2",
+            "Lanes=2",
+            "Neumann=-1",
+            "Rows=64",
+            "Columns=12",
+            "DataWidth=33",
+            "DataWidth=28",
+            "Width=49",
+        ),
         *("GradientWidth=1", "CoeffWidth=1", "StoreStyle=3", "DivideShiftWidth=0", "DivideDrop=100"),
         *("RowForwardOut=100", "ColumnForwardIn=100", "ColumnInverseOut=100", "RowInverseIn=100", "RowInverseOut=100"),
         *(f"Tridiagonal=1 {word}" for word in ("StoreDrop=100", "WordsPerRow=0", "TableWords=1", "SettledWidth=0")),

@@ -98,17 +98,18 @@ def test_resets_in_every_phase(device: Any, simulator: str, grid: Any) -> None:
 
 @pytest.mark.regress
 @pytest.mark.parametrize("simulator", ["verilator"], indirect=True)
-@pytest.mark.parametrize("solver", ["tridiagonal", "spectral"])
-def test_a_sample_at_128(device: Any, simulator: Any, solver: Any) -> None:
+@pytest.mark.parametrize(("solver", "lanes"), [("tridiagonal", 1), ("tridiagonal", 16), ("spectral", 1)])
+def test_a_sample_at_128(device: Any, simulator: Any, solver: Any, lanes: int) -> None:
     """Send whole frames of 16,384 pixels, with each kind of break at a random position, and resets."""
-    config, rng = Configuration(columns=128, solver=solver), random.Random(SEED)
+    config, rng = Configuration(columns=128, solver=solver, lanes=lanes), random.Random(SEED)
+    grid = f"{solver}-128" + (f"-{lanes}-lanes" if lanes > 1 else "")
     for stalled, silent in ((False, False), (True, False), (False, True)):
         began = time.monotonic()
         every = cases(config.rows, config.columns, silent)
         kinds = sorted({case.kind for case in every})
         some = [rng.choice([c for c in every if c.kind == kind]) for kind in kinds for _ in range(8 if REGRESS else 1)]
         out = attack(device(config), some, stalled=stalled, timeout=TIMEOUT if silent else 0)
-        note("sample", simulator, f"{solver}-128", out, began)
+        note("sample", simulator, grid, out, began)
     began = time.monotonic()
     drawn = [Reset(rng.choice(phases(config)), clocks, rng.choice(SINKS)) for clocks in CLOCKS]
-    note("resets", simulator, f"{solver}-128", resets(device(config), drawn), began)
+    note("resets", simulator, grid, resets(device(config), drawn), began)
