@@ -81,14 +81,19 @@ module depth_unit
     logic [NodeWidth-$clog2(Side)-1:0] floor_write_node;
     logic [Side*DataWidth-1:0] floor_written;
     logic signed [DataWidth-1:0] floor_word;
-    assign selected = table_command.select == 2'(TableSelectFloor);
+    table_command_t command = '0;  // the bus comes from afar: table_access waits a cycle longer than a table
+    always_ff @(posedge clk) begin
+      command <= table_command;
+      if (rst) {command.write, command.read} <= '0;
+    end
+    assign selected = command.select == 2'(TableSelectFloor);
     auto_zero #(
       .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth),
       .Lanes(Lanes)
     ) u_auto_zero (
       .clk, .rst, .en, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
-      .table_write(table_command.write & selected), .table_read(table_command.read & selected),
-      .table_index(table_command.index[NodeWidth-1:0]), .table_floor(table_command.low[DataWidth-1:0]),
+      .table_write(command.write & selected), .table_read(command.read & selected),
+      .table_index(command.index[NodeWidth-1:0]), .table_floor(command.low[DataWidth-1:0]),
       .table_read_floor(floor_word),
       .capture_write(floor_write), .capture_write_node(floor_write_node), .capture_floor(floor_written),
       .in_valid(whole_valid), .in_position(whole_position), .in_data(whole_data),

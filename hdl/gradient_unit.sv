@@ -61,11 +61,18 @@ module gradient_unit
   output logic signed [GradientWidth-1:0] slope_gy   // slope code
 );
 
+  // The bus of the tables comes from afar, so it has a register here: table_access waits a cycle longer than a table.
+  table_command_t command = '0;
+  always_ff @(posedge clk) begin
+    command <= table_command;
+    if (rst) {command.write, command.read} <= '0;
+  end
+
   // Constants of a package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.
   localparam int SlopeTable = Quadratic != 0 ? TableSelectCoefficients : TableSelectGradient;
   logic slope_selected, slope_bank, slope_in_use, reference_in_use;
   logic [31:0] slope_high, slope_low, reference_low;
-  assign slope_selected = table_command.select == 2'(SlopeTable);
+  assign slope_selected = command.select == 2'(SlopeTable);
   assign slope_bank = table_bank[SlopeTable];
   assign table_answer = {
     slope_selected ? slope_high : 32'd0, (slope_selected ? slope_low : 32'd0) | reference_low
@@ -85,7 +92,7 @@ module gradient_unit
     logic [NodeWidth-1:0] capture_write_node, capture_read_node;
     logic [3*GainWidth-1:0] capture_gains, capture_read_gains;
     logic [GainWidth-1:0] gain;
-    assign selected = table_command.select == 2'(TableSelectReference);
+    assign selected = command.select == 2'(TableSelectReference);
     assign bank = table_bank[TableSelectReference];
     flat_field #(
       .TableFolder(TableFolder),
@@ -93,8 +100,8 @@ module gradient_unit
       .Offset(ColourOffset), .OutWidth(ColourWidth), .Flat(ColourFlat)
     ) u_flat_field (
       .clk, .rst, .en, .dark_level, .table_bank(bank), .table_in_use(reference_in_use),
-      .table_write(table_command.write & selected), .table_read(table_command.read & selected),
-      .table_index(table_command.index[NodeWidth+1:0]), .table_gain(table_command.low[GainWidth-1:0]),
+      .table_write(command.write & selected), .table_read(command.read & selected),
+      .table_index(command.index[NodeWidth+1:0]), .table_gain(command.low[GainWidth-1:0]),
       .table_read_gain(gain), .capture_write, .capture_write_node, .capture_gains,
       .capture_read, .capture_read_node, .capture_read_gains,
       .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position),
@@ -131,9 +138,9 @@ module gradient_unit
       .WordWidth(PolynomialWidth), .Drop(SlopeDrop)
     ) u_quadratic (
       .clk, .rst, .en, .table_bank(slope_bank), .table_in_use(slope_in_use),
-      .table_write(table_command.write & slope_selected), .table_read(table_command.read & slope_selected),
-      .table_index(table_command.index[$clog2(PolynomialWords)-1:0]),
-      .table_word(table_command.low[PolynomialWidth-1:0]), .table_read_word(word),
+      .table_write(command.write & slope_selected), .table_read(command.read & slope_selected),
+      .table_index(command.index[$clog2(PolynomialWords)-1:0]),
+      .table_word(command.low[PolynomialWidth-1:0]), .table_read_word(word),
       .in_valid(colour_valid), .in_position(colour_position), .in_red(red), .in_green(green), .in_blue(blue),
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy),
       .saturations(slope_saturations)
@@ -146,9 +153,9 @@ module gradient_unit
       .File({TableFolder, "gradient.hex"}), .Width(GradientWidth), .BitsPerChannel(BitsPerChannel)
     ) u_lookup (
       .clk, .rst, .en, .table_bank(slope_bank), .table_in_use(slope_in_use),
-      .table_write(table_command.write & slope_selected), .table_read(table_command.read & slope_selected),
-      .table_index(table_command.index[3*BitsPerChannel-1:0]),
-      .table_gx(table_command.low[GradientWidth-1:0]), .table_gy(table_command.high[GradientWidth-1:0]),
+      .table_write(command.write & slope_selected), .table_read(command.read & slope_selected),
+      .table_index(command.index[3*BitsPerChannel-1:0]),
+      .table_gx(command.low[GradientWidth-1:0]), .table_gy(command.high[GradientWidth-1:0]),
       .table_read_gx(table_gx), .table_read_gy(table_gy),
       .in_valid(colour_valid), .in_pixel({red, blue, green}), .in_position(colour_position),
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy)
@@ -159,7 +166,7 @@ module gradient_unit
   end
 
   logic unused_command;  // banks of other tables, bits of wider entries
-  assign unused_command = ^{table_command, table_bank};
+  assign unused_command = ^{command, table_bank};
 
   // A module that does not exist stops every tool where a parameter is refused.
   if (Quadratic != 0 && FlatField == 0) begin : g_refused_0

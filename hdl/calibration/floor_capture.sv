@@ -9,7 +9,7 @@
 // While busy nobody else writes that bank, nor asks for a change-over.
 // Stream in: frames of depth before the floor is taken off, whole but for a reset; gaps and en low change no floor.
 // Lanes depths of a beat, or those of a block, are added up first; with several blocks to a beat the floors of as many
-// neighbouring nodes leave at once. Latency: from the last beat of the last row of blocks to done 6 cycles, and one for
+// neighbouring nodes leave at once. Latency: from the last beat of the last row of blocks to done 7 cycles, and one for
 // each level of that sum, log2(min(Lanes, 2^BlockLog2)), en or not; a request counts for beats that come as many cycles
 // earlier. Bit-accurate model: models/tactile_depth/calibration/floor_capture.py.
 

@@ -125,7 +125,8 @@ module quadratic_gradient
       always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;
 
-      // Along the raster, by second differences. Those of the row are ready when its first pixel comes.
+      // Along the raster, by second differences. Those of the row are ready when its first pixel comes; a frame begins
+      // with sums of 0.
       logic begins_row;
       assign begins_row = position_q[ToCoefficient-2+colour].first_column;
       logic [WordWidth-1:0] row_value, row_step, row_rise, value, step, second_difference;
@@ -133,9 +134,11 @@ module quadratic_gradient
         if (en) begin
           if (first[2+colour]) row_value <= word;
           if (row[2+colour]) row_value <= row_value + row_rise;
-          if (first[3+colour] | row[3+colour]) row_step <= word + (row[3+colour] ? row_step : '0);
+          if (first[2+colour]) row_step <= '0;
+          else if (first[3+colour] | row[3+colour]) row_step <= word + row_step;
           if (first[4+colour]) second_difference <= word;
-          if (first[5+colour] | row[2+colour]) row_rise <= word + (row[2+colour] ? row_rise : '0);
+          if (first[4+colour]) row_rise <= '0;
+          else if (first[5+colour] | row[2+colour]) row_rise <= word + row_rise;
           if (valid_q[ToCoefficient-1+colour]) begin
             value <= begins_row ? row_value : value + step;
             step <= begins_row ? row_step : step + second_difference;
