@@ -4,8 +4,6 @@
 docs/exit-status.md lists the statuses; make itself returns only 0 and 2.
 """
 
-from __future__ import annotations
-
 import importlib
 import io
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Name of this machine, printed with each figure measured on it."""
 
-from __future__ import annotations
-
 import os
 import platform
 from pathlib import Path

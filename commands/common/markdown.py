@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of Markdown, aligned so that a terminal can show them too."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 

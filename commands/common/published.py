@@ -5,8 +5,6 @@ Source: Z. Zhu, R. Zhang, R. Hu, C. Xiao, "Near-sensor Computing for Rapid Visuo
 University. The pipeline runs on an XCZU7EV at 166 MHz with 24-bit words. Keys of grids are N of N x N pixels.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 CLOCK_MHZ = 166.0

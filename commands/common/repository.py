@@ -5,8 +5,6 @@ These folders hold the same blocks (`hdl/transform/sdf_fft.sv`, `tb/transform/tb
 from the tree, and no list is kept by hand.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

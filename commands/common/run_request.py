@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Path from make variables to a Request, its sensor and the configuration of the pipeline."""
 
-from __future__ import annotations
-
 import errno
 import json
 import math

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Interruption by SIGINT, SIGTERM or SIGHUP: child processes end, and the command removes its temporary files."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal
@@ -122,8 +120,7 @@ def _begin(call: Callable, *arguments: Any, **named: Any) -> Any:
 
 @contextmanager
 def threads(workers: int) -> Iterator[Pool]:
-    """Yield a pool of threads; an exception cancels the calls that have not begun, and a signal ends the running
-    calls."""
+    """Yield a pool of threads; an exception cancels calls that have not begun, a signal ends running calls."""
     pool = Pool(workers)
     try:
         yield pool

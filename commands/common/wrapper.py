@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrappers of hdl/tactile_depth.sv that set every parameter of a configuration, and its default parameters."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

@@ -8,8 +8,6 @@ Takes the variables of `make sim` that choose a configuration and a frame (SOLVE
 Writes asic.json into OUT. Exit status: 0, 1 when the gates differ from the model, 2 on bad input.
 """
 
-from __future__ import annotations
-
 import hashlib
 import importlib.metadata
 import json

@@ -5,8 +5,6 @@ nextpnr takes no constraint between two clocks (its issue 967). The Gray code as
 period of the clock that it comes from, so the delays are read from its report and compared with that period.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

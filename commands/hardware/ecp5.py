@@ -5,8 +5,6 @@ A MULT18X18D has registers at its inputs and at its output. With them the routes
 disappear, and so does most of the delay.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from typing import Any, NamedTuple
 

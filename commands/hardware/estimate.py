@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Estimate at 45 nm from recorded figures of the logic, and the published figures. `make asic` measures neither."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from commands.common import published

@@ -7,8 +7,6 @@ board's header, SENSOR its type. Exit status: 0 when the bitstream meets its clo
 them are fast enough; 1 when not; 2 on bad input and when the design does not fit.
 """
 
-from __future__ import annotations
-
 import importlib.metadata
 import importlib.util
 import json

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memories of an elaborated design, and the UltraRAMs and block RAMs that they need by the plain rule."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -6,8 +6,6 @@ NAME the core holds the module tactile_depth_<NAME>, which a design instantiates
 Without it the core holds the tables, and the parameters as defaults for a design whose top is tactile_depth.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any

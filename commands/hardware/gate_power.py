@@ -7,8 +7,6 @@ transition of an input takes the energy of that pin, whether or not the output m
 clock pin of a flip-flop. Leakage is the library's, at its temperature.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

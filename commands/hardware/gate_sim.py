@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulation of a mapped netlist of the design (gate_sim.cpp): codes, accesses, toggles without and with delays."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

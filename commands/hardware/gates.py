@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A mapped netlist: read from the JSON of Yosys, written as Verilog for OpenSTA."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from functools import cached_property

@@ -8,8 +8,6 @@ reads, because a run then needs no compiler of 40 MB. The Python access layer of
 thousands of lines, most of them its library.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import sys

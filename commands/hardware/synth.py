@@ -11,8 +11,6 @@ registers come from a mapping to 7-series logic, the only one for which Yosys pa
 multipliers; its DSP gets the 27 x 18 bits of a DSP48E2.
 """
 
-from __future__ import annotations
-
 import importlib.metadata
 import json
 import os
@@ -284,11 +282,7 @@ def front_end(
 
 
 def synthesize(
-    config: Configuration,
-    calibration: Sensor,
-    target: Target,
-    folder: Path,
-    camera: CameraConfiguration | None = None,
+    config: Configuration, calibration: Sensor, target: Target, folder: Path, camera: CameraConfiguration | None = None
 ) -> Design:
     """Return the resources of a design; when its memories do not fit, nothing is mapped. Raises RuntimeError."""
     began = time.monotonic()

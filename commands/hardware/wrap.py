@@ -6,8 +6,6 @@ a configuration. The module has the ports of tactile_depth. It and its table fil
 several configurations fit into one design, if each has its own folder of tables.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Yosys: the yowasp wheel, which has the slang front end, runs scripts; the pyosys wheel has ABC and cell models."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Input and recording of tb/frame_bench.sv, in which pixels move in bulk, without a step of Python per cycle."""
 
-from __future__ import annotations
-
 import fcntl
 import hashlib
 import json
@@ -34,8 +32,7 @@ def entry(kind: str, value: int = 0) -> int:
 
 
 def turns(on: int, off: int) -> int:
-    """Return a profile: ready or valid for `on` cycles, then not for `off` cycles. `on` 0: not with probability off /
-    4096."""
+    """Return a profile: high for `on` cycles, then low for `off`; with `on` 0 low with probability off / 4096."""
     return on << 12 | off
 
 
@@ -45,8 +42,7 @@ def chance(no: float) -> int:
 
 
 def frame_entries(frames: np.ndarray) -> np.ndarray:
-    """Return the entries of whole frames, uint8 (..., rows, columns, 3) RGB, with the cycles of first and last pixels
-    noted."""
+    """Return the entries of frames, uint8 (..., rows, columns, 3) RGB; first and last pixels are noted."""
     red, green, blue = (frames[..., channel].astype(np.uint32) for channel in range(3))
     entries = red << 16 | blue << 8 | green
     entries[..., -1] |= LAST

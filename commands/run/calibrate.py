@@ -8,8 +8,6 @@ second press by the written fit. With CAMERA the pictures are converted to the s
 and go through the model of its hardware. models/tactile_depth/fitting.py says how the fit is made.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections import defaultdict

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of depth maps and of ball presses."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pixels with uncertain depth: without light, or with slopes steeper than those of the calibration."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

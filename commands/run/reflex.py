@@ -11,8 +11,6 @@ Takes N, CLOCK_MHZ, SPEED (mm/s), TRIALS, HOST_TRIALS, SEED, SIM and OUT as KEY=
 status: 0 done, 1 the RTL is wrong, 2 bad input.
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import math
@@ -310,8 +308,7 @@ def measure(request: Request) -> dict[str, Any]:
 
 
 def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:
-    """Return the position of the deciding depth in its frame, and the time that the earlier of the two solvers
-    saves."""
+    """Return the position of the deciding depth in its frame, and the time that the earlier solver saves."""
     rows: dict[str, Any] = {}
     for one in loops:
         rows[one.config.solver] = {
@@ -341,8 +338,7 @@ def difference(near: dict[str, Any], setup: Setup) -> dict[str, float | None]:
     clock = setup.frame / math.sqrt(12)
 
     def approach(other: float) -> float | None:
-        """Return the speed in mm/s at which the indentation reaches the threshold in `growth` ms; None if none is fast
-        enough."""
+        """Return the speed in mm/s that reaches the threshold in `growth` ms; None if none is fast enough."""
         return setup.speed * growth / other if other > 0 else None
 
     return {

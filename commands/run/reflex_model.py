@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Model of the delays between contact and motion, near the sensor and through a host, and their statistics."""
 
-from __future__ import annotations
-
 import itertools
 import time
 from dataclasses import dataclass, replace
@@ -158,8 +156,7 @@ def times(setup: Setup, draws: Draws, frames: np.ndarray, compute: np.ndarray, w
 
 
 def first_above(setup: Setup, draws: Draws, trial: int, size: int, calibration: Sensor) -> tuple[int, float, float]:
-    """Return the deciding frame in double precision, the time of its reconstruction, and the lateness after a sleep, in
-    ms."""
+    """Return the deciding frame in double precision, its compute time and the lateness after a sleep, ms."""
     for frame in itertools.count():
         if 2 * setup.depth(draws.phase[trial], frame) < setup.threshold:
             continue  # see `sequence`
@@ -219,15 +216,13 @@ def statistics(values: np.ndarray) -> dict[str, Any]:
 
 
 def rank_sum(near: np.ndarray, host: np.ndarray) -> dict[str, float]:
-    """Return the two-sided Mann-Whitney U; 0: every trial near the sensor was faster than every one through the
-    host."""
+    """Return the two-sided Mann-Whitney U; 0: every trial near the sensor was faster than every other."""
     result = mannwhitneyu(near, host, alternative="two-sided")
     return {"U": float(result.statistic), "p": float(result.pvalue)}
 
 
 def within_published(near: dict[str, Any]) -> bool:
-    """Return True if the mean is within the published mean +- deviation and the spread does not exceed the published
-    one."""
+    """Return True if the mean is within published mean +- deviation and the spread is no wider."""
     mean, spread = published.REFLEX["near"]["motion"]
     return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Picture of `make reflex`: every trial beside the published figures."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables and sentences of make reflex and of the report."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@
 Takes the variables of docs/make-sim.md as KEY=VALUE arguments. Exit status: docs/exit-status.md.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

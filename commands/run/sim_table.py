@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of a run of `make sim`: latencies, the hardware's own counters, and the table that is printed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from commands.run import bench
@@ -51,8 +49,7 @@ def check_registers(registers: dict[str, int], report: dict, stalls: float) -> l
 
 
 def coefficient_words(config: Configuration) -> int:
-    """Return the words of the table along the columns: reciprocals (spectral), or coefficients of Thomas's
-    algorithm."""
+    """Return the words of the table along the columns: reciprocals, or coefficients of Thomas's algorithm."""
     if config.solver == "spectral":
         return len(reciprocal_rom(config))
     return len(thomas_table(config).words) + config.columns

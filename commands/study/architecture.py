@@ -4,8 +4,6 @@
 `python -m commands.study.architecture` writes them between the two marks of the page, from the models.
 """
 
-from __future__ import annotations
-
 from commands.common.repository import ROOT
 from tactile_depth import latency
 from tactile_depth.configuration import Configuration, Format

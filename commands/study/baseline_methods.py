@@ -196,8 +196,7 @@ def _on(device: str, threads: int) -> tuple[Any, Callable[[np.ndarray], Any], Ca
 
 
 def with_torch_fft(size: int, threads: int, device: str = "cpu") -> Prepared:
-    """Prepare the solve by PyTorch, which has no DST: Makhoul's method with a real FFT of the same length, as in
-    hardware."""
+    """Prepare the solve by PyTorch, which has no DST, by Makhoul's method with a real FFT, as in hardware."""
     torch, give, take, synchronise = _on(device, threads)
     half = size // 2
     mode = np.arange(size)

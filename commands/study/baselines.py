@@ -12,8 +12,6 @@ Takes GRIDS (64,128,256,512), RUNS, CLOCK_MHZ and OUT as KEY=VALUE arguments. Ex
 2 bad input. The row of a method that is not installed says so; `make baselines` installs requirements-baselines.txt.
 """
 
-from __future__ import annotations
-
 import gc
 import importlib.metadata
 import importlib.util
@@ -65,8 +63,7 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"
 
 
 def frames(size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the divergence of the contacts of the bench, float32, and their reference depth, float64, (frames, size,
-    size)."""
+    """Return divergence, float32, and reference depth, float64, of the contacts, (frames, size, size)."""
     f = divergence(reference.slopes(render(SCENE, size).frames, synthetic())).astype(np.float32)
     return f, reference.solve(f.astype(np.float64))
 

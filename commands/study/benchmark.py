@@ -12,8 +12,6 @@ Takes BEFORE (a commit, 32a97ff by default), ROUNDS and OUT as KEY=VALUE argumen
 does not run, 2 bad input.
 """
 
-from __future__ import annotations
-
 import io
 import json
 import os

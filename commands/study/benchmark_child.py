@@ -6,8 +6,6 @@ name of a case; the answer is one line, the time of the case in ms per frame. Th
 maps to `<case>.npy` in the folder of the results. The parent is commands/study/benchmark.py.
 """
 
-from __future__ import annotations
-
 import gc
 import sys
 import time
@@ -28,8 +26,7 @@ Solve = Callable[[np.ndarray], np.ndarray]
 
 
 def import_path(folder: Path) -> Path:
-    """Return the folder from which the package of the version is imported: `tactile_depth` in `models`, or `models`
-    itself."""
+    """Return the folder to import the version from: that of `tactile_depth`, or that of `models`."""
     return folder / "models" if (folder / "models" / "tactile_depth").is_dir() else folder
 
 

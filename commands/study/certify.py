@@ -5,8 +5,6 @@ Takes the variables of `make sim`, and RTL=0 for no simulation. Exit status: 0 i
 the certificate allows it, 1 if not, 2 on bad input.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

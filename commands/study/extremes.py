@@ -6,8 +6,6 @@ runs measure drift, and the transforms are measured like in IEEE 1180. Variables
 long runs and the largest grid. Exit status: 0 when every row is as it must be, 1 when not, 2 on bad input.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

@@ -7,8 +7,6 @@ baselines` from build/, and runs the commands if there are none. It takes existi
 and `make asic`. Each figure names the command that makes it again.
 """
 
-from __future__ import annotations
-
 import base64
 import json
 import os

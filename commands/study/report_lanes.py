@@ -5,8 +5,6 @@ Latencies, multipliers and memories are those of the sweep. LUTs and the routed 
 synth` and `make fpga` in build/, where there are any for the same configuration.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """HTML page of make report: figures with text and command, tables, style."""
 
-from __future__ import annotations
-
 import base64
 import html
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ Takes OUT=folder and DASK_SCHEDULER=host:port. Each row is written to the disk b
 sweep continues where it stopped. Exit status: 0 complete, 2 bad input, 130 interrupted.
 """
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import fcntl
@@ -129,8 +127,7 @@ def _append(file: BinaryIO, cells: tuple[str, ...]) -> None:
 
 @contextlib.contextmanager
 def opened(folder: Path) -> Iterator[tuple[BinaryIO, dict[Key, Row]]]:
-    """Yield the table in a folder, ready to append to, and its rows; it allows one sweep at a time. Raises
-    InputError."""
+    """Yield the table in a folder, open to append, and its rows; one sweep at a time. Raises InputError."""
     path = folder / "sweep.csv"
     files.make(folder, [path.name])
     file = path.open("a+b")
@@ -269,8 +266,7 @@ def lanes_table(rows: list[Row]) -> list[str]:
 
 
 def summary(rows: list[Row]) -> str:
-    """Return a line for each solver, boundary and number of lanes, and the narrowest words that meet the published
-    error."""
+    """Return a line for each solver, boundary and number of lanes, and the narrowest sufficient words."""
     default = configuration_cells({})
     lines = [f"{'':28}{'mean RMS':>10}{'worst':>10}  % of peak{'cycles':>12}{'multipliers':>13}{'Mbit':>7}"]
     for row in rows:

@@ -6,8 +6,6 @@ limits of the standard are for one 8 x 8 transform of 9-bit words. Noise spreads
 range of each, so single modes at full amplitude are measured too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -45,8 +43,7 @@ class Compliance:
 
 
 def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int]]:
-    """Return name to core (blocks, monitor), the same in double precision, and dimensions; natural order at both
-    sides."""
+    """Return name to core (blocks, monitor), the same in double precision, and dimensions; natural order."""
     size = config.columns
     order = makhoul(size)
     place = size - 1 - bit_reversed(size)  # of the mode at each position of a burst
@@ -132,8 +129,7 @@ def _blocks(
 
 
 def compliance(config: Configuration, count: int) -> list[Compliance]:
-    """Measure every transform core of a spectral configuration over `count` random blocks (2-D: count / 32, at least
-    `FEWEST`)."""
+    """Measure every transform core over `count` random blocks (2-D: count / 32, at least `FEWEST`)."""
     rows = []
     for core, (fixed, exact, dimensions) in transforms(config).items():
         size = config.columns
@@ -152,8 +148,7 @@ def compliance(config: Configuration, count: int) -> list[Compliance]:
 
 
 def _standard_errors(error: np.ndarray) -> float:
-    """Return the distance of the mean error of blocks (blocks, ..) from zero in standard errors; a large one is a
-    bias."""
+    """Return the distance of the mean error of blocks from zero in standard errors; a large one is a bias."""
     means = error.reshape(len(error), -1).mean(axis=1)
     spread = float(means.std(ddof=1)) / np.sqrt(len(means))
     return float(abs(means.mean())) / spread if spread else 0.0

@@ -8,8 +8,6 @@ fewest with which the last depth comes within MAX_MAP_LATENCY_US of the last pix
 docs/commands.md as KEY=VALUE arguments. Exit status: 0 found and proven, 1 not, 2 bad input.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os
@@ -364,27 +362,28 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
             "give more frames or a smaller tolerance"
         )
         return 1
-    documents = {
-        "config.json": config_file(request, best),
-        "report.json": {
-            "tolerance_percent": limits.tolerance,
-            "margin": MARGIN,
-            "tuned_on": list(tuning.labels),
-            "proven_on": list(proving.labels),
-            "worst_tuned_percent": search.tried[best],
-            "worst_proven_percent": worst,
-            "chosen": _costs(counted, limits),
-            "default": {"configuration": str(default), **_costs(base, limits)} if base else None,
-            "tried": {str(at): error if math.isfinite(error) else None for at, error in sorted(search.tried.items())},
-        },
+    results = {
+        "tuned_on": list(tuning.labels),
+        "proven_on": list(proving.labels),
+        "worst_tuned_percent": search.tried[best],
+        "worst_proven_percent": worst,
+        "chosen": _costs(counted, limits),
+        "default": {"configuration": str(default), **_costs(base, limits)} if base else None,
+        "tried": {str(at): error if math.isfinite(error) else None for at, error in sorted(search.tried.items())},
     }
+    report = {"tolerance_percent": limits.tolerance, "margin": MARGIN, **results}
+    _write(out, {"config.json": config_file(request, best), "report.json": report})
+    file = os.path.relpath(out / "config.json")
+    print(f"proven: {worst:.4f} % of peak at worst, within {limits.tolerance:g}; make sim CONFIG={file}")
+    return 0
+
+
+def _write(out: Path, documents: dict[str, Any]) -> None:
+    """Write the results, both or neither."""
     with files.workspace(out) as work:
         for name, content in documents.items():
             (work / name).write_text(json.dumps(content, indent=1) + "\n")
         files.replace(work, documents, out)
-    file = os.path.relpath(out / "config.json")
-    print(f"proven: {worst:.4f} % of peak at worst, within {limits.tolerance:g}; make sim CONFIG={file}")
-    return 0
 
 
 def _print_choice(search: Search, best: Widths, default: Widths | None, limits: Limits) -> tuple[Cost, Cost | None]:

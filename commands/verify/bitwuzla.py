@@ -5,8 +5,6 @@ The wheel contains a library but no program. Each command goes to the solver as 
 yosys-smtbmc waits for the answer before it sends more.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from typing import TextIO

@@ -10,8 +10,6 @@ coverage_waivers.toml names the points that need not be reached, each with its r
 a point that was reached, is an error. Exit status 0: the tests passed, the gates are met, and every waiver applies.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -98,8 +96,7 @@ def read(lines: Iterable[str]) -> Counter[Point]:
 
 
 def load_waivers(path: Path) -> list[Waiver]:
-    """Return the waivers of a TOML file: tables [[waiver]] and [[excluded]] with file, kind and reason, source or
-    point."""
+    """Return the waivers of a TOML file, tables [[waiver]] and [[excluded]]."""
     tables = tomllib.loads(path.read_text())
     return [
         Waiver(**{"source": "", "point": "", **entry}, excluded=name == "excluded")

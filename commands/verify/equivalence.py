@@ -15,8 +15,6 @@ solver works only on the logic that the mutant can reach. Each mutant goes throu
 A mutant that no step settles is open.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -5,8 +5,6 @@ Each entry of PROOFS runs twice: in mode prove (abc pdr, no bound on time), and 
 cover statement of the bench, so that no proof is void. Any result other than PASS is a failure.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -5,8 +5,6 @@ With CORE=a,b it checks these cores alone. Waivers, each with its reason, are in
 and slang_lint.py; Yosys, Icarus and mypy have none, ruff's are in pyproject.toml.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

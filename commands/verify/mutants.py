@@ -4,8 +4,6 @@
 structures.py reads the structure of the core from its test.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess
@@ -161,8 +159,7 @@ def registers_outside(core: str, folder: Path) -> dict[str, int]:
 
 
 def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
-    """Return Verilog of the netlist as a cell `netlist` with its registers outside; without `selector` it has no
-    mutants."""
+    """Return Verilog of the cell `netlist` with its registers outside; no mutants without `selector`."""
     outside = registers_outside(core, folder)
     connections = [f".{name}({name})" for name in (*ports(core, folder), *([selector] if selector else []))]
     lines = []
@@ -174,8 +171,7 @@ def instance(core: str, folder: Path, selector: str = SELECTOR) -> str:
 
 
 def wrapper(core: str, folder: Path, selector: str = SELECTOR) -> str:
-    """Return a module with name, parameters and ports of the core, around the netlist and the selecting register, if
-    any."""
+    """Return a module with the ports of the core around the netlist and the selecting register, if any."""
     header = re.search(rf"^module {core}\b.*?^\);\n", repository.cores()[core].hdl.read_text(), re.S | re.M)
     assert header is not None, core
     selecting = f"  logic [11:0] {selector} = 12'd0;\n" if selector else ""

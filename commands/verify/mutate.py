@@ -12,8 +12,6 @@ not prove them equivalent.
 Exit status: 1 if all cores together score below 97 %, or a core below 95 %.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

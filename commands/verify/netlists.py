@@ -7,8 +7,6 @@ testbench compares every output with the bit-accurate model, as it does for the 
 mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import time

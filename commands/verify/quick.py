@@ -5,8 +5,6 @@ BASE is a commit, by default the merge base with origin/main. Uncommitted change
 names changed files that many tests depend on: run `make test` for these.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Iterable, Sequence

@@ -7,8 +7,6 @@ another seed, of single cores on Icarus, and all tests that are too long for `ma
 processes, 2 by default.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -6,8 +6,6 @@
 prints the findings; exit status 1 if there are any.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from collections import Counter

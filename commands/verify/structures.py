@@ -5,8 +5,6 @@ A command imports no test. pytest runs the test with STRUCTURES set to a folder,
 arguments of `run_tb` there, and builds nothing.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

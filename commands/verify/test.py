@@ -4,8 +4,6 @@
 Exit status: docs/exit-status.md.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make upsets`: flips bits of registers and memories while frames stream through, and counts the outcomes."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections import Counter
