@@ -14,6 +14,7 @@ multipliers; its DSP gets the 27 x 18 bits of a DSP48E2.
 import importlib.metadata
 import json
 import os
+import re
 import shutil
 import sys
 import time
@@ -197,7 +198,11 @@ def kept(modules: Sequence[str]) -> list[str]:
     """Return the modules that keep their boundary: the cores in the units and in the solver, and the registers."""
     containers = {"", *UNITS, SOLVER}
     paths = {module: path_of(module) for module in modules}
-    return [m for m, path in paths.items() if path not in containers and path.rpartition(".")[0] in containers]
+
+    def container(path: str) -> str:
+        return re.sub(r"\.g_\w+\[\d+\]$", "", path.rpartition(".")[0])  # a lane of the solver is no container
+
+    return [m for m, path in paths.items() if path not in containers and container(path) in containers]
 
 
 def tally(stat: Path) -> dict[str, Counter[str]]:

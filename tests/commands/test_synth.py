@@ -27,14 +27,17 @@ def memory(depth: Any, width: Any, style: Any = "block") -> Any:
     return Memory("u_ram", depth, width, style, rom=False)
 
 
-def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path) -> None:
-    _, modules = synth.elaborate(TINY, synthetic(TINY.bits_per_channel), tmp_path)
+@pytest.mark.parametrize("lanes", [1, 2])
+def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int) -> None:
+    tiny = replace(TINY, lanes=lanes)
+    _, modules = synth.elaborate(tiny, synthetic(tiny.bits_per_channel), tmp_path)
     arrays = memories(tmp_path / "design.json")
     behind_wrapper = Counter((memory.width, memory.depth) for memory in arrays if memory.style)
-    assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(TINY).memories)
+    assert behind_wrapper == Counter((memory.width, memory.words) for memory in cost(tiny).memories)
     assert len({memory.path for memory in arrays}) == len(arrays)
     cores = {path_of(module) for module in synth.kept(modules)}
     assert {"u_video.u_guard", "u_contact.u_events", "u_registers", "u_poisson.u_solver.u_row_forward"} <= cores
+    assert {f"u_poisson.u_solver.g_lane[{lane}].u_row_inverse" for lane in range(lanes)} <= cores
     assert not cores & {"u_poisson", "u_poisson.u_solver"}
 
 
