@@ -23,7 +23,13 @@ from formal.tables import (
 from tactile_depth.calibration import floor_map
 from tactile_depth.common import divide
 from tactile_depth.contact import centroid, contact_events
-from tactile_depth.latency import auto_zero_latency, dst_forward_latency, dst_inverse_latency, sdf_fft_latency
+from tactile_depth.latency import (
+    GAIN_MAP,
+    auto_zero_latency,
+    dst_forward_latency,
+    dst_inverse_latency,
+    sdf_fft_latency,
+)
 
 PROOFS: tuple[Proof, ...] = (
     *(
@@ -246,15 +252,19 @@ PROOFS: tuple[Proof, ...] = (
             "gain_map",
             claim,
             "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
-            {"Along": along, "Columns": 4, "Channels": channels},
+            {"Along": along, "Columns": 4, "Channels": channels, "Latency": GAIN_MAP},
             depth=45,
             roms=gain_rom(4),
             free=("sums",) if along else (),
         )
         for along, channels, claim in (
-            (0, 3, "down a column: sums of the nodes of the bank named when the frame began; entries read; latency 9"),
+            (
+                0,
+                3,
+                "down a column: sums of the nodes of the bank named when the frame began; entries read; its latency",
+            ),
             (0, 1, "the same of one channel alone"),
-            (1, 3, "along a row: gains interpolated between any such sums, rounded to even; latency 9"),
+            (1, 3, "along a row: gains interpolated between any such sums, rounded to even; its latency"),
         )
     ),
     *(

@@ -35,7 +35,16 @@ TIMEOUT = 900  # time-out of one run of SymbiYosys in seconds
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
 HELPERS = (
-    *("ram_check", "burst_source", "burst_timing", "timed_bursts", "lane_source", "code_wires", "follow_word"),
+    *(
+        "ram_check",
+        "burst_source",
+        "burst_timing",
+        "timed_bursts",
+        "fixed_delay",
+        "lane_source",
+        "code_wires",
+        "follow_word",
+    ),
     *("raster_counter", "raster_source"),
 )
 

@@ -93,20 +93,18 @@ module fv_floor_map #(
     end
   end
 
-  logic [Latency-1:0] valid, data;
+  logic [Latency-1:0] valid;
   logic held, read_known, changed, used;
+  fixed_delay #(.Latency(Latency)) u_delay (
+    .clk, .rst, .en, .in_valid, .in_data, .out_valid, .out_data, .active, .valid, .held
+  );
   logic [Width-1:0] read_floor;
   logic [Lanes*Width-1:0] out_q;
-  logic [1:0] out_side_q;
   assign used = starts_q[1] ? named : bank;
   always_ff @(posedge clk) begin
     started <= 1'b1;
-    held <= ~en & ~rst;
     out_q <= out_floors;
-    out_side_q <= {out_valid, out_data};
     if (en) begin
-      valid <= {valid[Latency-2:0], in_valid};
-      data <= {data[Latency-2:0], in_data};
       starts_q <= {starts_q[0], in_valid & in_frame_start};
       if (in_valid && in_frame_start) named <= table_bank;
       bank <= used;
@@ -118,7 +116,6 @@ module fv_floor_map #(
       read_floor <= (en ? used : bank) ? words_0[table_index] : words_1[table_index];
     end
     if (rst) begin
-      valid <= '0;
       starts_q <= '0;
       bank <= table_bank;
       named <= table_bank;
@@ -131,12 +128,9 @@ module fv_floor_map #(
   always_comb begin
     if (started) begin
       bank_in_use: assert (table_in_use == bank);
-      valid_travels: assert (out_valid == valid[Latency-1]);
-      if (out_valid) data_travels: assert (out_data == data[Latency-1]);
-      beat_inside: assert (active == (valid != '0));
-      if (held) holds: assert ({out_valid, out_data} == out_side_q && out_floors == out_q);
+      if (held) holds: assert (out_floors == out_q);
       if (read_known && read_left == 0) entry: assert (table_read_floor == read_floor);
-      new_frame_with_new_words: cover (changed && out_valid && out_floors[0] && data[Latency-1]);
+      new_frame_with_new_words: cover (changed && out_valid && out_floors[0] && out_data);
       read_at_the_change: cover (table_read && bank != used && en);
     end
   end

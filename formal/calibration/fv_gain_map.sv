@@ -13,6 +13,7 @@ module fv_gain_map #(
   parameter int Rows      = 5,
   parameter int Columns   = 4,
   parameter int BlockLog2 = 1,
+  parameter int Latency   = 10,
   parameter int Along     = 0,
   parameter int Width     = 1,
   parameter int Channels  = 3,
@@ -40,8 +41,6 @@ module fv_gain_map #(
   input logic                 in_frame_start,
   input logic                 in_data
 );
-
-  localparam int Latency = 10;
 
   logic table_in_use, out_valid, out_data, active;
   logic [Width-1:0] table_read_gain;
@@ -98,18 +97,16 @@ module fv_gain_map #(
     end
   end
 
-  logic [Latency-1:0] valid, data;
+  logic [Latency-1:0] valid;
   logic held, read_known, changed;
+  fixed_delay #(.Latency(Latency)) u_delay (
+    .clk, .rst, .en, .in_valid, .in_data, .out_valid, .out_data, .active, .valid, .held
+  );
   logic [Width-1:0] read_gain, out_q;
-  logic [1:0] out_side_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
-    held <= ~en & ~rst;
     out_q <= out_gains[Channel*Width+:Width];
-    out_side_q <= {out_valid, out_data};
     if (en) begin
-      valid <= {valid[Latency-2:0], in_valid};
-      data <= {data[Latency-2:0], in_data};
       starts_q <= in_valid & in_frame_start;
       if (in_valid && in_frame_start) named <= table_bank;
       bank <= used;
@@ -122,7 +119,6 @@ module fv_gain_map #(
           : (en ? used : bank) ? words_0[table_index[NodeWidth+1:2]] : words_1[table_index[NodeWidth+1:2]];
     end
     if (rst) begin
-      valid <= '0;
       starts_q <= 1'b0;
       bank <= table_bank;
       read_left <= '0;
@@ -134,10 +130,7 @@ module fv_gain_map #(
   always_comb begin
     if (started) begin
       bank_in_use: assert (table_in_use == bank);
-      valid_travels: assert (out_valid == valid[Latency-1]);
-      if (out_valid) data_travels: assert (out_data == data[Latency-1]);
-      one_inside: assert (active == (valid != '0));
-      if (held) holds: assert ({out_valid, out_data} == out_side_q && out_gains[Channel*Width+:Width] == out_q);
+      if (held) holds: assert (out_gains[Channel*Width+:Width] == out_q);
       if (read_known && read_left == 0) entry: assert (table_read_gain == read_gain);
       new_frame_with_new_gains: cover (changed && out_valid && places_q[8*ToSum-1-:8] == '0 && out_gains[Channel*Width]);
       read_at_the_change: cover (table_read && bank != used && en);
