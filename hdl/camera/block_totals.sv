@@ -106,6 +106,8 @@ module block_totals #(
     );
     assign parts[l*TotalWidth+:TotalWidth] = TotalWidth'(part);
     assign wholes[l*TotalWidth+:TotalWidth] = TotalWidth'(whole);
+    logic unused_top;  // bits that repeat the sign, at ratios below 2
+    assign unused_top = ^{part, whole};
   end
 
   for (genvar c = 0; c < 3; c++) begin : g_colour

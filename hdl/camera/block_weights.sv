@@ -28,7 +28,7 @@ module block_weights #(
 
   logic [LeftWidth-1:0] left, left_now;  // of the present block, that no pixel before this one covers
   assign left_now = restart ? Block : left;
-  assign block_ends = left_now <= Pixel;
+  assign block_ends = {1'b0, left_now} <= {1'b0, Pixel};  // at a ratio of 1 Pixel is the largest of LeftWidth bits
   assign weight = block_ends ? Width'(left_now) : Width'(Pixel);
 
   always_ff @(posedge clk) begin

@@ -79,6 +79,8 @@ module row_sums #(
     );
     assign parts[c*SumWidth+:SumWidth] = SumWidth'(part);
     assign wholes[c*SumWidth+:SumWidth] = SumWidth'(whole);
+    logic unused_top;  // bits that repeat the sign, at ratios below 2
+    assign unused_top = ^{part, whole};
   end
 
   for (genvar l = 0; l < Lanes; l++) begin : g_lane

@@ -4,6 +4,7 @@
 import itertools
 import json
 import math
+import subprocess
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from commands.common import repository, simulator
 from tactile_depth.camera.camera_front_end import camera_front_end, camera_front_end_parameters
 from tactile_depth.camera.pixel_format import photograph
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
@@ -63,6 +65,22 @@ def every_format_phase_and_ratio(each: int) -> list[tuple[dict[str, Any]]]:
 def test_rtl(run_tb: Callable[..., None], choices: dict[str, Any]) -> None:
     camera = CameraConfiguration(**choices)
     run_tb("camera_front_end", camera_front_end_parameters(camera), environment={"CAMERA": json.dumps(choices)})
+
+
+@pytest.mark.parametrize(
+    ("form", "ratio"),
+    [(form, ratio) for form in ("rgb888", "yuyv", "raw10") for ratio in RATIOS if ratio >= FORMATS[form].least_ratio],
+)
+def test_verilator_has_no_warning_at_any_ratio(form: str, ratio: Fraction) -> None:
+    """A warning ends a run of make sim."""
+    simulator.check("verilator")
+    camera = CameraConfiguration((math.ceil(GRID[0] * ratio), int(GRID[1] * ratio)), GRID, form)
+    parameters = [f"-G{name}={value}" for name, value in camera_front_end_parameters(camera).items()]
+    top = ["--top-module", "camera_front_end"]
+    sources = [repository.HDL / "verilator.vlt", *repository.sources("camera_front_end")]
+    command = ["verilator", "--lint-only", "-Wall", "--quiet", *top, *parameters, *map(str, sources)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
 
 
 @pytest.mark.parametrize("each", [1, 3])
