@@ -160,8 +160,19 @@ class StreamMonitor(BusMonitor):
                 assert not frame_start, f"a frame begins in clock {clock}, but no word"
             if left:
                 left -= 1
-                self.words.append(tuple(int(h.value) if unsigned else h.value.to_signed() for h, unsigned in handles))
+                self.words.append(self.word(handles))
                 self._recv(self.words[-1])
+
+    def word(self, handles: Any) -> Any:
+        """Return the values of the fields; a message names the position of a word with bits that are not known."""
+        values = [handle.value for handle, _ in handles]
+        if not all(value.is_resolvable for value in values):
+            burst, position = divmod(len(self.words), self.length)
+            got = ", ".join(f"{field} {value}" for field, value in zip(self.fields, values, strict=True))
+            raise AssertionError(f"RTL leaves unknown bits: burst {burst}, word {position} of it: got {got}")
+        return tuple(
+            int(value) if unsigned else value.to_signed() for value, (_, unsigned) in zip(values, handles, strict=True)
+        )
 
     def pins(self) -> tuple[Any, Any, Any]:
         """Return the qualifier, the start of a frame, and each field with whether it is unsigned."""
