@@ -86,6 +86,8 @@ module depth_unit
       command <= table_command;
       if (rst) {command.write, command.read} <= '0;
     end
+    logic unused_command;  // a table has fewer words, and narrower ones, than the bus carries
+    assign unused_command = ^command;
     assign selected = command.select == 2'(TableSelectFloor);
     auto_zero #(
       .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth),
