@@ -28,23 +28,9 @@ SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ACCEPTED = (
-    *(
-        "N",
-        "ROWS",
-        "COLS",
-        "SOLVER",
-        "BOUNDARY",
-        "LANES",
-        "SIM",
-        "DATA_WIDTH",
-        "COEFF_WIDTH",
-        "GAIN_WIDTH",
-        "DEPTH_RANGE",
-        "FRAMES",
-        "PRESS",
-    ),
-    *("AT", "NOISE", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "REPEAT", "SEED", "GAPS"),
-    *("STALLS", "WAVES", "CONFIG", "OUT"),
+    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
+    *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT"),
+    *("REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
 LARGEST_CONFIG = 65_536  # bytes of a configuration file

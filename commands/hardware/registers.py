@@ -34,29 +34,14 @@ LAYER_NAME = "tactile_depth_registers"  # `tactile_depth` is the package of mode
 
 @dataclass(frozen=True)
 class Map:
-    """A map of registers.
+    """A map of registers."""
 
-    Attributes
-    ----------
-    name : str
-        Of the .rdl file and of the C header.
-    package : path of the SystemVerilog package
-    data : str
-        File name of the JSON.
-    page : str
-        File name of the page.
-    title : str
-        What the registers are.
-    prefix : str
-        Of names in the package that do not come from a register.
-    """
-
-    name: str
-    package: Path
-    data: str
-    page: str
-    title: str
-    prefix: str = ""
+    name: str  # of the .rdl file and of the C header
+    package: Path  # of SystemVerilog
+    data: str  # file name of the JSON
+    page: str  # file name of the page
+    title: str  # what the registers are
+    prefix: str = ""  # of names in the package that do not come from a register
 
     @property
     def source(self) -> Path:

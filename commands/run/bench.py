@@ -86,6 +86,12 @@ class Played:
         return [numbers[0] for have, numbers in self.events if have == letter]
 
 
+def frames_left(folder: Path, config: Configuration) -> int:
+    """Return the number of frames that have left the device that plays in `folder`."""
+    depth = folder / "depth.bin"
+    return depth.stat().st_size // (4 * config.rows * config.columns) if depth.exists() else 0
+
+
 def build(
     simulator: str, config: Configuration, waves: bool = False, camera: CameraConfiguration | None = None
 ) -> Path:

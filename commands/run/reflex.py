@@ -17,7 +17,6 @@ import math
 import os
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -30,6 +29,7 @@ from tqdm import tqdm
 from commands.common import markdown, published, repository, variables
 from commands.common import simulator as simulation
 from commands.common.machine import machine
+from commands.common.progress import following
 from commands.common.run_request import CONTACT_THRESHOLD, threshold_code
 from commands.common.signals import threads
 from commands.run import bench, reflex_picture
@@ -207,13 +207,12 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
     with tempfile.TemporaryDirectory() as work, threads(min(len(configs), os.cpu_count() or 1)) as pool:
         folders = [Path(work).resolve() / config.solver for config in configs]
         runs = [pool.submit(play, config, folder) for config, folder in zip(configs, folders, strict=True)]
-        total = len(sent) * len(configs)
-        with tqdm(total=total, unit="frame", desc="RTL in the loop", leave=False, disable=None) as bar:
-            while not all(run.done() for run in runs):
-                time.sleep(0.2)
-                sizes = [f.stat().st_size if (f := folder / "depth.bin").exists() else 0 for folder in folders]
-                bar.update(sum(sizes) // (4 * request.size**2) - bar.n)
-        played = [run.result() for run in runs]
+
+        def left() -> int:
+            return sum(map(bench.frames_left, folders, configs))
+
+        with following("RTL in the loop", len(sent) * len(configs), "frame", left):
+            played = [run.result() for run in runs]
     return [examine(config, one, sent, pixels, calibration) for config, one in zip(configs, played, strict=True)]
 
 
@@ -287,7 +286,7 @@ def measure(request: Request) -> dict[str, Any]:
         "machine": machine(),
         "load_before": load,
         "published": published.REFLEX,
-        "delays": [asdict(delay) for delay in model.delays(request, near, host)],
+        "delays": model.delays(request, near, host),
         "near": solvers,
         "host": {
             **described(host_times),

@@ -33,16 +33,6 @@ SCALES = (0.5, 2.0)  # of the sensitivity table
 
 
 @dataclass(frozen=True)
-class Delay:
-    """Row of the table of delays: path, name, distribution and source."""
-
-    path: str
-    name: str
-    distribution: str
-    source: str
-
-
-@dataclass(frozen=True)
 class Setup:
     """Delays of a path in ms; the sensitivity table scales each of them alone."""
 
@@ -227,44 +217,41 @@ def within_published(near: dict[str, Any]) -> bool:
     return abs(near["mean"] - mean) <= spread and near["sd"] <= spread
 
 
-def delays(request: Request, near: Setup, host: Setup) -> list[Delay]:
-    """Return every delay of the simulation with its source."""
+def delays(request: Request, near: Setup, host: Setup) -> list[dict[str, str]]:
+    """Return every delay of the simulation: path, name, distribution and source."""
     gap, _ = spacing(request)
     threshold = f"{near.threshold:.3g} mm, {CONTACT_THRESHOLD * request.size:g} px"
-    return [
-        Delay("both", "approach", f"constant, {near.speed:g} mm/s", "assumption (SPEED); none is published"),
-        Delay("both", "threshold", f"constant, {threshold}", "that of make sim; none is published"),
-        Delay("near", "frame clock", f"uniform over {near.frame:g} ms", "published: 400 frames/s"),
-        Delay("near", "exposure", f"constant, {near.exposure:g} of a frame", "assumption; its middle counts"),
-        Delay(
+    rows = [
+        ("both", "approach", f"constant, {near.speed:g} mm/s", "assumption (SPEED); none is published"),
+        ("both", "threshold", f"constant, {threshold}", "that of make sim; none is published"),
+        ("near", "frame clock", f"uniform over {near.frame:g} ms", "published: 400 frames/s"),
+        ("near", "exposure", f"constant, {near.exposure:g} of a frame", "assumption; its middle counts"),
+        (
             "near",
             "read-out",
             f"constant, {near.read_out * near.frame:.3f} ms",
             f"assumption: all of the frame, {gap} clocks a pixel",
         ),
-        Delay("near", "pipeline", "the clocks counted in each trial", f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)"),
-        Delay(
-            "both", "servo", f"normal, {near.servo:g} +- {near.servo_spread:g} ms", "published; its shape: assumption"
-        ),
-        Delay("host", "frame clock", f"uniform over {host.frame:g} ms", "published: 25 frames/s"),
-        Delay("host", "exposure", f"constant, {host.exposure:g} of a frame", "assumption; its middle counts"),
-        Delay(
+        ("near", "pipeline", "the clocks counted in each trial", f"RTL, at {request.clock_mhz:g} MHz (CLOCK_MHZ)"),
+        ("both", "servo", f"normal, {near.servo:g} +- {near.servo_spread:g} ms", "published; its shape: assumption"),
+        ("host", "frame clock", f"uniform over {host.frame:g} ms", "published: 25 frames/s"),
+        ("host", "exposure", f"constant, {host.exposure:g} of a frame", "assumption; its middle counts"),
+        (
             "host",
             "transfer",
             f"constant, {host.transfer:.1f} ms",
             "640 x 480 YUYV (assumption) at USB 2.0's isochronous limit, 3 x 1,024 bytes a microframe (5.6.3, 5.9.2)",
         ),
-        Delay(
+        (
             "host",
             "frames waiting",
             f"0 to {DRIVER_BUFFERS - 1} frames, each as likely",
             "OpenCV asks V4L2 for 4 buffers (opencv/opencv#11047, #13145), one being filled; how many wait: assumption",
         ),
-        Delay("host", "reconstruction", "as measured in each trial", "tactile_depth.reference on this machine"),
-        Delay(
-            "host", "operating system", "as measured in each trial", f"lateness after a sleep of {ASLEEP_MS:g} ms, here"
-        ),
+        ("host", "reconstruction", "as measured in each trial", "tactile_depth.reference on this machine"),
+        ("host", "operating system", "as measured in each trial", f"lateness after a sleep of {ASLEEP_MS:g} ms, here"),
     ]
+    return [dict(zip(("path", "name", "distribution", "source"), row, strict=True)) for row in rows]
 
 
 NEAR_NAMES = {

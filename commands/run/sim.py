@@ -8,16 +8,16 @@ import json
 import os
 import shutil
 import sys
-import threading
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
+from commands.common.progress import following
 from commands.common.run_request import ACCEPTED, CAMERA, Request, check_grid, configure, load_sensor, parse
 from commands.run import bench
 from commands.run.compare import compare, warnings
@@ -93,19 +93,8 @@ def simulate(
     profiles = [
         bench.entry(side, bench.chance(no)) for side, no in (("sink", request.stalls), ("source", request.gaps))
     ]
-    finished = threading.Event()
-
-    def watch() -> None:
-        depth = folder / "depth.bin"
-        with tqdm(total=total, unit="frame", desc="simulating", leave=False, disable=None) as bar:
-            while not finished.wait(0.2):
-                if depth.exists():
-                    bar.update(min(depth.stat().st_size // (4 * pixels), total) - bar.n)
-
     bench.build(request.simulator, config, request.waves, frames.camera)
-    watcher = threading.Thread(target=watch)
-    watcher.start()
-    try:
+    with following("simulating", total, "frame", partial(bench.frames_left, folder, config)):
         return bench.play(
             request.simulator,
             config,
@@ -121,9 +110,6 @@ def simulate(
             floor=floor,
             camera=frames.camera,
         )
-    finally:
-        finished.set()
-        watcher.join()
 
 
 def run(request: Request, frames: Frames | None = None) -> int:

@@ -4,6 +4,7 @@
 `python -m commands.study.architecture` writes them between the two marks of the page, from the models.
 """
 
+from commands.common.markdown import compact, with_tables
 from commands.common.repository import ROOT
 from tactile_depth import latency
 from tactile_depth.configuration import Configuration, Format
@@ -37,12 +38,6 @@ SPECTRAL_NODES = {
     "inverse transform of a row": "row_inverse",
     "depth": "depth",
 }
-
-
-def table(head: tuple[str, ...], rows: list[tuple[object, ...]]) -> str:
-    """Return a table of Markdown."""
-    lines = [head, tuple("---" for _ in head), *rows]
-    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
 
 
 def cycles(config: Configuration) -> list[tuple[object, ...]]:
@@ -112,26 +107,25 @@ def tables() -> str:
     """Return the text between the marks."""
     text = "### Latency by core\n\nFrom the last pixel of a 128 x 128 frame to its first depth value, in cycles.\n"
     for name, config in BUILDS.items():
-        text += f"\nBuild: {name}.\n\n" + table(("unit", "core", "cycles"), cycles(config))
+        text += f"\nBuild: {name}.\n\n" + compact(("unit", "core", "cycles"), cycles(config))
     text += "\n### Number formats\n\nWords are signed: value = code / 2^fraction, in units of the node.\n"
     head = ("node", "bits", "fraction", "full scale", "step")
     for name, nodes in (("tridiagonal, as sent", TRIDIAGONAL_NODES), ("spectral, as sent", SPECTRAL_NODES)):
-        text += f"\nBuild: {name}, 128 x 128.\n\n" + table(head, formats(BUILDS[name], nodes))
+        text += f"\nBuild: {name}, 128 x 128.\n\n" + compact(head, formats(BUILDS[name], nodes))
     text += "\n### Multipliers and memories\n\nOf a 128 x 128 build. A multiplier is one of 27 x 18 bits.\n\n"
     costs = {name: cost(config) for name, config in BUILDS.items()}
     rows: list[tuple[object, ...]] = [
         (name, one.tiles, *(f"{one.bits_of(kind):,}" for kind in KINDS), f"{one.memory_bits:,}")
         for name, one in costs.items()
     ]
-    text += table(("build", "multipliers", *(f"{kind}, bits" for kind in KINDS), "all memories, bits"), rows)
+    text += compact(("build", "multipliers", *(f"{kind}, bits" for kind in KINDS), "all memories, bits"), rows)
     text += "\nBy core: multipliers / bits of memory. The spectral solver has each transform and `transpose` twice.\n\n"
-    return text + table(("core", *costs), by_core(list(costs.values())))
+    return text + compact(("core", *costs), by_core(list(costs.values())))
 
 
 def document() -> str:
     """Return the page with fresh tables."""
-    before, _, after = PAGE.read_text().partition(BEGIN)
-    return f"{before}{BEGIN}\n\n{tables()}\n{END}{after.partition(END)[2]}"
+    return with_tables(PAGE, BEGIN, END, tables())
 
 
 if __name__ == "__main__":

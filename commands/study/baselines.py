@@ -30,6 +30,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import matplotlib
 import numpy as np
@@ -132,26 +133,17 @@ def _timed(solve: Solve, inputs: Sequence[Any], wait: Callable[[], None], runs: 
 
 def in_own_process(job: Job) -> list[dict[str, Any]]:
     """Run `measure` in its own process, with the threads of the job."""
-    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
-    os.environ.update(dict.fromkeys(THREAD_VARIABLES, str(job.threads)))
+    spawn = multiprocessing.get_context("spawn")
     try:
-        with ProcessPoolExecutor(
-            1,
-            mp_context=multiprocessing.get_context("spawn"),
-            initializer=signal.signal,
-            initargs=(signal.SIGINT, signal.SIG_DFL),  # the process ended without a result
-        ) as pool:
+        with (
+            mock.patch.dict(os.environ, dict.fromkeys(THREAD_VARIABLES, str(job.threads))),
+            ProcessPoolExecutor(1, spawn, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_DFL)) as pool,
+        ):
             return pool.submit(measure, job).result()
-    except BrokenProcessPool:
+    except BrokenProcessPool:  # the process ended without a result
         return [{"problem": "it crashed"} for _ in job.scenes]
     except ImportError as error:
         return [{"problem": " ".join(f"cannot be loaded: {error}".split())} for _ in job.scenes]
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 # The pipeline, in cycles from the last pixel on, where software begins too.

@@ -17,7 +17,7 @@ from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from commands.common import variables
+from commands.common import markdown, variables
 from commands.common.repository import ROOT, chosen, cores, sources, tested
 from commands.common.signals import threads
 from commands.hardware.yosys import in_wheel
@@ -35,17 +35,8 @@ TIMEOUT = 900  # time-out of one run of SymbiYosys in seconds
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
 HELPERS = (
-    *(
-        "ram_check",
-        "burst_source",
-        "burst_timing",
-        "timed_bursts",
-        "fixed_delay",
-        "lane_source",
-        "code_wires",
-        "follow_word",
-    ),
-    *("raster_counter", "raster_source"),
+    *("ram_check", "burst_source", "burst_timing", "timed_bursts", "fixed_delay", "lane_source", "code_wires"),
+    *("follow_word", "raster_counter", "raster_source"),
 )
 
 
@@ -62,6 +53,8 @@ HANDSHAKES = (
 )
 
 DOCUMENT = ROOT / "docs" / "formal.md"
+BEGIN = "<!-- tables: python -m commands.verify.formal --document, from formal/proofs.py -->"
+END = "<!-- end of the tables -->"
 
 
 def environment() -> dict[str, str]:
@@ -232,64 +225,26 @@ def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]
 
 def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
     """Return the table with one line for each proof."""
-    rows = [("core", "parameters", "property", "engine", "cpu seconds", "result")]
+    head, rows = ("core", "parameters", "property", "engine", "cpu seconds", "result"), []
     for proof in proofs:
         mine = outcomes[proof.name]
         parameters = " ".join(f"{key}={value}" for key, value in proof.parameters.items())
         seconds = f"{sum(outcome.seconds for outcome in mine.values()):.1f}"
         rows.append((proof.core, parameters, proof.claim, proof.engine, seconds, combined(mine)))
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
-
-
-PREFACE = """<!-- SPDX-License-Identifier: Apache-2.0 -->
-<!-- Written by `python -m commands.verify.formal --document` from formal/proofs.py: change it there. -->
-# What is proven
-
-`make formal` proves each line below by SymbiYosys, or says that it does not: without a bound on time, from any state at
-power-up, with every input free, en and reset too. Each bench has cover statements, all of which must be reached, so
-that no proof holds for want of anything to check. A bench is `formal/fv_<core>.sv`; it sees the ports of the core, and
-(`ram_check`) those of its memory: no word is read in the clock that writes it, and none before it was written.
-
-Where a core reads its memory before it was written (the delay line in its first clocks, the lines of divergence,
-forward_elimination and back_substitution in a frame's first row), what it reads must not matter: there the memory
-begins with any contents, and the specification of the outputs has none.
-
-How the parts make the whole:
-
-- Each core of the stream sends its words, start and frame_start a fixed number of enabled clocks after they came, or
-  (row_reorder, transpose, frame_stack) after the event that completes them, for every legal stream of bursts; so what
-  it sends is such a stream for the next. The latencies add up, and models/tactile_depth/latency.py adds them.
-- What a bench assumes of its inputs is proven of the core that drives them: frames are whole, so the first depth after
-  a reset begins one, and ends of frames lie a frame's pixels apart (frame_guard, frame_output); no table word is
-  written while a change-over is due, and banks change with a frame's start alone (axil_registers, table_banks).
-- But for the banks of the tables, the specifications have no state from before the reset and, for data, none from
-  before the frame, so neither does what leaves: codes and timing of a frame are a function of that frame and of its
-  tables. What contact_events keeps from frame to frame, touching and its count, is said in its header. In the
-  transforms a burst meets no other: each sum, difference and product is proven to be of its own burst's words
-  (sdf_butterfly, twiddle_multiply, mode_pairs).
-  The signs at their ends (dst_forward, dst_inverse) are left to simulation against the model.
-- Of the whole `tactile_depth`, two copies that start from different states were not proven equal in one piece: the
-  search did not end. What is said of the whole follows from the parts.
-- No pixel and no memory lies in the cone of a handshake or side-band of the whole `tactile_depth`: the clocks at which
-  words move are the same whatever a frame shows. `contact` and the counts of saturations may depend on data. A memory
-  counts as one cell, except that in which gain_map delays colours and positions: there each bit is followed by itself.
-"""
+    return markdown.table(head, rows)
 
 
 def document() -> str:
-    """Return docs/formal.md: properties proven, sizes, and why these sizes suffice."""
-    lines = [PREFACE, "| core | proven | sizes | why they suffice |", "|---|---|---|---|"]
+    """Return docs/formal.md with fresh tables: properties proven, sizes, and why these sizes suffice."""
     entries: dict[tuple[str, str, str], list[str]] = {}
     every: list[Proof | Structure] = [*PROOFS, *STRUCTURES]
     for proof in sorted(every, key=lambda proof: proof.core):
         sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
         entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
-    for (core, claim, sufficient), all_sizes in entries.items():
-        lines.append(f"| {core} | {claim} | {'; '.join(all_sizes) or 'the defaults'} | {sufficient} |")
-    lines += ["", "Cores without their own proof:", "", "| core | why |", "|---|---|"]
-    lines += [f"| {core} | {reason} |" for core, reason in WITHOUT_CONTROL.items()]
-    return "\n".join(lines) + "\n"
+    rows = [(core, claim, "; ".join(sizes) or "the defaults", why) for (core, claim, why), sizes in entries.items()]
+    proven = markdown.compact(("core", "proven", "sizes", "why they suffice"), rows)
+    others = markdown.compact(("core", "why"), list(WITHOUT_CONTROL.items()))
+    return markdown.with_tables(DOCUMENT, BEGIN, END, f"{proven}\nCores without their own proof:\n\n{others}")
 
 
 def main() -> None:

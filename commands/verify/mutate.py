@@ -15,10 +15,8 @@ Exit status: 1 if all cores together score below 97 %, or a core below 95 %.
 import json
 import os
 import sys
-import threading
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing.pool import ThreadPool
@@ -27,6 +25,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from commands.common import repository, variables
+from commands.common.progress import following
 from commands.verify import equivalence, mutants
 from commands.verify.equivalence import EQUIVALENT, settle
 from commands.verify.structures import structure
@@ -164,24 +163,9 @@ class Outcome:
         return self.score >= CORE_BAR and not self.contradictions
 
 
-@contextmanager
-def progress(what: str, count: int, path: Path) -> Iterator[None]:
-    """Show a bar that moves with the lines of a file."""
-    done = threading.Event()
-    with tqdm(total=count, desc=what, leave=False, disable=None) as bar:
-
-        def follow() -> None:
-            while not done.wait(0.5):
-                if path.is_file():
-                    bar.update(path.read_bytes().count(b"\n") - bar.n)
-
-        thread = threading.Thread(target=follow)
-        thread.start()
-        try:
-            yield
-        finally:
-            done.set()
-            thread.join()
+def lines_of(path: Path) -> int:
+    """Return the number of complete lines of a file, 0 if there is none."""
+    return path.read_bytes().count(b"\n") if path.is_file() else 0
 
 
 def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int) -> Outcome:
@@ -194,7 +178,8 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         outcome.every &= every
         lived, killed = made, []
         for simulator in core.simulators:
-            with progress(f"{name}, {simulator}", len(lived) + 1, folder / f"{simulator}.jsonl"):
+            done = partial(lines_of, folder / f"{simulator}.jsonl")
+            with following(f"{name}, {simulator}", len(lived) + 1, "mutant", done):
                 results = mutants.run(name, built, lived, folder, simulator, jobs, seed, core.repeats)
             killed += [result["mutant"] for result in results if result["verdict"] == "killed"]
             lived = [mutant for mutant in lived if mutant.number not in killed]

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from tqdm import tqdm
 
 from commands.common import repository, variables
 from commands.run import bench
@@ -40,6 +41,7 @@ SEEDED = "seeds or regress"  # markers of tests/conftest.py
 CODES = 5_000_000  # codes of each job of `codes`, rounded up to whole frames
 MODEL_PIXELS = 1 << 20  # pixels that go through the models at a time
 SCENES_RENDERED = 160  # most scenes of a job
+BAR = "{desc}: {percentage:.0f} % [{elapsed}]{postfix}"
 
 
 @dataclass(frozen=True)
@@ -192,23 +194,7 @@ class Part:
     seconds: float = 0.0
 
 
-class Progress:
-    """Progress line: rewritten on a terminal, otherwise printed once a minute."""
-
-    def __init__(self, part: str):
-        self.part, self.began, self.printed = part, time.monotonic(), 0.0
-
-    def say(self, text: str) -> None:
-        now = time.monotonic()
-        line = f"{self.part:10} {now - self.began:6.0f} s  {text}"
-        if sys.stdout.isatty():
-            print(f"\r{line[:118]:118}", end="", flush=True)
-        elif now - self.printed >= 60:
-            self.printed = now
-            print(line, flush=True)
-
-
-def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str], environment: dict[str, str]) -> None:
+def pytest_part(part: Part, bar: tqdm, jobs: int, arguments: list[str], environment: dict[str, str]) -> None:
     """Run tests; their records become the lines of the part."""
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records.jsonl"
@@ -227,7 +213,8 @@ def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str],
         for line in process.stdout:
             tail = [*tail[-200:], line.rstrip()]
             if match := re.search(r"\[ *(\d+)%\] (\w+) (\S+)", line):
-                progress.say(f"{match[1]:>3} %  {match[3]}")
+                bar.update(int(match[1]) - bar.n)
+                bar.set_postfix_str(match[3])
                 if match[2] != "PASSED":
                     part.failures.append(f"{match[2]} {match[3]}")
         if process.wait() and not part.failures:
@@ -240,25 +227,25 @@ def pytest_part(part: Part, progress: Progress, jobs: int, arguments: list[str],
             part.lines += [json.loads(line) for line in records.read_text().splitlines()]
 
 
-def faults(part: Part, progress: Progress, jobs: int) -> None:
-    pytest_part(part, progress, jobs, ["tests/test_faults.py"], {"REGRESS": "1"})
+def faults(part: Part, bar: tqdm, jobs: int) -> None:
+    pytest_part(part, bar, jobs, ["tests/test_faults.py"], {"REGRESS": "1"})
 
 
-def power_ups(part: Part, progress: Progress, jobs: int) -> None:
-    pytest_part(part, progress, jobs, ["tests"], {"POWER_UPS": str(POWER_UPS), "ONLY": "power_ups"})
+def power_ups(part: Part, bar: tqdm, jobs: int) -> None:
+    pytest_part(part, bar, jobs, ["tests"], {"POWER_UPS": str(POWER_UPS), "ONLY": "power_ups"})
 
 
-def seeds(part: Part, progress: Progress, jobs: int) -> None:
+def seeds(part: Part, bar: tqdm, jobs: int) -> None:
     for seed in SEEDS:
         began = time.monotonic()
         before = len(part.failures)
         environment = {"SEED": str(seed), "POWER_UPS": "1", "REGRESS": "1"}
-        pytest_part(part, progress, jobs, ["tests", "--ignore=tests/test_faults.py", "-m", SEEDED], environment)
+        pytest_part(part, bar, jobs, ["tests", "--ignore=tests/test_faults.py", "-m", SEEDED], environment)
         line = {"part": part.name, "what": f"SEED={seed}", "simulator": "both", "runs": 1}
         part.lines.append(line | {"failed": len(part.failures) - before, "seconds": time.monotonic() - began})
 
 
-def codes(part: Part, progress: Progress, jobs: int) -> None:
+def codes(part: Part, bar: tqdm, jobs: int) -> None:
     largest_first = sorted(JOBS, key=lambda job: -job.columns * (1 + (job.simulator == "icarus") * 64))
     with ProcessPoolExecutor(jobs) as pool:
         waiting = {pool.submit(compare, job, 1 + index): job for index, job in enumerate(largest_first)}
@@ -267,10 +254,11 @@ def codes(part: Part, progress: Progress, jobs: int) -> None:
                 part.lines.append(future.result())
             except Exception as error:  # a failed job must not hide the others
                 part.failures.append(f"{waiting[future].label}: {error}")
-            progress.say(f"{len(part.lines)} of {len(JOBS)}  {waiting[future].label}")
+            bar.update(100 / len(JOBS))
+            bar.set_postfix_str(waiting[future].label)
 
 
-PARTS: dict[str, Callable[[Part, Progress, int], None]] = {
+PARTS: dict[str, Callable[[Part, tqdm, int], None]] = {
     "faults": faults,
     "codes": codes,
     "power_ups": power_ups,
@@ -325,11 +313,12 @@ def run(names: list[str], jobs: int) -> int:
     for name in names:
         part = Part(name)
         began = time.monotonic()
-        PARTS[name](part, Progress(name), jobs)
+        with tqdm(total=100, desc=name, leave=False, disable=None, bar_format=BAR) as bar:
+            PARTS[name](part, bar, jobs)
         part.seconds = time.monotonic() - began
         part.failures += [f"{line['what']}: {line}" for line in part.lines if line.get("failed")]
         parts.append(part)
-        print(f"\r{name}: {part.seconds:.0f} s, {len(part.failures) or 'nothing'} failed{'':40}", flush=True)
+        print(f"{name}: {part.seconds:.0f} s, {len(part.failures) or 'nothing'} failed", flush=True)
     report = ROOT / "build" / "regress.json"
     report.parent.mkdir(exist_ok=True)
     report.write_text(json.dumps([asdict(part) for part in parts], indent=1) + "\n")
