@@ -7,9 +7,9 @@ from pathlib import Path
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Return a table of Markdown with aligned columns, numbers to the right."""
-    columns = list(zip(*rows, strict=True))
-    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
-    numbers = [all(cell[:1] in "+-0123456789" for cell in column) for column in columns]
+    columns = list(zip(head, *rows, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    numbers = [all(cell[:1] in "+-0123456789" for cell in column[1:]) for column in columns]
 
     def line(cells: Sequence[str]) -> str:
         padded = (

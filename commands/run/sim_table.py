@@ -61,26 +61,16 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
     def cell(value: float | None, digits: int = 5) -> str:
         return "-" if value is None else f"{value:,}" if isinstance(value, int) else f"{value:.{digits}f}"
 
-    head = (
-        "frame",
-        "first depth",
-        "last px > depth",
-        "last px > map",
-        "interval",
-        "contact",
-        "RMS % peak",
-        "max % peak",
-    )
-    columns = (
-        "first_depth_latency_cycles",
-        "last_pixel_to_first_depth_cycles",
-        "last_pixel_to_last_depth_cycles",
-        "frame_interval_cycles",
-        "contact_latency_cycles",
-        "rms_percent_of_peak",
-        "max_percent_of_peak",
-    )
-    lines = ["".join(f"{name:>17}" if i else f"{name:<20}" for i, name in enumerate(head))]
+    columns = {
+        "first_depth_latency_cycles": "first depth",
+        "last_pixel_to_first_depth_cycles": "last px > depth",
+        "last_pixel_to_last_depth_cycles": "last px > map",
+        "frame_interval_cycles": "interval",
+        "contact_latency_cycles": "contact",
+        "rms_percent_of_peak": "RMS % peak",
+        "max_percent_of_peak": "max % peak",
+    }
+    lines = ["".join([f"{'frame':<20}", *(f"{name:>17}" for name in columns.values())])]
     shown = min(len(labels), ROWS_SHOWN)
     for i in range(shown):
         cells = "".join(f"{cell(report[column][i]):>17}" for column in columns)
@@ -97,7 +87,7 @@ def table(report: dict, labels: tuple[str, ...]) -> str:
             f"{camera['pixel_format']} of {width} x {height} against RGB of the grid: "
             + (f"mean RMS {np.mean(lost):.3f} % of peak, worst {max(lost):.3f} %" if lost else "no contact")
         )
-    for column in columns[:4]:
+    for column in list(columns)[:4]:
         values = {value for value in report[column] if value is not None}
         if values:
             spread = f"{min(values):,}" if len(values) == 1 else f"{min(values):,} to {max(values):,}"

@@ -10,17 +10,19 @@ import json
 import os
 import sys
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, run_request, variables
+from commands.common import markdown, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.study import certify as certificate
-from commands.study.transform_noise import BIAS, Compliance, compliance, compliance_table
+from commands.study import transform_noise
+from commands.study.transform_noise import BIAS, Compliance, compliance
 from tactile_depth import files, reference
 from tactile_depth.accuracy import errors
 from tactile_depth.certificate import certify
@@ -276,25 +278,26 @@ def model_drift(solver: str, size: int, count: int, advance: Callable[[int], obj
     )
 
 
-def table(rows: list[Row]) -> str:
-    head = f"{'extreme':<34}{'solver':<12}{'grid':>10}{'bits':>5}{'frames':>7}{'RMS %':>10}{'max %':>10}"
-    lines = [head + f"{'RMS codes':>12}{'max codes':>12}  {'flag':<5}{'wrapped':>8}  saturated"]
-    for row in rows:
-        shares = (row.rms_percent, row.max_percent)
-        percent = "".join(f"{'-' if share is None else format(share, '.5f'):>10}" for share in shares)
-        clipped = ", ".join(f"{node} {count:,}" for node, count in row.saturations.items()) or "-"
-        lines.append(
-            f"{row.extreme:<34}{row.solver:<12}{row.grid:>10}{row.data_width:>5}{row.frames:>7,}{percent}"
-            f"{row.rms_codes:>12,.1f}{row.max_codes:>12,.0f}  {'yes' if row.flagged else 'no':<5}{row.wrapped:>8}"
-            f"  {clipped}"
-        )
-    return "\n".join(lines)
+def as_document(rows: list[Row], measured: list[Compliance]) -> dict[str, list[dict[str, Any]]]:
+    """Return the content of extremes.json."""
+    return {"extremes": [asdict(row) for row in rows], "compliance": [asdict(row) for row in measured]}
 
 
-def write(out: Path, rows: list[Row], measured: list[Compliance]) -> None:
-    """Write extremes.json."""
-    document = {"extremes": [asdict(row) for row in rows], "compliance": [asdict(row) for row in measured]}
-    (out / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
+HEAD = (
+    *("what comes in", "solver", "grid", "bits", "frames", "RMS, % of peak", "largest, %", "RMS, codes"),
+    *("largest, codes", "values clipped", "status bit set", "wrapped"),
+)
+
+
+def cells(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return a row of extremes.json as text, below HEAD."""
+    clipped = ", ".join(f"{node} {count:,}" for node, count in row["saturations"].items()) or "-"
+    return (
+        *(row["extreme"], row["solver"], row["grid"], str(row["data_width"]), f"{row['frames']:,}"),
+        *("-" if row[name] is None else f"{row[name]:.5f}" for name in ("rms_percent", "max_percent")),
+        *(f"{row['rms_codes']:,.1f}", f"{row['max_codes']:,.0f}", clipped, "yes" if row["flagged"] else "no"),
+        str(row["wrapped"]),
+    )
 
 
 def run(size: int, simulator: str, out: Path, short: bool) -> int:
@@ -330,11 +333,11 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
             broken.append(f"{row.core}, {row.input}: {row.saturations} values clipped within the range")
         if row.mean_in_standard_errors > BIAS:
             broken.append(f"{row.core}, {row.input}: the mean error is {row.mean:.5f}, a bias")
-    print(table(rows))
-    print()
-    print(compliance_table(measured))
+    document = as_document(rows, measured)
+    print(markdown.table(HEAD, [cells(row) for row in document["extremes"]]), end="\n\n")
+    print(markdown.table(transform_noise.HEAD, [transform_noise.cells(row) for row in document["compliance"]]))
     with files.workspace(out, RESULTS) as work:
-        write(work, rows, measured)
+        (work / RESULTS[0]).write_text(json.dumps(document, indent=1) + "\n")
         files.replace(work, RESULTS, out)
     for fault in broken:
         print(fault)

@@ -7,7 +7,6 @@ baselines` from build/, and runs the commands if there are none. It takes existi
 and `make asic`. Each figure names the command that makes it again.
 """
 
-import base64
 import json
 import os
 import sys
@@ -24,8 +23,9 @@ from commands.common.published import CLOCK_MHZ, FIRST_DEPTH_CYCLES, MEMORY_MBIT
 from commands.common.repository import ROOT
 from commands.hardware import asic, synth
 from commands.run import reflex, reflex_tables, sim
-from commands.study import baselines, extremes, sweep
+from commands.study import baselines, extremes, sweep, transform_noise
 from tactile_depth import files, reference
+from tactile_depth.accuracy import WORST
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.scenes import BENCH, SENSOR_WIDTH_MM, render
@@ -36,7 +36,7 @@ from matplotlib import pyplot as plt
 from matplotlib.ticker import MaxNLocator
 
 from commands.study.report_lanes import lanes_figure
-from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Figure, page, picture, table, titled
+from commands.study.report_page import LOOKS, PUBLISHED_LOOK, Figure, page, picture, results, shown, table, titled
 
 DEFAULT_OUT = ROOT / "build" / "report"
 SIZE = 128
@@ -206,43 +206,25 @@ def error_figure(runs: dict[str, Run], folder: Path) -> Figure:
     return Figure("errors", "Error of each contact", text, commands, picture(figure, folder, "errors"))
 
 
-def buildable(rows: Sequence[sweep.Row], **wanted: str) -> list[sweep.Row]:
-    """Return the rows with these cells, and with one lane."""
-    wanted = {"lanes": "1"} | wanted
-    return [row for row in rows if not row["problem"] and all(row[name] == value for name, value in wanted.items())]
+def curve(
+    rows: Sequence[sweep.Row], choices: sweep.Choices, varied: str, measured: str = "rms_percent_mean"
+) -> tuple[list[int], list[float]]:
+    """Return the widths that vary and an error at each, of the rows that are otherwise `choices`."""
+    chosen = sorted(sweep.like(rows, choices, varied), key=lambda row: int(row[varied]))
+    return [int(row[varied]) for row in chosen], [float(row[measured]) for row in chosen]
 
 
 def word_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
     default = Configuration()
     for solver in COLUMNS:
-        for axis, varied, fixed in (
-            (left, "data_width", "coefficient_width"),
-            (right, "coefficient_width", "data_width"),
-        ):
-            wanted = {
-                "solver": solver,
-                "boundary": "dirichlet",
-                "columns": str(SIZE),
-                "depth_range": "default",
-                fixed: str(getattr(default, fixed)),
-            }
-            curve = sorted(buildable(rows, **wanted), key=lambda row: int(row[varied]))
-            widths = [int(row[varied]) for row in curve]
-            axis.plot(
-                widths, [float(row["rms_percent_mean"]) for row in curve], **LOOKS[solver], label=solver, markersize=4
-            )
-            worst = LOOKS[solver] | {"marker": "", "linewidth": 0.7}
-            axis.plot(widths, [float(row["rms_percent_worst"]) for row in curve], **worst)
-        unlimited = buildable(rows, solver=solver, boundary="dirichlet", depth_range="worst")
-        curve = sorted(unlimited, key=lambda row: int(row["data_width"]))
-        safe = LOOKS[solver] | {"marker": "", "linestyle": (0, (1, 1.5))}
-        left.plot(
-            [int(row["data_width"]) for row in curve],
-            [float(row["rms_percent_mean"]) for row in curve],
-            **safe,
-            label=f"{solver}, DEPTH_RANGE=worst",
-        )
+        look, choices = LOOKS[solver], {"solver": solver}
+        for axis, varied in ((left, "data_width"), (right, "coefficient_width")):
+            axis.plot(*curve(rows, choices, varied), **look, label=solver, markersize=4)
+            thin = look | {"marker": "", "linewidth": 0.7}
+            axis.plot(*curve(rows, choices, varied, "rms_percent_worst"), **thin)
+        safe = look | {"marker": "", "linestyle": (0, (1, 1.5)), "label": f"{solver}, DEPTH_RANGE=worst"}
+        left.plot(*curve(rows, choices | {"depth_range_px": WORST}, "data_width"), **safe)
     for axis, name in ((left, "bits of a stored word"), (right, "bits of a coefficient")):
         axis.axhline(RMS_PERCENT, color="black", linestyle=":")
         axis.set(yscale="log", xlabel=name)
@@ -267,17 +249,13 @@ def front_figure(rows: Sequence[sweep.Row], folder: Path) -> Figure:
     )
     for axis, (column, name, scale, published) in zip(axes, columns, strict=True):
         for solver in COLUMNS:
-            points = buildable(rows, solver=solver, boundary="dirichlet", columns=str(SIZE), depth_range="default")
+            points = sweep.like(rows, {"solver": solver}, "data_width", "coefficient_width")
             x = [scale * float(row[column]) for row in points]
             y = [float(row["rms_percent_mean"]) for row in points]
             look = {"color": LOOKS[solver]["color"], "marker": LOOKS[solver]["marker"]}
             axis.scatter(x, y, s=9, alpha=0.35, linewidths=0, **look)
-            front = [
-                p
-                for p in sorted(zip(x, y, strict=True))
-                if p[1] <= min(b for a, b in zip(x, y, strict=True) if a <= p[0])
-            ]
-            axis.step(*zip(*front, strict=True), where="post", label=solver, **LOOKS[solver] | {"marker": ""})
+            across, best = np.sort(x), np.minimum.accumulate(np.array(y)[np.lexsort((y, x))])
+            axis.step(across, best, where="post", label=solver, **LOOKS[solver] | {"marker": ""})
         if published is not None:
             axis.plot([published], [RMS_PERCENT], **PUBLISHED_LOOK)
         else:
@@ -299,61 +277,17 @@ def extremes_figures(folder: Path) -> list[Figure]:
     """Return the figures that `make extremes` left in a folder."""
     document = json.loads((folder / "extremes.json").read_text())
 
-    def percent(value: float | None) -> str:
-        return "-" if value is None else f"{value:.4f}"
-
-    rows = [
-        (
-            row["extreme"],
-            row["solver"],
-            row["grid"],
-            f"{row['frames']:,}",
-            percent(row["rms_percent"]),
-            percent(row["max_percent"]),
-            f"{row['max_codes']:,.0f}",
-            ", ".join(f"{node} {count:,}" for node, count in row["saturations"].items()) or "-",
-            "yes" if row["flagged"] else "no",
-            str(row["wrapped"]),
-        )
-        for row in document["extremes"]
-    ]
-    head = (
-        *("what comes in", "solver", "grid", "frames", "RMS, % of peak", "largest, %", "largest, codes"),
-        *("values clipped", "status bit set", "wrapped"),
-    )
+    rows = [extremes.cells(row) for row in document["extremes"]]
     text = (
         "Errors against double precision; where there is no depth to speak of, in codes. Where values are clipped the "
         "sticky status bit says so; none wraps."
     )
-    edges = Figure("extremes", "At the extremes", text, EXTREMES_COMMAND, table(head, rows))
-    blocks = [
-        (
-            row["core"],
-            str(row["size"]),
-            row["input"],
-            f"{row['blocks']:,}",
-            f"{row['peak']:.2f}",
-            f"{row['mean_square']:.3f}",
-            f"{row['mean']:.5f}",
-        )
-        for row in document["compliance"]
-    ]
-    columns = ("transform", "size", "input", "blocks", "peak error, codes", "mean square error", "mean error")
+    edges = Figure("extremes", "At the extremes", text, EXTREMES_COMMAND, table(extremes.HEAD, rows))
+    blocks = table(transform_noise.HEAD, [transform_noise.cells(row) for row in document["compliance"]])
     text = (
         "Peak, mean square and mean error of the transform cores over blocks of random words, in codes of their output."
     )
-    return [
-        edges,
-        Figure(
-            "transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, table(columns, blocks)
-        ),
-    ]
-
-
-def kept(command: Any, name: str) -> str:
-    """Return HTML that shows the picture beside the document."""
-    data = base64.b64encode((command.DEFAULT_OUT / f"{name}.png").read_bytes()).decode()
-    return f"<img alt='{name}' src='data:image/png;base64,{data}'>"
+    return [edges, Figure("transforms", "The transforms, in the manner of IEEE 1180", text, EXTREMES_COMMAND, blocks)]
 
 
 def reflex_figure(document: dict[str, Any]) -> Figure:
@@ -363,21 +297,15 @@ def reflex_figure(document: dict[str, Any]) -> Figure:
         "near the sensor is the clock in which the RTL's pin `contact` rises. Diamonds: mean and standard deviation. "
     )
     text += ". ".join(reflex_tables.sentences(document)) + "."
-    content = kept(reflex, "reflex") + titled(list(reflex_tables.tables(document).values()))
+    content = shown(reflex.DEFAULT_OUT / "reflex.png") + titled(list(reflex_tables.tables(document).values()))
     command = f"make reflex N={rows} CLOCK_MHZ={document['clock_mhz']:g} SEED={document['seed']}"
     return Figure("reflex", "The reflex", text, command, content)
 
 
 def baselines_figure(document: dict[str, Any]) -> Figure:
     text = f"{baselines.setting(document)}. {'. '.join(baselines.sentences(document))}."
-    content = kept(baselines, "baselines") + titled(baselines.tables(document))
+    content = shown(baselines.DEFAULT_OUT / "baselines.png") + titled(baselines.tables(document))
     return Figure("baselines", "The solve in software", text, "make baselines", content)
-
-
-def latest(flow: str, file: str) -> dict[str, Any] | None:
-    """Return the latest result in build/<flow>/, for any configuration."""
-    paths = sorted((ROOT / "build" / flow).glob(f"*/{file}"), key=lambda path: path.stat().st_mtime)
-    return json.loads(paths[-1].read_text()) if paths else None
 
 
 def synth_figure(document: dict[str, Any]) -> Figure:
@@ -406,13 +334,8 @@ def asic_figure(document: dict[str, Any]) -> Figure:
 
 def hardware_figures() -> list[Figure]:
     """Return the latest result of each flow; a flow takes minutes, so a page does not run it."""
-    flows: list[tuple[str, str, Callable[[dict[str, Any]], Figure]]] = [
-        ("synth", "resources.json", synth_figure),
-        ("fpga", "fpga.json", fpga_figure),
-        ("asic", "asic.json", asic_figure),
-    ]
-    documents = [(figure, latest(flow, file)) for flow, file, figure in flows]
-    return [figure(document) for figure, document in documents if document is not None]
+    flows = {"synth": synth_figure, "fpga": fpga_figure, "asic": asic_figure}
+    return [figure(documents[-1]) for flow, figure in flows.items() if (documents := results(flow))]
 
 
 def build(folder: Path) -> Path:

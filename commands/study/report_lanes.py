@@ -5,7 +5,6 @@ Latencies, multipliers and memories are those of the sweep. LUTs and the routed 
 synth` and `make fpga` in build/, where there are any for the same configuration.
 """
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from commands.common import run_request
 from commands.common.published import CLOCK_MHZ
 from commands.common.repository import ROOT
 from commands.study import sweep
-from commands.study.report_page import Figure, picture, table
+from commands.study.report_page import Figure, picture, results, table
 from tactile_depth.configuration import Configuration
 
 HEAD = (
@@ -24,25 +23,6 @@ HEAD = (
     *(f"the same at {CLOCK_MHZ:g} MHz, us", "multipliers of 27 x 18", "memory, Mbit"),
     *("DSP48E2", "LUT", "FF", "BRAM36", "UltraRAM", "routed on the ULX3S, MHz"),
 )
-
-
-def rows_of(rows: Sequence[sweep.Row], columns: int) -> list[sweep.Row]:
-    """Return the rows of a sweep that differ in their lanes alone, by rising number of lanes."""
-    default = sweep.configuration_cells({"solver": "tridiagonal", "columns": columns})
-    others = [name for name in sweep.CONFIGURATION if name != "lanes"]
-    alike = [row for row in rows if not row["problem"] and all(row[name] == default[name] for name in others)]
-    return sorted(alike, key=lambda row: int(row["lanes"]))
-
-
-def hardware(build: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return the designs that `make synth` left below a folder, and the reports of `make fpga`, the latest last."""
-
-    def documents(pattern: str) -> list[dict[str, Any]]:
-        paths = sorted(build.glob(pattern), key=lambda path: path.stat().st_mtime)
-        return [json.loads(path.read_text()) for path in paths]
-
-    designs = [design for document in documents("synth/*/resources.json") for design in document["designs"]]
-    return designs, documents("fpga/*/fpga.json")
 
 
 def cells(row: sweep.Row, designs: Sequence[dict[str, Any]], routed: Sequence[dict[str, Any]]) -> tuple[str, ...]:
@@ -64,10 +44,11 @@ def cells(row: sweep.Row, designs: Sequence[dict[str, Any]], routed: Sequence[di
 def lanes_figure(rows: Sequence[sweep.Row], folder: Path, build: Path = ROOT / "build") -> Figure:
     """Plot the whole map's latency against multipliers and memory, a point for each number of lanes."""
     figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained", sharey=True)
-    designs, routed = hardware(build)
+    designs = [design for document in results("synth", build) for design in document["designs"]]
+    routed = results("fpga", build)
     lines = []
     for columns, colour in zip(sweep.LANE_GRIDS, ("#08306b", "#e6550d"), strict=True):
-        points = rows_of(rows, columns)
+        points = sweep.with_lanes(rows, columns)
         lines += [cells(row, designs, routed) for row in points]
         micros = [int(row["last_pixel_to_last_depth_cycles"]) / CLOCK_MHZ for row in points]
         areas = [

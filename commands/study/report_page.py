@@ -3,6 +3,7 @@
 
 import base64
 import html
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +11,12 @@ from typing import Any
 
 import matplotlib
 
+from commands.common.repository import ROOT
+
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
+
+DOCUMENTS = {"synth": "resources.json", "fpga": "fpga.json", "asic": "asic.json"}  # by flow
 
 LOOKS: dict[str, dict[str, Any]] = {
     "spectral": {"color": "#08306b", "marker": "o", "linestyle": "-"},
@@ -44,7 +49,18 @@ def picture(figure: Any, folder: Path, name: str) -> str:
     path = folder / f"{name}.png"
     figure.savefig(path, dpi=110)
     plt.close(figure)
-    return f"<img alt='{name}' src='data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}'>"
+    return shown(path)
+
+
+def shown(path: Path) -> str:
+    """Return HTML that shows a PNG."""
+    return f"<img alt='{path.stem}' src='data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}'>"
+
+
+def results(flow: str, build: Path = ROOT / "build") -> list[dict[str, Any]]:
+    """Return the documents that a flow left below a folder, for any configuration, the latest last."""
+    paths = sorted(build.glob(f"{flow}/*/{DOCUMENTS[flow]}"), key=lambda path: path.stat().st_mtime)
+    return [json.loads(path.read_text()) for path in paths]
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

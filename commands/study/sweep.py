@@ -15,7 +15,7 @@ import re
 import sys
 import tempfile
 import zipfile
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -23,6 +23,7 @@ import joblib
 from tqdm import tqdm
 
 from commands.common import published, variables
+from commands.common.markdown import table
 from commands.common.repository import ROOT
 from tactile_depth import accuracy, files
 from tactile_depth.accuracy import CONFIGURATION, MEASURED, VERSION, WORST, configuration_cells, measure
@@ -230,65 +231,62 @@ def sweep(rows: list[Choices], folder: Path, scheduler: str | None = None) -> li
     return [done[key(choices)] for choices in rows]
 
 
+def like(rows: Sequence[Row], choices: Choices, *varied: str) -> list[Row]:
+    """Return the rows that can be built and differ from a configuration in the columns `varied` alone."""
+    wanted = configuration_cells(choices)
+    same = [name for name in CONFIGURATION if name not in varied]
+    return [row for row in rows if not row["problem"] and all(row[name] == wanted[name] for name in same)]
+
+
+def with_lanes(rows: Sequence[Row], columns: int) -> list[Row]:
+    """Return the rows that differ in their lanes alone, by rising number of lanes."""
+    alike = like(rows, {"solver": "tridiagonal", "columns": columns}, "lanes")
+    return sorted(alike, key=lambda row: int(row["lanes"]))
+
+
 def cost_of_worst(rows: list[Row], solver: str) -> list[str]:
     """Return the loss of accuracy with a depth range that no slopes exceed, and the word length that compensates it."""
-    errors = {}
-    for depth_range in ("default", "worst"):
-        wanted = configuration_cells({"solver": solver}) | {"depth_range": depth_range}
-        errors[depth_range] = {
+    default, worst = (
+        {
             int(row["data_width"]): float(row["rms_percent_mean"])
-            for row in rows
-            if not row["problem"] and all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
+            for row in like(rows, {"solver": solver} | chosen, "data_width")
         }
+        for chosen in ({}, {"depth_range_px": WORST})
+    )
     width = Configuration().data_width
-    if not all(width in by_width for by_width in errors.values()):
+    if width not in default or width not in worst:
         return []
-    line = f"{solver}: DEPTH_RANGE=worst, {errors['worst'][width]:.4f} % in place of {errors['default'][width]:.4f} %"
-    enough = [wide for wide, error in errors["worst"].items() if error <= errors["default"][width]]
+    line = f"{solver}: DEPTH_RANGE=worst, {worst[width]:.4f} % in place of {default[width]:.4f} %"
+    enough = [wide for wide, error in worst.items() if error <= default[width]]
     return [f"{line}; as good again with DATA_WIDTH={min(enough)}" if enough else f"{line}; no words are as good"]
 
 
-def lanes_table(rows: list[Row]) -> list[str]:
-    """Return a line for each number of lanes: what it takes, and when the first and the last depth come."""
-    lines = [
-        f"{'lanes':28}{'first depth':>12}{'last depth':>12}  cycles after the last pixel{'multipliers':>13}{'Mbit':>7}"
-    ]
-    for columns in LANE_GRIDS:
-        for lanes in lane_counts(columns):
-            wanted = configuration_cells({"solver": "tridiagonal", "columns": columns, "lanes": lanes})
-            for row in rows:
-                if not row["problem"] and all(row[name] == wanted[name] for name in CONFIGURATION):
-                    cycles = f"{int(row['last_pixel_to_first_depth_cycles']):12,}"
-                    cycles += f"{int(row['last_pixel_to_last_depth_cycles']):12,}{'':29}"
-                    area = f"{int(row['multipliers']):13}{int(row['memory_bits']) / 1e6:7.2f}"
-                    lines.append(f"{f'{columns} x {columns}, {lanes}':28}{cycles}{area}")
-    return lines if len(lines) > 1 else []
+def area(row: Row) -> tuple[str, str]:
+    return row["multipliers"], f"{int(row['memory_bits']) / 1e6:.2f}"
 
 
 def summary(rows: list[Row]) -> str:
     """Return a line for each solver, boundary and number of lanes, and the narrowest sufficient words."""
-    default = configuration_cells({})
-    lines = [f"{'':28}{'mean RMS':>10}{'worst':>10}  % of peak{'cycles':>12}{'multipliers':>13}{'Mbit':>7}"]
-    for row in rows:
-        named = {name: row[name] for name in CONFIGURATION}
-        if all(named[name] == default[name] for name in CONFIGURATION if name not in ("solver", "boundary")):
-            name = f"{row['solver']}, {row['boundary']}"
-            rms = f"{float(row['rms_percent_mean']):10.4f}{float(row['rms_percent_worst']):10.4f}"
-            area = f"{int(row['multipliers']):13}{int(row['memory_bits']) / 1e6:7.2f}"
-            lines.append(f"{name:28}{rms}{'':11}{int(row['first_depth_cycles']):12,}{area}")
+    by_solver, by_lanes = [], []
+    for row in like(rows, {}, "solver", "boundary"):
+        rms = [f"{float(row[f'rms_percent_{name}']):.4f}" for name in ("mean", "worst")]
+        by_solver.append(
+            (f"{row['solver']}, {row['boundary']}", *rms, f"{int(row['first_depth_cycles']):,}", *area(row))
+        )
+    for columns in LANE_GRIDS:
+        for row in with_lanes(rows, columns):
+            cycles = [f"{int(row[f'last_pixel_to_{name}_depth_cycles']):,}" for name in ("first", "last")]
+            by_lanes.append((f"{columns} x {columns}, {row['lanes']}", *cycles, *area(row)))
+    costs = ("multipliers", "Mbit")
+    lines = [table(("solver, boundary", "mean RMS, % of peak", "worst", "cycles", *costs), by_solver)]
     for solver in COLUMNS:
-        wanted = configuration_cells({"solver": solver})
-        narrow = [
-            int(row["data_width"])
-            for row in rows
-            if all(row[name] == wanted[name] for name in CONFIGURATION if name != "data_width")
-            and not row["problem"]
-            and float(row["rms_percent_mean"]) <= published.RMS_PERCENT
-        ]
+        same = like(rows, {"solver": solver}, "data_width")
+        narrow = [int(row["data_width"]) for row in same if float(row["rms_percent_mean"]) <= published.RMS_PERCENT]
         if narrow:
             lines.append(f"{solver}: mean RMS at most {published.RMS_PERCENT} % from DATA_WIDTH={min(narrow)}")
         lines += cost_of_worst(rows, solver)
-    lines += lanes_table(rows)
+    if by_lanes:
+        lines.append(table(("lanes", "last pixel to first depth, cycles", "to last depth", *costs), by_lanes))
     refused = sum(bool(row["problem"]) for row in rows)
     lines.append(f"{len(rows)} rows, {refused} of them of configurations that cannot be built")
     return "\n".join(lines)

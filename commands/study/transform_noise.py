@@ -6,8 +6,9 @@ limits of the standard are for one 8 x 8 transform of 9-bit words. Noise spreads
 range of each, so single modes at full amplitude are measured too.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.fft import dst, idst
@@ -154,16 +155,26 @@ def _standard_errors(error: np.ndarray) -> float:
     return float(abs(means.mean())) / spread if spread else 0.0
 
 
-def compliance_table(rows: list[Compliance]) -> str:
-    head = f"{'core':<13}{'size':>5}  {'input':<20}{'blocks':>7}{'amplitude':>13}{'peak':>9}"
-    lines = [
-        head
-        + f"{'worst mse':>11}{'mse':>9}{'worst mean':>12}{'mean':>10}{'in s.e.':>8}{'clipped':>9}  zero in, zero out"
-    ]
-    for row in rows:
-        lines.append(
-            f"{row.core:<13}{row.size:>5}  {row.input:<20}{row.blocks:>7,}{row.amplitude:>13,}{row.peak:>9.2f}"
-            f"{row.worst_mean_square:>11.3f}{row.mean_square:>9.3f}{row.worst_mean:>12.4f}{row.mean:>10.5f}{row.mean_in_standard_errors:>8.2f}"
-            f"{row.saturations:>9,}  {'yes' if row.zero_in_zero_out else 'NO'}"
-        )
-    return "\n".join(lines)
+HEAD = (
+    *(
+        "transform",
+        "size",
+        "input",
+        "blocks",
+        "amplitude",
+        "peak error, codes",
+        "worst mean square",
+        "mean square error",
+    ),
+    *("worst mean", "mean error", "in standard errors", "clipped", "zero in, zero out"),
+)
+
+
+def cells(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return a `Compliance`, as extremes.json holds it, as text, below HEAD."""
+    return (
+        *(row["core"], str(row["size"]), row["input"], f"{row['blocks']:,}", f"{row['amplitude']:,}"),
+        *(f"{row['peak']:.2f}", f"{row['worst_mean_square']:.3f}", f"{row['mean_square']:.3f}"),
+        *(f"{row['worst_mean']:.4f}", f"{row['mean']:.5f}", f"{row['mean_in_standard_errors']:.2f}"),
+        *(f"{row['saturations']:,}", "yes" if row["zero_in_zero_out"] else "NO"),
+    )

@@ -114,13 +114,15 @@ def test_a_row_that_is_not_as_it_must_be_is_named() -> None:
     assert "3 codes wrapped around" in lines[-1]
 
 
-def test_the_file_it_leaves(tmp_path: Path) -> None:
+def test_the_file_it_leaves() -> None:
     row = model_drift("spectral", SIZE, 16)
     measured = compliance(Configuration(columns=SIZE), 32)
-    extremes.write(tmp_path, [row], measured)
-    document = json.loads((tmp_path / "extremes.json").read_text())
+    document = json.loads(json.dumps(extremes.as_document([row], measured)))
     assert document["extremes"][0]["solver"] == "spectral"
     assert len(document["compliance"]) == len(measured)
+    for module, rows in ((extremes, document["extremes"]), (transform_noise, document["compliance"])):
+        for each in rows:
+            assert len(module.cells(each)) == len(module.HEAD)
 
 
 @pytest.mark.parametrize(
