@@ -6,6 +6,7 @@ from the tree, and no list is kept by hand.
 """
 
 import re
+import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -95,6 +96,12 @@ def sources(top: str | None = None) -> list[Path]:
 def formal(name: str) -> Path | None:
     """Return the file of formal/ that holds the module with this name, None if there is none."""
     return next((ROOT / "formal").rglob(f"{name}.sv"), None)
+
+
+def git(*words: str) -> bytes | None:
+    """Return the output of a git command in the root of the repository, None if it fails."""
+    ended = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, check=False)
+    return ended.stdout if ended.returncode == 0 else None
 
 
 def module(file: Path) -> str:

@@ -72,13 +72,7 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
     if "CONFIG" in values:
         values = from_file(Path(values.pop("CONFIG")), values, [name for name in accepted if name != "CONFIG"]) | values
 
-    number = partial(variables.number, values)
-
-    def choice(key: str, accepted: tuple[str, ...]) -> str:
-        value = values.get(key, accepted[0])
-        if value not in accepted:
-            raise InputError(f"{key}={value} is unknown: accepted are {', '.join(filter(None, accepted))}")
-        return value
+    number, choice = partial(variables.number, values), partial(variables.choice, values)
 
     def position(key: str) -> tuple[float, float]:
         try:

@@ -20,29 +20,23 @@ from tactile_depth.files import cause
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
 # Errors of the package name arguments; a user of make gave variables.
+SAME = (
+    *("rows", "solver", "data_width", "gain_width", "lanes", "reference", "calibration", "bits"),
+    *("exposure_us", "window"),
+)
 VARIABLES = {
     r"\bcamera_size=\(rows, columns\)": "CAMERA_SIZE=<columns>x<rows>",
-    r"\bfolder=": "OUT=",
-    r"\bcolumns=": "N=",
-    r"\brows=": "ROWS=",
-    r"\bsolver=": "SOLVER=",
-    r"\bdata_width=": "DATA_WIDTH=",
-    r"\bcoefficient_width=": "COEFF_WIDTH=",
-    r"\bgain_width=": "GAIN_WIDTH=",
-    r"\bgradient_model=": "GRADIENT=",
-    r"\bdepth_range_mm=": "DEPTH_RANGE=",
-    r"\blanes=": "LANES=",
-    r"\breference=": "REFERENCE=",
     r"\bcamera_size\b": "CAMERA_SIZE",
     r"\bomit the calibration\b": "omit CALIBRATION",
-    r"\bcalibration=": "CALIBRATION=",
     r"\bpitch_mm\b": "PITCH",
-    r"\bbits=": "BITS=",
-    r"\bmodels=": "GRADIENT=",
-    r"\bexposure_us=": "EXPOSURE_US=",
+    r"\bfolder=": "OUT=",
+    r"\bcolumns=": "N=",
+    r"\bcoefficient_width=": "COEFF_WIDTH=",
+    r"\b(gradient_model|models)=": "GRADIENT=",
+    r"\bdepth_range_mm=": "DEPTH_RANGE=",
     r"\bpixel_format=": "CAMERA=",
     r"\bphase=": "BAYER=",
-    r"\bwindow=": "WINDOW=",
+    **{rf"\b{name}=": f"{name.upper()}=" for name in SAME},
 }
 
 
@@ -59,11 +53,14 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
     for argument in arguments:
         name, equals, value = argument.partition("=")
         if not equals or name not in names:
-            accepted_are = f"accepted {'are' if len(names) > 1 else 'is'} {', '.join(names) or 'none'}"
-            raise InputError(f"{argument}: unknown variable: {accepted_are}")
+            raise InputError(f"{argument}: unknown variable: {listed(names)}")
         if value:
             values[name] = value
     return values
+
+
+def listed(accepted: Sequence[str]) -> str:
+    return f"accepted {'are' if len(accepted) > 1 else 'is'} {', '.join(accepted) or 'none'}"
 
 
 def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
@@ -81,6 +78,22 @@ def number(values: Mapping[str, str], name: str, default: Any, low: float, high:
         what = "a whole number" if kind is int else "a number"
         to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
         raise InputError(f"{name}={values[name]}: accepted is {what}{to}")
+    return value
+
+
+def whole_numbers(values: Mapping[str, str], name: str, default: Sequence[int]) -> tuple[int, ...]:
+    """Return the numbers in the variable `name`, with commas between; none where one is no whole number."""
+    try:
+        return tuple(int(part) for part in values[name].split(",")) if values.get(name) else tuple(default)
+    except ValueError:
+        return ()
+
+
+def choice(values: Mapping[str, str], name: str, accepted: Sequence[str]) -> str:
+    """Return the word in the variable `name`; the first that is accepted without that variable. Raises InputError."""
+    value = values.get(name) or accepted[0]
+    if value not in accepted:
+        raise InputError(f"{name}={value} is unknown: {listed([*filter(None, accepted)])}")
     return value
 
 

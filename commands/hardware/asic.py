@@ -25,6 +25,7 @@ import numpy as np
 from tqdm import tqdm
 
 from commands.common import repository, run_request, variables
+from commands.common.markdown import table
 from commands.hardware import estimate, gate_sim, memory_model, synthesis, yosys
 from commands.hardware.gate_power import DATA, NAMES, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
@@ -240,20 +241,22 @@ def rows(report: Mapping[str, Any]) -> list[list[str]]:
 
 def text(report: Mapping[str, Any]) -> str:
     """Return the printed report."""
-    lines = [f"{'core (without cores inside)':<28}{'cells':>9}{'area mm2':>10}{'delays':>8}{'mW':>9}"]
+    head = ("core (without cores inside)", "cells", "area, mm2", "delays", "mW")
+    cores = []
     for row in report["cores"]:
-        figures = f"{row['area_um2'] / 1e6:>10.3f}{row['delay_factor']:>8.2f}{row['with_delays_mw']:>9.2f}"
-        lines.append(f"{row['core']:<28}{row['cells']:>9,}{figures}")
+        shown = (f"{row['area_um2'] / 1e6:.3f}", f"{row['delay_factor']:.2f}", f"{row['with_delays_mw']:.2f}")
+        cores.append((row["core"], f"{row['cells']:,}", *shown))
+    heading, *figures = rows(report)
     time = report["timing"]
     parts = {name: sum(row["without_delays_mw"][name] for row in report["cores"]) for name in NAMES}
     return "\n".join(
         [
-            *lines,
+            table(head, cores),
             "delays: power of toggling with delays over without; mW: with delays",
             "logic without delays, mW: " + ", ".join(f"{name} {milliwatts:.2f}" for name, milliwatts in parts.items()),
             f"worst slack {time['worst_slack_ns']:.2f} of {time['period_ns']:.2f} ns ({time['fastest_mhz']:.0f} MHz): "
             f"{' to '.join(time['path'])}",
-            *(f"{name:<48}{area:>10}{power:>11}  {source}" for name, area, power, source in rows(report)),
+            table(heading, figures),
             report["method"],
         ]
     )

@@ -29,6 +29,7 @@ from commands.common import run_request, variables, wrapper
 from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import crossing, ecp5, synthesis, yosys
+from commands.hardware.synth import CONFIGURING
 from tactile_depth import files
 from tactile_depth.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
 from tactile_depth.camera_configuration import CameraConfiguration
@@ -43,20 +44,15 @@ AT_A_TIME = 3  # seeds, by default; two processors share them evenly
 # On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
 PLACER = ("--placer", "static")
 TIMEOUT_S = 3600
-OSCILLATOR_MHZ, DIVIDED_MHZ = (
-    25,
-    600,
-)  # of boards/ulx3s/ulx3s_clock.sv: a clock is a multiple of one, a part of the other
+# Of boards/ulx3s/ulx3s_clock.sv: a clock is a multiple of one, a part of the other.
+OSCILLATOR_MHZ, DIVIDED_MHZ = 25, 600
 CLOCKS_MHZ = [mhz for mhz in range(OSCILLATOR_MHZ, DIVIDED_MHZ + 1, OSCILLATOR_MHZ) if DIVIDED_MHZ % mhz == 0]
 DEFAULT_CLOCK_MHZ = 100
 FIFO_LOG2 = 4  # of the receiver's queue
 POINTER_BITS = 2 * (FIFO_LOG2 + 1)
 MISSES = "misses-its-clock"  # in the file name of such a bitstream
 SENSOR_FORMAT = "raw8"  # that the lists of registers set
-CHOICES = (
-    *("CONFIG", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH"),
-    *("GAIN_WIDTH", "DEPTH_RANGE", "FRAMES", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT", "OUT"),
-)
+CHOICES = (*CONFIGURING, "FRAMES", "OUT")
 LARGEST_SEED = 2**31 - 1
 
 
@@ -101,11 +97,8 @@ def parse(arguments: list[str]) -> Request:
     target = values.pop("TARGET", "")
     if target not in BOARDS:
         raise InputError(f"TARGET={target} is unknown: accepted is {', '.join(BOARDS)}")
-    seeds = values.pop("SEEDS", "1,2,3")
-    try:
-        numbers = tuple(int(seed) for seed in seeds.split(","))
-    except ValueError:
-        numbers = ()
+    numbers = variables.whole_numbers(values, "SEEDS", (1, 2, 3))
+    seeds = values.pop("SEEDS", "")
     if not numbers or not all(0 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
         raise InputError(f"SEEDS={seeds}: accepted are different whole numbers with commas between, as 1,2,3")
     clock_mhz = values.pop("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
@@ -121,7 +114,8 @@ def parse(arguments: list[str]) -> Request:
 
 def _sensor(values: dict[str, str]) -> Camera | None:
     """Take SENSOR out of the variables and return the camera; None without CAMERA. Raises InputError."""
-    name = values.pop("SENSOR", "")
+    name = variables.choice(values, "SENSOR", ("", *CAMERAS))
+    values.pop("SENSOR", None)
     if not values.get("CAMERA"):
         if name:
             raise InputError(f"SENSOR={name} goes with CAMERA={SENSOR_FORMAT}")
@@ -130,10 +124,7 @@ def _sensor(values: dict[str, str]) -> Camera | None:
         raise InputError(
             f"CAMERA={values['CAMERA']}: the board sets cameras to {SENSOR_FORMAT}: give CAMERA={SENSOR_FORMAT}"
         )
-    name = name or next(iter(CAMERAS))
-    if name not in CAMERAS:
-        raise InputError(f"SENSOR={name} is unknown: accepted are {', '.join(CAMERAS)}")
-    sensor = CAMERAS[name]()
+    sensor = CAMERAS[name or next(iter(CAMERAS))]()
     values.setdefault("BAYER", sensor.bayer)
     return sensor
 

@@ -2,11 +2,12 @@
 """Reads from a Liberty file: cells with their functions, areas, capacitances, energies and slews.
 
 Syntax: Liberty User Guide (Synopsys, open source since 2000), with table look-up models: scalars and tables over one or
-two axes. OpenSTA reads the delays. A parser evaluates Boolean functions (`truth`); no text of the file is executed.
+two axes. OpenSTA reads the delays. `truth` evaluates Boolean functions; no text of the file is executed.
 """
 
 from __future__ import annotations
 
+import ast
 import operator
 import re
 from bisect import bisect_right
@@ -27,8 +28,9 @@ STATEMENT = re.compile(
 UNIT = re.compile(r"([\d.eE+-]*?)\s*([munpfk]?)([A-Za-z]+)$")
 PREFIX = {"": 1.0, "k": 1e3, "m": 1e-3, "u": 1e-6, "n": 1e-9, "p": 1e-12, "f": 1e-15}
 PIN = r"[A-Za-z_][\w\[\]]*"
-AND = 1
-OPERATORS = (("+|", operator.or_), ("&*", operator.and_), ("^", operator.xor))  # the last binds tightest
+# Liberty's operators as those of Python; exclusive or binds tighter than and.
+SPELLED = {"+": "|", "|": "|", "*": "&", "&": "&", "^": "+", "!": "~", "'": ".inverse", "(": "(", ")": ")"}
+OPERATORS = {ast.BitOr: operator.or_, ast.BitAnd: operator.and_, ast.Add: operator.xor}
 
 
 def pins_of(function: str) -> list[str]:
@@ -39,48 +41,36 @@ def pins_of(function: str) -> list[str]:
 def truth(function: str, inputs: Sequence[str]) -> int:
     """Return the truth table of a Liberty function: bit i is its value when the inputs, first lowest, spell i.
 
-    ! before an operand or ' after it is not; a space is and.
+    ! before an operand or ' after it is not; a space is and. The function becomes an expression of Python, which has
+    operators that bind in the same order, and is evaluated from its syntax tree.
     Raises InputError: the text is no Boolean function of `inputs`, or they are too many.
     """
     wrong = InputError(f"LIB: {function} is no Boolean function of up to {LARGEST_GATE} pins: {', '.join(inputs)}")
-    if len(inputs) > LARGEST_GATE:
-        raise wrong
     rows = 1 << len(inputs)
     ones = (1 << rows) - 1
-    values = {"0": 0, "1": ones}
-    values |= {name: sum(1 << i for i in range(rows) if i >> k & 1) for k, name in enumerate(inputs)}
-    tokens = ["", *re.findall(rf"{PIN}|\S", function)[::-1]]  # the next token is the last
+    tokens = re.findall(rf"{PIN}|\S", function)
+    if len(inputs) > LARGEST_GATE or not {*re.findall(PIN, function)} <= {*inputs}:
+        raise wrong
+    tables = [sum(1 << i for i in range(rows) if i >> k & 1) for k in range(len(inputs))]
+    names = {name: f"v{k}" for k, name in enumerate((*inputs, "0", "1"))}
+    values = dict(zip(names.values(), (*tables, 0, ones), strict=True))
+    spelled = " ".join(names.get(token) or SPELLED.get(token, "?") for token in tokens)
+    spelled = re.sub(r"(?<=[\w)]) (?=[v(~])", " & ", spelled)
 
-    def operand() -> int:
-        token = tokens.pop()
-        if token == "!":
-            return operand() ^ ones
-        value = operation(0) if token == "(" else values.get(token)
-        if value is None or (token == "(" and tokens.pop() != ")"):
-            raise wrong
-        while tokens[-1] == "'":
-            tokens.pop()
-            value ^= ones
-        return value
-
-    def operation(level: int) -> int:
-        if level == len(OPERATORS):
-            return operand()
-        signs, combine = OPERATORS[level]
-        value = operation(level + 1)
-        while tokens[-1] and (tokens[-1] in signs or (level == AND and tokens[-1] not in "+|)")):
-            if tokens[-1] in signs:
-                tokens.pop()
-            value = combine(value, operation(level + 1))
-        return value
+    def value(node: ast.AST) -> int:
+        match node:
+            case ast.Name(id=name):
+                return values[name]
+            case ast.Attribute(value=inner) | ast.UnaryOp(operand=inner):
+                return value(inner) ^ ones
+            case ast.BinOp(left=left, op=sign, right=right):
+                return OPERATORS[type(sign)](value(left), value(right))
+        raise wrong
 
     try:
-        result = operation(0)
-    except IndexError:
+        return value(ast.parse(spelled, mode="eval").body)
+    except (SyntaxError, KeyError):
         raise wrong from None
-    if tokens != [""]:
-        raise wrong
-    return result
 
 
 @dataclass

@@ -132,14 +132,12 @@ class Design:
 def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Request]:
     """Return target, its name, grids and request; the grids are empty without GRIDS. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, *run_request.CAMERA, "OUT"))
-    name = values.pop("TARGET", next(iter(TARGETS)))
-    if name not in TARGETS:
-        raise InputError(f"TARGET={name} is unknown: accepted is {', '.join(TARGETS)}")
-    grids = values.pop("GRIDS", "")
-    try:
-        sizes = [int(size) for size in grids.split(",")] if grids else []
-    except ValueError as error:
-        raise InputError(f"GRIDS={grids}: accepted are whole numbers with commas, as 64,128,256") from error
+    name = variables.choice(values, "TARGET", tuple(TARGETS))
+    values.pop("TARGET", None)
+    sizes = list(variables.whole_numbers(values, "GRIDS", ()))
+    if "GRIDS" in values and not sizes:
+        raise InputError(f"GRIDS={values['GRIDS']}: accepted are whole numbers with commas, as 64,128,256")
+    values.pop("GRIDS", None)
     accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
     return TARGETS[name], name, sizes, run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
 
@@ -326,14 +324,12 @@ def synthesize(
 
 def text(design: Design, target: Target) -> str:
     """Return the printed report of one design."""
-    cores = [
-        (f"{core.name} ({core.path.removeprefix(f'{SOLVER}.')})", core.counts) for core in design.cores if core.path
-    ]
-    cores += [("between the cores", core.counts) for core in design.cores if not core.path]
-    by_core = [
-        [name, *(f"{counts[resource]:,g}" for resource in RESOURCES)]
-        for name, counts in [*cores, ("sum", design.totals)]
-    ]
+    cores = {
+        f"{core.name} ({core.path.removeprefix(f'{SOLVER}.')})" if core.path else "between the cores": core.counts
+        for core in sorted(design.cores, key=lambda core: not core.path)
+    }
+    rows = [*cores.items(), ("sum", design.totals)]
+    by_core = [[name, *(f"{counts[resource]:,g}" for resource in RESOURCES)] for name, counts in rows]
     by_memory = [
         [memory.path, f"{memory.depth:,}", str(memory.width), f"{memory.style or '-'}{', ROM' if memory.rom else ''}"]
         + [f"{count:,g}" for count in memory.plain().values()]

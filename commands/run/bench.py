@@ -85,6 +85,15 @@ class Played:
     def clocks(self, letter: str) -> list[int]:
         return [numbers[0] for have, numbers in self.events if have == letter]
 
+    def by_frame(self, letter: str) -> dict[int, int]:
+        """Return the cycle of an event, by the number of the frame that leaves; each begins with an event `d`."""
+        frame, found = -1, {}
+        for have, numbers in self.events:
+            frame += have == "d"
+            if have == letter:
+                found[frame] = numbers[0]
+        return found
+
 
 def frames_left(folder: Path, config: Configuration) -> int:
     """Return the number of frames that have left the device that plays in `folder`."""

@@ -10,7 +10,6 @@ and go through the model of its hardware. models/tactile_depth/fitting.py says h
 
 import os
 import sys
-from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,28 +55,18 @@ class Request:
 
 def parse(arguments: list[str]) -> Request:
     """Read KEY=VALUE arguments; an empty value means the default. Raises InputError."""
-    values = defaultdict(str, variables.given(arguments, VARIABLES))
-    models = {"": MODELS, "both": MODELS, **{model: (model,) for model in MODELS}}
-    if values["GRADIENT"] not in models:
-        raise InputError(f"GRADIENT={values['GRADIENT']}: accepted are {', '.join(filter(None, models))}")
-    if values["CIRCLES"] not in ("", "table", "found"):
-        raise InputError(
-            f"CIRCLES={values['CIRCLES']}: accepted are table (those of presses.csv) and found (in the pictures)"
-        )
-    if values["HELD_OUT"] not in ("", "second", "each"):
-        raise InputError(
-            f"HELD_OUT={values['HELD_OUT']}: accepted are second and each: presses that are left out of the fit"
-        )
-    out = Path(values["OUT"]) if values["OUT"] else None
+    values = variables.given(arguments, VARIABLES)
+    models = {"both": MODELS, **{model: (model,) for model in MODELS}}
+    out = Path(values["OUT"]) if "OUT" in values else None
     if out is not None and out.suffix != ".npz":
         raise InputError(f"OUT={out}: give the name of an .npz file")
     return Request(
-        Path(values["PRESSES"]) if values["PRESSES"] else None,
-        models[values["GRADIENT"]],
+        Path(values["PRESSES"]) if "PRESSES" in values else None,
+        models[variables.choice(values, "GRADIENT", tuple(models))],
         variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float),
         variables.number(values, "BITS", DEFAULT_BITS, *BITS_PER_CHANNEL),
-        values["CIRCLES"] == "found",
-        values["HELD_OUT"] == "each",
+        variables.choice(values, "CIRCLES", ("table", "found")) == "found",
+        variables.choice(values, "HELD_OUT", ("second", "each")) == "each",
         variables.number(values, "EXPOSURE_US", None, 1e-3, LONGEST_EXPOSURE_US, float),
         camera_choice(values),
         out,

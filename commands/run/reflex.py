@@ -141,16 +141,7 @@ def entries(request: Request, sent: Sequence[Sent], pixels: np.ndarray) -> tuple
 def decisions(played: bench.Played, sent: Sequence[Sent], config: Configuration) -> tuple[list[Decision], list[str]]:
     """Return the first contact of each trial in the recording of the bench, and a line for each fault."""
     taken, out = played.clocks("t"), played.clocks("d")
-    deciding: dict[int, int] = {}
-    contact: dict[int, int] = {}
-    index = -1
-    for letter, numbers in played.events:
-        if letter == "d":
-            index += 1
-        elif letter == "b":
-            deciding[index] = numbers[0]
-        elif letter == "c":
-            contact[index] = numbers[0]
+    deciding, contact = played.by_frame("b"), played.by_frame("c")
     contacts: list[Decision] = []
     faults = []
     expected = last_pixel_to_first_depth(config)
@@ -227,9 +218,12 @@ def examine(
 
 
 def described(path: Times) -> dict[str, Any]:
-    """Return the statistics of a path and of its parts."""
+    """Return the statistics of a path and of its parts, and the times of each trial."""
     parts = {name: model.statistics(part) for name, part in path.parts.items() if part.any()}
-    return {"command": model.statistics(path.command), "motion": model.statistics(path.motion), "parts": parts}
+    both = zip(path.command.tolist(), path.motion.tolist(), strict=True)
+    trials = [{"command_ms": command, "motion_ms": motion} for command, motion in both]
+    statistics = {"command": model.statistics(path.command), "motion": model.statistics(path.motion)}
+    return {**statistics, "parts": parts, "trials": trials}
 
 
 def measure(request: Request) -> dict[str, Any]:
@@ -250,33 +244,27 @@ def measure(request: Request) -> dict[str, Any]:
     faults = [fault for one in loops for fault in one.faults]
     if faults:
         raise variables.Mismatch("; ".join(faults[:5]) + (f"; and {len(faults) - 5} more" if len(faults) > 5 else ""))
-    none = np.zeros(request.trials)
+    host_base = model.in_software(host, host_draws, request.size, "host")
+    host_times = model.times(host, host_draws, *host_base)
     solvers: dict[str, Any] = {}
-    near_times: dict[str, Times] = {}
     bases: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
     for one in loops:
         frames = np.array([decision.frame for decision in one.decisions])
         # The cycles count from the first pixel; `times` counts the read-out separately.
         pipeline = np.array([d.first_pixel_to_contact for d in one.decisions]) / clocks_per_ms - read_out
-        bases[one.config.solver] = (frames, pipeline, none)
-        near_times[one.config.solver] = model.times(near, near_draws, *bases[one.config.solver])
-    host_base = model.in_software(host, host_draws, request.size, "host")
-    host_times = model.times(host, host_draws, *host_base)
-    for one in loops:
-        measured = near_times[one.config.solver]
+        base = bases[one.config.solver] = (frames, pipeline, np.zeros(request.trials))
+        measured = model.times(near, near_draws, *base)
+        stated = described(measured)
         solvers[one.config.solver] = {
-            **described(measured),
+            **stated,
             "command_against_host": model.rank_sum(measured.command, host_times.command),
             "motion_against_host": model.rank_sum(measured.motion, host_times.motion),
-            "within_published": model.within_published(model.statistics(measured.motion)),
-            "trials": [
-                {**asdict(decision), "command_ms": float(command), "motion_ms": float(motion)}
-                for decision, command, motion in zip(one.decisions, measured.command, measured.motion, strict=True)
-            ],
+            "within_published": model.within_published(stated["motion"]),
+            "trials": [asdict(d) | both for d, both in zip(one.decisions, stated["trials"], strict=True)],
         }
     first = loops[0].config.solver
     software, _, _ = model.in_software(near, near_draws, request.size, "near, in software")
-    document = {
+    return {
         "grid": [request.size, request.size],
         "clock_mhz": request.clock_mhz,
         "speed_mm_s": request.speed,
@@ -288,13 +276,7 @@ def measure(request: Request) -> dict[str, Any]:
         "published": published.REFLEX,
         "delays": model.delays(request, near, host),
         "near": solvers,
-        "host": {
-            **described(host_times),
-            "trials": [
-                {"command_ms": float(command), "motion_ms": float(motion)}
-                for command, motion in zip(host_times.command, host_times.motion, strict=True)
-            ],
-        },
+        "host": described(host_times),
         "sub_frame": sub_frame(loops, request),
         "same_frame_by_double_precision": int((software == bases[first][0]).sum()),
         "difference": difference(solvers[first], near),
@@ -303,7 +285,6 @@ def measure(request: Request) -> dict[str, Any]:
             "host": model.sensitivity(host, host_draws, request.size, host_base, model.HOST_NAMES),
         },
     }
-    return document
 
 
 def sub_frame(loops: Sequence[Loop], request: Request) -> dict[str, Any]:

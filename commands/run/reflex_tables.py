@@ -36,42 +36,38 @@ def tables(document: dict[str, Any]) -> dict[str, tuple[str, tuple[str, ...], li
     """Return title, head and rows of each table that the command prints and the report shows."""
     near, host, published = document["near"], document["host"], document["published"]
 
-    def row(name: str, path: dict[str, Any]) -> tuple[str, ...]:
+    def row(name: str, path: dict[str, Any], against: str) -> tuple[str, ...]:
         motion = path["motion"]
-        keys = [key for key in ("command_against_host", "motion_against_host") if key in path]
-        against = " / ".join(f"{path[key]['U']:g}" for key in keys) or "-"
         spread = f"{motion['min']:.1f} to {motion['max']:.1f}"
         return (name, str(motion["trials"]), plus_minus(path["command"]), plus_minus(motion), spread, against)
 
-    def printed(name: str, path: dict[str, Any], against: str) -> tuple[str, ...]:
-        (command, command_sd), (motion, motion_sd) = path["command"], path["motion"]
+    def printed(name: str) -> dict[str, Any]:
+        """Return published figures in the form of measured ones."""
+        path = published[name]
+        command, motion = (dict(zip(("mean", "sd"), path[key], strict=True)) for key in ("command", "motion"))
         low, high = path["range"]
-        spread = f"{low:.1f} to {high:.1f}"
-        shown = (f"{command:.1f} +- {command_sd:.1f}", f"{motion:.1f} +- {motion_sd:.1f}")
-        return (name, str(path["trials"]), *shown, spread, against)
+        return {"command": command, "motion": motion | {"trials": path["trials"], "min": low, "max": high}}
 
-    comparison = [
-        *(row(f"near the sensor, {solver}", path) for solver, path in near.items()),
-        printed("near the sensor, published", published["near"], "0 / 0"),
-        row("host", host),
-        printed("host, published", published["host"], "-"),
-    ]
+    comparison = []
+    for solver, path in near.items():
+        against = " / ".join(f"{path[f'{key}_against_host']['U']:g}" for key in ("command", "motion"))
+        comparison.append(row(f"near the sensor, {solver}", path, against))
+    comparison.append(row("near the sensor, published", printed("near"), "0 / 0"))
+    comparison += [row("host", host, "-"), row("host, published", printed("host"), "-")]
     first = next(iter(near))
+    paths = {"near": (f"near, {first}", near[first]), "host": ("host", host)}
     parts: list[tuple[str, ...]] = [
-        *(
-            (f"near, {first}", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
-            for name, part in near[first]["parts"].items()
-        ),
-        *(("host", name, f"{part['mean']:.2f}", f"{part['sd']:.2f}") for name, part in host["parts"].items()),
+        (label, name, f"{part['mean']:.2f}", f"{part['sd']:.2f}")
+        for label, path in paths.values()
+        for name, part in path["parts"].items()
     ]
     clock, places = document["clock_mhz"], sub_frame_rows(document)
     sensitive: list[tuple[str, ...]] = []
-    for path, base in (("near", near[first]), ("host", host)):
-        for line in document["sensitivity"][path]:
+    for key, (name, base) in paths.items():
+        for line in document["sensitivity"][key]:
             scaled = [line[f"x{scale:g}"] for scale in SCALES]
             shifts = [f"{one['mean'] - base['motion']['mean']:+.2f}" if one else "-" for one in scaled]
             spreads = [f"{one['sd']:.1f}" if one else "-" for one in scaled]
-            name = f"near, {first}" if path == "near" else path
             sensitive.append((name, line["delay"], f"{line['value']:.4g}", *shifts, *spreads))
     return {
         "results": (

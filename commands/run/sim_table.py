@@ -15,13 +15,7 @@ def measure(played: bench.Played) -> dict[str, list[int | None]]:
     """Return the latencies of each frame in cycles, from the events of the bench."""
     taken, depth, end = (played.clocks(letter) for letter in "tde")
     first, last = taken[::2], taken[1::2]
-    contact: dict[int, int] = {}
-    frame = -1
-    for letter, numbers in played.events:
-        if letter == "d":
-            frame += 1
-        elif letter == "c":
-            contact[frame] = numbers[0]
+    contact = played.by_frame("c")
     frames = range(len(end))
     return {
         "first_depth_latency_cycles": [depth[i] - first[i] for i in frames],

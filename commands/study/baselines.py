@@ -22,12 +22,10 @@ import os
 import signal
 import sys
 import time
-from collections import defaultdict
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -178,20 +176,16 @@ class Request:
 
 def parse(arguments: Sequence[str]) -> Request:
     """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
-    values = defaultdict(str, variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT")))
-    number = partial(variables.number, values)
+    values = variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT"))
     low, high = COLUMNS["spectral"]
-    try:
-        grids = tuple(int(part) for part in values["GRIDS"].split(",")) if values["GRIDS"] else GRIDS
-    except ValueError:
-        grids = ()
+    grids = variables.whole_numbers(values, "GRIDS", GRIDS)
     if not grids or any(not low <= size <= high or size & (size - 1) for size in grids):
         raise InputError(f"GRIDS={values['GRIDS']}: accepted are powers of two from {low} to {high}, as 64,128")
     return Request(
         grids=tuple(sorted(set(grids))),
-        runs=number("RUNS", RUNS, FEWEST_RUNS, 1_000_000),
-        clock_mhz=number("CLOCK_MHZ", published.CLOCK_MHZ, 0.001, 10_000, float),
-        out=Path(values["OUT"]) if values["OUT"] else DEFAULT_OUT,
+        runs=variables.number(values, "RUNS", RUNS, FEWEST_RUNS, 1_000_000),
+        clock_mhz=variables.number(values, "CLOCK_MHZ", published.CLOCK_MHZ, 0.001, 10_000, float),
+        out=Path(values.get("OUT", DEFAULT_OUT)),
     )
 
 

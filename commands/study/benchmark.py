@@ -30,7 +30,7 @@ from tqdm import tqdm
 
 from commands.common import markdown, variables
 from commands.common.machine import machine
-from commands.common.repository import ROOT
+from commands.common.repository import ROOT, git
 from commands.study import benchmark_child
 from commands.study.baselines import THREAD_VARIABLES
 from commands.study.benchmark_child import CASES
@@ -60,12 +60,6 @@ def parse(arguments: Sequence[str]) -> Request:
     values = variables.given(arguments, ("BEFORE", "ROUNDS", "OUT"))
     rounds = variables.number(values, "ROUNDS", ROUNDS, FEWEST_ROUNDS, 100_000)
     return Request(commit(values.get("BEFORE", FIRST)), rounds, Path(values.get("OUT", DEFAULT_OUT)))
-
-
-def git(*arguments: str) -> bytes | None:
-    """Return the output of a git command in the repository, None if it fails."""
-    done = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, check=False)
-    return done.stdout if done.returncode == 0 else None
 
 
 def commit(name: str) -> str:

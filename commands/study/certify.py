@@ -18,7 +18,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 from tqdm import tqdm
 
-from commands.common import repository, run_request, variables
+from commands.common import markdown, repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.run import sim, sim_table
 from tactile_depth import files
@@ -129,15 +129,13 @@ def table(nodes: list[Node]) -> str:
     def bits(headroom: float) -> str:
         return "-" if headroom == math.inf else f"{headroom:+.2f}"
 
-    head = f"{'node':<34}{'width':>6}{'fraction':>9}{'holds':>11}"
-    lines = [head + f"{'slopes':>12}{'headroom':>10}{'depths':>12}{'headroom':>10}"]
+    head = ("node", "width", "fraction", "holds", "slopes", "headroom", "depths", "headroom")
+    rows = []
     for node in nodes:
-        lines.append(
-            f"{node.name:<34}{node.form.width:>6}{node.form.fraction:>9}{node.form.limit:>11.5g}"
-            f"{node.slopes:>12.5g}{bits(node.slopes_headroom_bits):>10}"
-            f"{node.depths:>12.5g}{bits(node.depths_headroom_bits):>10}"
-        )
-    return "\n".join(lines)
+        form = (str(node.form.width), str(node.form.fraction), f"{node.form.limit:.5g}")
+        slopes = (f"{node.slopes:.5g}", bits(node.slopes_headroom_bits))
+        rows.append((node.name, *form, *slopes, f"{node.depths:.5g}", bits(node.depths_headroom_bits)))
+    return markdown.table(head, rows)
 
 
 def summary(nodes: list[Node], config: Configuration, pixel_pitch_mm: float) -> list[str]:
@@ -180,25 +178,13 @@ def cost_of_worst(config: Configuration, pixel_pitch_mm: float) -> str:
 
 @dataclass(frozen=True)
 class Streamed:
-    """Codes of the RTL for the frames, and those of the model.
+    """Codes of the RTL for the frames, and those of the model."""
 
-    Attributes
-    ----------
-    codes : int32 array (repeat, frames, rows, columns), in the order of the input
-    saturations : dict
-        Node to number of values clipped, in all repetitions, by the model.
-    registers : dict
-    bit_exact : bool
-        Every code is the model's.
-    differences : list of str
-        Counters of the hardware that differ from what was seen from outside.
-    """
-
-    codes: np.ndarray
-    saturations: dict[str, int]
+    codes: np.ndarray  # int32 (repeat, frames, rows, columns), in the order of the input
+    saturations: dict[str, int]  # node to number of values clipped, in all repetitions, by the model
     registers: dict[str, int]
-    bit_exact: bool
-    differences: list[str]
+    bit_exact: bool  # every code is the model's
+    differences: list[str]  # counters of the hardware that differ from what was seen from outside
 
 
 def stream(request: run_request.Request, config: Configuration, calibration: Sensor, frames: np.ndarray) -> Streamed:

@@ -9,7 +9,6 @@ long runs and the largest grid. Exit status: 0 when every row is as it must be, 
 import json
 import os
 import sys
-from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -28,7 +27,6 @@ from tactile_depth.accuracy import errors
 from tactile_depth.certificate import certify
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, ROWS, Configuration
-from tactile_depth.errors import InputError
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
 from tactile_depth.sensor import load
@@ -48,16 +46,13 @@ Draw = Callable[[Configuration], np.ndarray]  # frames for a configuration
 class Extreme:
     """Row of the table: frames, and options of the pipeline that differ from the default.
 
-    Attributes
-    ----------
-    saturates : bool True if values must saturate, False if they must not. Constant slopes do not saturate: with zero
-    depth around the frame their depth stays within the range.
+    Constant slopes do not saturate: with zero depth around the frame their depth stays within the range.
     """
 
     name: str
     draw: Draw
     variables: tuple[str, ...] = ()
-    saturates: bool = False
+    saturates: bool = False  # True if values must saturate, False if they must not
     repeat: int = 1
 
 
@@ -347,9 +342,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
 
 def main() -> None:
     with variables.reported("extremes"):
-        values = defaultdict(str, variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT")))
-        if values["SHORT"] not in ("", "0", "1"):
-            raise InputError(f"SHORT={values['SHORT']}: accepted are 0 and 1")
-        request = run_request.parse([f"N={values['N'] or 64}", f"SIM={values['SIM']}"])
-        out = Path(values["OUT"]) if values["OUT"] else repository.ROOT / "build" / "extremes"
-        sys.exit(run(request.columns, request.simulator, out, values["SHORT"] == "1"))
+        values = variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT"))
+        request = run_request.parse([f"N={values.get('N', 64)}", f"SIM={values.get('SIM', '')}"])
+        out = Path(values.get("OUT", repository.ROOT / "build" / "extremes"))
+        sys.exit(run(request.columns, request.simulator, out, bool(variables.number(values, "SHORT", 0, 0, 1))))

@@ -341,22 +341,17 @@ def hardware_figures() -> list[Figure]:
 def build(folder: Path) -> Path:
     """Measure and write the page; returns its path. Raises InputError, Mismatch or RuntimeError."""
     files.make(folder, ["report.html"])
-    steps: list[tuple[str, Callable[[], Any]]] = [
-        *(
-            (f"{solver}: {CONSECUTIVE} frames through the RTL", lambda s=solver: run_rtl(s, folder))
-            for solver in COLUMNS
-        ),
-        ("sweep", lambda: sweep.sweep(sweep.plan(), sweep.DEFAULT_OUT)),
-        ("extremes", lambda: run_extremes(folder / "extremes")),
-        ("reflex", lambda: document_of(reflex, "reflex")),
-        ("baselines", lambda: document_of(baselines, "baselines")),
+
+    def step(name: str, call: Callable[..., Any], *arguments: Any) -> Any:
+        print(f"{name} ..", flush=True)
+        return call(*arguments)
+
+    runs = {s: step(f"{s}: {CONSECUTIVE} frames through the RTL", run_rtl, s, folder) for s in COLUMNS}
+    rows = step("sweep", sweep.sweep, sweep.plan(), sweep.DEFAULT_OUT)
+    step("extremes", run_extremes, folder / "extremes")
+    documents = [
+        step(name, document_of, command, name) for command, name in ((reflex, "reflex"), (baselines, "baselines"))
     ]
-    done = []
-    for number, (name, step) in enumerate(steps, start=1):
-        print(f"[{number} of {len(steps)}] {name} ..", flush=True)
-        done.append(step())
-    runs = dict(zip(COLUMNS, done[: len(COLUMNS)], strict=True))
-    rows = done[len(COLUMNS)]
     figures = [
         headline(runs),
         latency_figure(runs, folder),
@@ -368,8 +363,8 @@ def build(folder: Path) -> Path:
         lanes_figure(rows, folder),
         *extremes_figures(folder / "extremes"),
         *hardware_figures(),
-        reflex_figure(done[-2]),
-        baselines_figure(done[-1]),
+        reflex_figure(documents[0]),
+        baselines_figure(documents[1]),
     ]
     target, draft = folder / "report.html", folder / ".report.html"
     draft.write_text(page(figures))

@@ -68,8 +68,8 @@ def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int
         return idst(modes, type=2) * (2 / halved * gain * 2.0 ** (last.fraction - from_modes.fraction))
 
     def forward_2d(blocks: np.ndarray, monitor: Monitor) -> np.ndarray:
-        columns = spectral_solver.row_forward(blocks, config, monitor)[..., np.argsort(place)].swapaxes(-1, -2)
-        return spectral_solver.column_forward(columns[..., order], config, monitor)[..., np.argsort(place)]
+        columns = forward(blocks, monitor).swapaxes(-1, -2)[..., order]
+        return spectral_solver.column_forward(columns, config, monitor)[..., np.argsort(place)]
 
     def exact_forward_2d(blocks: np.ndarray) -> np.ndarray:
         scale = gain * halved / 2 * 2.0 ** (config.column_forward.fraction - out_of.fraction)
@@ -77,7 +77,7 @@ def transforms(config: Configuration) -> dict[str, tuple[Callable, Callable, int
 
     def inverse_2d(modes: np.ndarray, monitor: Monitor) -> np.ndarray:
         columns = spectral_solver.column_inverse(modes[..., place], config, monitor)[..., np.argsort(order)]
-        return spectral_solver.row_inverse(columns.swapaxes(-1, -2)[..., place], config, monitor)
+        return inverse(columns.swapaxes(-1, -2), monitor)
 
     def exact_inverse_2d(modes: np.ndarray) -> np.ndarray:
         scale = 2 / halved * gain * 2.0 ** (from_modes.fraction - to_modes.fraction)

@@ -12,6 +12,7 @@ import json
 import math
 import os
 import sys
+from bisect import bisect_left
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -32,9 +33,8 @@ from tactile_depth.frames import Frames, load_frames
 from tactile_depth.latency import last_pixel_to_last_depth
 from tactile_depth.sensor import Sensor
 
-OWN = (  # in the order of `Limits`
-    *("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT"),
-)
+# In the order of `Limits`.
+OWN = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
 LIMITS = (1e-9, 1e9)  # of each
 OF_SIM = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
@@ -166,12 +166,11 @@ class Search:
         corners = []
         for solver in solvers:
             for coefficient in range(COEFFICIENT_WIDTHS[0], COEFFICIENT_WIDTHS[1] + 1):
-                row = [self.point(solver, data, coefficient) for data in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1)]
-                if self.allowed(row[-1]):
-                    corners.append(row[-1])
-                    continue
-                fits = [point for point in row if self.allowed(point)]
-                corners += fits[-1:]
+                widths = (
+                    self.point(solver, data, coefficient) for data in range(DATA_WIDTHS[1], DATA_WIDTHS[0] - 1, -1)
+                )
+                widest = next(filter(self.allowed, widths), None)
+                corners += [] if widest is None else [widest]
         outer = [a for a in corners if not any(_wider(b, a) for b in corners)]
         return min(outer, key=self.error) if outer else None
 
@@ -183,13 +182,7 @@ def _wider(a: Widths, b: Widths) -> bool:
 
 def _least(low: int, high: int, holds: Callable[[int], bool]) -> int:
     """Return the least value in low..high from which on a condition holds, by bisection; it must hold at `high`."""
-    while low < high:
-        middle = (low + high) // 2
-        if holds(middle):
-            high = middle
-        else:
-            low = middle + 1
-    return high
+    return low + bisect_left(range(low, high), True, key=holds)
 
 
 def weight(counted: Cost) -> float:
@@ -444,13 +437,12 @@ def _none(search: Search, solvers: list[str]) -> str:
         wanted = f"where {search.target:.4g} would leave a margin of {MARGIN:g} to TOLERANCE={limits.tolerance:g}"
         error = f"{search.error(near):.4g} % of peak on the worst frame tuned on"
         return f"no configuration is good enough within the limits; the nearest is {near}: {error}, {wanted}"
-    least = [
-        search.point(solver, data, COEFFICIENT_WIDTHS[0])
+    counts = {
+        at: counted
         for solver in solvers
         for data in range(DATA_WIDTHS[0], DATA_WIDTHS[1] + 1)
-        if search.cost(search.point(solver, data, COEFFICIENT_WIDTHS[0])) is not None
-    ]
-    counts = {at: counted for at in least if (counted := search.cost(at)) is not None}
+        if (counted := search.cost(at := search.point(solver, data, COEFFICIENT_WIDTHS[0]))) is not None
+    }
     near = min(counts, key=lambda at: (len(limits.broken(counts[at])), search.rank(at)))
     return (
         f"no configuration is within the limits; the nearest is {near}: beyond {', '.join(limits.broken(counts[near]))}"

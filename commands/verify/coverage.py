@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import tomllib
 
-from commands.common import repository, variables
+from commands.common import markdown, repository, variables
 from commands.verify.mutants import MANY
 
 DATA = repository.ROOT / "build" / "coverage"
@@ -112,11 +112,11 @@ def judge(points: Mapping[Point, int], waivers: Sequence[Waiver], sources: Mappi
         text = sources[point.file][point.line - 1]
         matching = [waiver for waiver in waivers if waiver.matches(point, text)]
         judged.waived.update(matching)
-        for waiver in matching:
-            if hits and not waiver.excluded:
-                judged.errors.append(
-                    f"a waiver matches a point that is reached: {waiver} matches {describe(point, text)}"
-                )
+        judged.errors += [
+            f"a waiver matches a point that is reached: {waiver} matches {describe(point, text)}"
+            for waiver in matching
+            if hits and not waiver.excluded
+        ]
         if not matching:
             judged.counted[point] = hits
     judged.errors += [f"a waiver matches nothing: {waiver}" for waiver in waivers if not judged.waived[waiver]]
@@ -137,39 +137,33 @@ def missed(points: Mapping[Point, int], sources: Mapping[str, Sequence[str]]) ->
     return "\n".join(f"{line}   ({count} edges)" if count > 1 else line for line, count in lines.items())
 
 
-def share(points: Mapping[Point, int]) -> tuple[int, int]:
-    """Return the number of points reached and the number of points."""
-    return sum(map(bool, points.values())), len(points)
-
-
-def percent(reached: int, total: int) -> float:
-    return 100 * reached / total if total else 100.0
+def reached(points: Mapping[Point, int], kind: str) -> tuple[int, int, float]:
+    """Return the number of points of a kind that are reached, the number of all, and per cent."""
+    hits = [count for point, count in points.items() if point.kind == kind]
+    count = sum(map(bool, hits))
+    return count, len(hits), 100 * count / len(hits) if hits else 100.0
 
 
 def table(points: Mapping[Point, int]) -> str:
     """Return the table of reached points of each file and kind."""
 
-    def row(name: str, chosen: Mapping[Point, int]) -> str:
-        cells = []
-        for kind in GATES:
-            reached, total = share({point: hits for point, hits in chosen.items() if point.kind == kind})
-            cells.append(f"{reached:6}/{total:<6}{percent(reached, total):6.1f} %" if total else " " * 21)
-        return f"{name:28}" + "".join(cells)
+    def row(name: str, chosen: Mapping[Point, int]) -> list[str]:
+        figures = [reached(chosen, kind) for kind in GATES]
+        return [name, *(f"{count}/{total} {percent:.1f} %" if total else "-" for count, total, percent in figures)]
 
     files = sorted({point.file for point in points})
-    rows = [f"{'':28}" + "".join(f"{kind:>16}     " for kind in GATES)]
-    rows += [row(file, {point: hits for point, hits in points.items() if point.file == file}) for file in files]
-    return "\n".join([*rows, row("all", points)])
+    rows = [row(file, {point: hits for point, hits in points.items() if point.file == file}) for file in files]
+    return markdown.table(("file", *GATES), [*rows, row("all", points)])
 
 
 def gate(points: Mapping[Point, int]) -> list[str]:
     """Return one line for each figure below its gate."""
-    below = []
-    for kind, least in GATES.items():
-        reached, total = share({point: hits for point, hits in points.items() if point.kind == kind})
-        if percent(reached, total) < least:
-            below.append(f"{kind}: {percent(reached, total):.2f} % of {total}, at least {least:g} % are asked for")
-    return below
+    figures = {kind: reached(points, kind) for kind in GATES}
+    return [
+        f"{kind}: {percent:.2f} % of {total}, at least {GATES[kind]:g} % are asked for"
+        for kind, (_, total, percent) in figures.items()
+        if percent < GATES[kind]
+    ]
 
 
 def judge_bins(hits: Mapping[str, int], bins: Mapping[str, str | None]) -> tuple[list[str], list[str]]:

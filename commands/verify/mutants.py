@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from commands.common import repository
@@ -55,15 +56,15 @@ class Mutant:
     what: str  # description for the report: kind, port of the cell, wire, position in the source
 
 
-def described(line: str) -> str:
+def options(line: str) -> dict[str, str]:
+    """Return the options of a line of Yosys' `mutate`, name to the word behind it; the first of several."""
     words = line.split()
-    option = {
-        name: words[words.index(name) + 1]
-        for name in ("-mode", "-port", "-portbit", "-wire", "-wirebit")
-        if name in words
-    }
-    places = re.findall(r"-src (\S+)", line)
-    place = next((f" {Path(src).name}" for src in places), "")
+    return dict(reversed([*pairwise(words)]))
+
+
+def described(line: str) -> str:
+    option = options(line)
+    place = f" {Path(option['-src']).name}" if "-src" in option else ""
     wire = f" {option['-wire']}[{option['-wirebit']}]" if "-wire" in option else ""
     return f"{option['-mode']} {option['-port']}[{option['-portbit']}]{wire}{place}"
 
@@ -85,8 +86,8 @@ def counts(line: str, cells: Mapping, initial: set[int]) -> bool:
     After a register with an initial value Yosys would replace the register by the mutant and lose the value; the pins
     that the register drives are mutated instead.
     """
-    words = line.split()
-    mode, name, port, bit = (words[words.index(option) + 1] for option in ("-mode", "-cell", "-port", "-portbit"))
+    option = options(line)
+    mode, name, port, bit = (option[f"-{each}"] for each in ("mode", "cell", "port", "portbit"))
     cell = cells[name.removeprefix("\\")]
     driver = cell["connections"][port][int(bit)]
     if port == "Q" and driver in initial:

@@ -5,14 +5,14 @@ BASE is a commit, by default the merge base with origin/main. Uncommitted change
 names changed files that many tests depend on: run `make test` for these.
 """
 
-import subprocess
+import os
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from commands.common import repository, variables
-from commands.common.repository import ROOT
+from commands.common.repository import ROOT, git
 from commands.verify.test import ONE_POWER_UP, all_succeed, lint, pytest, tests_of
 from tactile_depth.errors import InputError
 
@@ -30,34 +30,26 @@ class Affected:
     shared: list[str]
 
 
-def git(*words: str) -> str:
-    """Return the output of a git command in the root of the repository. Raises InputError: the command failed."""
-    ended = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
-    if ended.returncode:
-        raise InputError(f"git {' '.join(words)}: {ended.stderr.strip() or 'failed'}")
-    return ended.stdout
-
-
 def base_commit(base: str) -> str:
     """Return the commit to compare with. Raises InputError: there is no such commit, or no BASE and no origin/main."""
-    if base:
-        if base.startswith("-"):
-            raise InputError(f"BASE={base}: accepted is a commit, a branch or a tag")
-        try:
-            return git("rev-parse", "--verify", "--quiet", f"{base}^{{commit}}").strip()
-        except InputError:
-            raise InputError(f"BASE={base}: no such commit: give a commit, a branch or a tag") from None
-    try:
-        return git("merge-base", UPSTREAM, "HEAD").strip()
-    except InputError:
-        raise InputError(f"there is no {UPSTREAM} to compare with: give BASE=<commit>") from None
+    if not base:
+        found = git("merge-base", UPSTREAM, "HEAD")
+        mend = f"there is no {UPSTREAM} to compare with: give BASE=<commit>"
+    else:
+        found = git("rev-parse", "--verify", "--quiet", "--end-of-options", f"{base}^{{commit}}")
+        mend = f"BASE={base}: no such commit: give a commit, a branch or a tag"
+    if found is None:
+        raise InputError(mend)
+    return found.decode().strip()
 
 
 def changed_files(commit: str) -> list[str]:
-    """Return the files that differ from a commit, untracked files included."""
+    """Return the files that differ from a commit, untracked files included. Raises InputError: git failed."""
     tracked = git("diff", "--name-only", "-z", commit)
     untracked = git("ls-files", "--others", "--exclude-standard", "-z")
-    return sorted({name for name in (tracked + untracked).split("\0") if name})
+    if tracked is None or untracked is None:
+        raise InputError(f"git does not list what differs from {commit}: run `git status`")
+    return sorted({os.fsdecode(name) for name in (tracked + untracked).split(b"\0") if name})
 
 
 def affected(names: Iterable[str]) -> Affected:

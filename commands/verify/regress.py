@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from commands.common import repository, variables
+from commands.common import markdown, repository, variables
 from commands.run import bench
 from tactile_depth.common.round_saturate import Monitor
 from tactile_depth.configuration import Configuration
@@ -268,20 +268,20 @@ PARTS: dict[str, Callable[[Part, tqdm, int], None]] = {
 
 def table(parts: list[Part]) -> str:
     """Return a table with a row for each line of a part, and the sum of the part below."""
-    rows = [f"{'part':10}{'what':52}{'simulator':>10}{'runs':>8}{'codes':>13}{'different':>10}{'seconds':>9}"]
+    rows, failures = [], []
     for part in parts:
-        totals = [0, 0, 0]
+        sums = np.zeros(3, int)
         for line in part.lines:
             runs = line.get("cases", line.get("runs", line.get("frames", 1)))
-            figures = [runs, line.get("codes", 0), line.get("different", 0)]
-            totals = [a + b for a, b in zip(totals, figures, strict=True)]
-            cells = f"{figures[0]:8,}{figures[1]:13,}{figures[2]:10,}{line['seconds']:9.0f}"
-            rows.append(f"{part.name:10}{line['what'][:51]:52}{line['simulator']:>10}{cells}")
-        verdict = f"{len(part.failures)} FAILED" if part.failures else "all passed"
-        cells = f"{totals[0]:8,}{totals[1]:13,}{totals[2]:10,}{part.seconds:9.0f}"
-        rows.append(f"{part.name:10}{'= ' + verdict:62}{cells}")
-        rows += [f"    {failure}" for failure in part.failures]
-    return "\n".join(rows)
+            figures = np.array([runs, line.get("codes", 0), line.get("different", 0)])
+            sums += figures
+            cells = (*(f"{figure:,}" for figure in figures), f"{line['seconds']:.0f}")
+            rows.append((part.name, line["what"], line["simulator"], *cells))
+        verdict = f"= {len(part.failures)} FAILED" if part.failures else "= all passed"
+        rows.append((part.name, verdict, "", *(f"{figure:,}" for figure in sums), f"{part.seconds:.0f}"))
+        failures += [f"    {part.name}: {failure}" for failure in part.failures]
+    head = ("part", "what", "simulator", "runs", "codes", "different", "seconds")
+    return "\n".join([markdown.table(head, rows), *failures])
 
 
 def matrix(part: Part) -> str:
@@ -291,10 +291,8 @@ def matrix(part: Part) -> str:
         for kind, number in line.get("kinds", {}).items():
             counts.setdefault(kind, Counter())[f"{line['grid']} {line['simulator']}"] += number
     devices = sorted({device for row in counts.values() for device in row})
-    lines = [f"{chr(ord('a') + index)}: {device}" for index, device in enumerate(devices)]
-    lines.append(f"{'':14}" + "".join(f"{chr(ord('a') + index):>8}" for index in range(len(devices))))
-    lines += [f"{kind:14}" + "".join(f"{row[device]:8,}" for device in devices) for kind, row in counts.items()]
-    return "\n".join(lines)
+    rows = [(device, *(f"{row[device]:,}" for row in counts.values())) for device in devices]
+    return markdown.table(("device", *counts), rows)
 
 
 def main() -> None:

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 from commands.common import repository, variables
 from commands.common.simulator import SIMULATORS
-from tactile_depth.errors import InputError
 
 WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
 ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from a second random power-up state too
@@ -47,9 +46,7 @@ def main() -> None:
         values = variables.given(sys.argv[1:], ("CORE", "SIM"))
         environment = {}
         if "SIM" in values:
-            if values["SIM"] not in SIMULATORS:
-                raise InputError(f"SIM={values['SIM']} is unknown: accepted are {' and '.join(SIMULATORS)}")
-            environment["SIM"] = values["SIM"]
+            environment["SIM"] = variables.choice(values, "SIM", SIMULATORS)
         if "CORE" in values:
             cores = repository.chosen(values["CORE"])
             processes = [pytest(tests_of(cores)), lint(cores)]  # a wrong result is more important than style

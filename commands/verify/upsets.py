@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from commands.common import repository, variables
+from commands.common import markdown, repository, variables
 from commands.common import simulator as simulation
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import synthetic
@@ -59,10 +59,9 @@ def table(results: list[dict[str, Any]]) -> str:
         name = "settings (held until rewritten)" if result["setting"] else result["group"]
         for row in (name, "all but settings") if not result["setting"] else (name,):
             rows.setdefault(row, Counter())[result["outcome"]] += 1
-    lines = ["".join([f"{'':34}", *(f"{outcome:>13}" for outcome in OUTCOMES)])]
-    for name in sorted(rows, key=lambda row: (row.startswith(("all", "settings")), row)):
-        lines.append("".join([f"{name:34}", *(f"{rows[name][outcome]:13}" for outcome in OUTCOMES)]))
-    return "\n".join(lines)
+    names = sorted(rows, key=lambda row: (row.startswith(("all", "settings")), row))
+    cells = [(name, *(f"{rows[name][outcome]}" for outcome in OUTCOMES)) for name in names]
+    return markdown.table(("module", *OUTCOMES), cells)
 
 
 def main() -> None:
