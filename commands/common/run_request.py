@@ -236,12 +236,7 @@ def threshold_code(config: Configuration) -> int:
 
 
 def check_grid(request: Request) -> None:
-    """Refuse a grid, a solver or lanes before frames are read.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a grid, a solver or lanes before frames are read. Raises InputError."""
     Configuration(columns=request.columns, rows=request.rows, solver=request.solver, lanes=request.lanes)
 
 

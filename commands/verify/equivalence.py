@@ -323,17 +323,15 @@ class Miter(Gates):
         self.next.update(
             {self.twin[literal]: read(other, following) for literal, following, _ in source.latches if literal in apart}
         )
-        self.start = {self.latch[literal]: int(start == 1) for literal, _, start in source.latches}
-        self.start.update({self.twin[literal]: int(start == 1) for literal, _, start in source.latches})
 
     def write(self, path: Path, apiece: bool = False) -> None:
         """Write a binary AIGER file with one output, any difference; with `apiece` one output for each of `wrong`."""
         outputs = [*self.wrong.values()] if apiece else [self.bad]
         latches = [(self.started, 1, 0)]
         latches += [
-            (latch, self.next.get(latch, latch), self.start[latch])
+            (table[literal], self.next.get(table[literal], table[literal]), int(start == 1))
             for table in (self.latch, self.twin)
-            for latch in table.values()
+            for literal, _, start in self.source.latches
         ]
         top = self.first - 1 + len(self.ands)
         head = f"aig {top} {self.input_count} {len(latches)} {len(outputs)} {len(self.ands)}\n"
