@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulation of a mapped netlist of the design (gate_sim.cpp): codes, accesses, toggles without and with delays."""
 
+import itertools
 import subprocess
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
@@ -80,20 +82,14 @@ class Encoder:
 
     def __init__(self, delays: Delays, ones: Iterable[Bit]) -> None:
         self.delays = delays
-        self.number: dict[Bit, int] = {"0": 0, "x": 0, "1": 1, **dict.fromkeys(ones, 1)}
-        self.count = 2
+        self.net = defaultdict[Bit, int](
+            itertools.count(2).__next__, {"0": 0, "x": 0, "1": 1, **dict.fromkeys(ones, 1)}
+        )
         self.known: dict[str, dict[str, tuple[list[str], int]]] = {}
-
-    def net(self, bit: Bit) -> int:
-        """Return the number of a net."""
-        if bit not in self.number:
-            self.number[bit] = self.count
-            self.count += 1
-        return self.number[bit]
 
     def bits(self, values: Sequence[Bit]) -> list[int]:
         """Return a list of nets."""
-        return [len(values), *map(self.net, values)]
+        return [len(values), *(self.net[bit] for bit in values)]
 
     def gates(self, gates: Iterable[Gate]) -> list[int]:
         """Return gates, one for each output."""
@@ -105,10 +101,10 @@ class Encoder:
             for pin, (inputs, table) in self.known[cell.name].items():
                 if pin not in gate.pins:
                     continue
-                nets = [self.net(gate.pins[name][0]) for name in inputs]
+                nets = [self.net[gate.pins[name][0]] for name in inputs]
                 causes = [clock_pin(cell)] if cell.flip_flop else inputs
                 pairs = [delays.get((name, pin), (0.0, 0.0)) for name in causes]
-                words += [table & 0xFFFFFFFF, table >> 32, self.net(gate.pins[pin][0]), len(nets)]
+                words += [table & 0xFFFFFFFF, table >> 32, self.net[gate.pins[pin][0]], len(nets)]
                 for row in (nets, *([round(1000 * pair[edge]) for pair in pairs] for edge in (0, 1))):
                     words += row + [0] * (LARGEST_GATE - len(row))
                 count += 1
@@ -136,14 +132,15 @@ def simulate(
     words.append(len(macros))
     for instance, macro in zip(netlist.macros, macros, strict=True):
         words += encoder.macro(instance, macro)
-    words += [encoder.net(ports[name][0]) for name in ("rst", "s_axis_tvalid", "s_axis_tlast", "s_axis_tuser")]
+    words += [encoder.net[ports[name][0]] for name in ("rst", "s_axis_tvalid", "s_axis_tlast", "s_axis_tuser")]
     words += encoder.bits(ports["s_axis_tdata"])
-    words += [encoder.net(ports[name][0]) for name in ("s_axis_tready", "m_axis_tvalid")]
+    words += [encoder.net[ports[name][0]] for name in ("s_axis_tready", "m_axis_tvalid")]
     words += encoder.bits(ports["m_axis_tdata"])
     words += [stimulus.columns, stimulus.frames, pixels.size, *map(int, pixels)]
     words += [codes.size, *(int(code) & mask for code in codes)]
     words += [stimulus.window.start, len(stimulus.window), round(1000 * other_ns)]
-    content = np.array([encoder.count, *words], dtype=np.int64).astype(np.uint32).tobytes()
+    nets = max(encoder.net.values()) + 1
+    content = np.array([nets, *words], dtype=np.int64).astype(np.uint32).tobytes()
     program = folder / "gate_sim"
     subprocess.run(["c++", "-O2", "-o", program, SOURCE], capture_output=True, check=True)
     result = subprocess.run([program], input=content, cwd=folder, capture_output=True, check=False)
@@ -152,10 +149,8 @@ def simulate(
 
     received, wrong, clocks, unsettled, *counts = np.frombuffer(result.stdout, dtype="<i8").tolist()
     accesses = [(reads / clocks, writes / clocks) for reads, writes in zip(counts[::2], counts[1::2], strict=False)]
-    nets = encoder.count
     spans = ((-3 * nets, clocks), (-2 * nets, len(stimulus.window)), (-nets, len(stimulus.window)))
     frame, window, window_with_delays = (
-        {bit: counts[start + place] / max(number, 1) for bit, place in encoder.number.items()}
-        for start, number in spans
+        {bit: counts[start + place] / max(number, 1) for bit, place in encoder.net.items()} for start, number in spans
     )
     return Activity(received, wrong, unsettled, accesses[: len(macros)], frame, window, window_with_delays)
