@@ -213,20 +213,15 @@ def _largest(values: list[float | None]) -> float | None:
 
 def faults(extreme: Extreme, row: Row) -> list[str]:
     """Return one line for each result that is out of bounds."""
-    broken = []
-    if not row.bit_exact:
-        broken.append("RTL differs from the model, or a frame differs from its repetition")
-    if not row.registers_agree:
-        broken.append("the counters of the hardware differ from the events at its pins")
-    if row.flagged != bool(row.saturations):
-        broken.append(
-            "the status bit is set without a saturation" if row.flagged else "a saturation did not set the status bit"
-        )
-    if row.wrapped:
-        broken.append(f"{row.wrapped} codes wrapped around")
-    if extreme.saturates != bool(row.saturations):
-        broken.append("it must saturate" if extreme.saturates else "it must not saturate")
-    return [f"{row.extreme}, {row.solver}: {fault}" for fault in broken]
+    flag = "the status bit is set without a saturation" if row.flagged else "a saturation did not set the status bit"
+    checks = (
+        (not row.bit_exact, "RTL differs from the model, or a frame differs from its repetition"),
+        (not row.registers_agree, "the counters of the hardware differ from the events at its pins"),
+        (row.flagged != bool(row.saturations), flag),
+        (row.wrapped, f"{row.wrapped} codes wrapped around"),
+        (extreme.saturates != bool(row.saturations), f"it must {'' if extreme.saturates else 'not '}saturate"),
+    )
+    return [f"{row.extreme}, {row.solver}: {fault}" for broken, fault in checks if broken]
 
 
 # Drift of the model: the error of a frame must not depend on the number of frames before it.

@@ -91,17 +91,14 @@ def kept(path: Path, content: bytes) -> tuple[dict[Key, Row], int]:
     """
     mend = "move it away, or give another folder with OUT="
     complete = content[: content.rfind(b"\n") + 1]
-    header = _line(HEADER)
-    if not complete:
-        if not header.startswith(content):
-            raise InputError(f"{path}: not a table of this sweep: {mend}")
+    if not complete and _line(HEADER).startswith(content):
         return {}, 0
     try:
-        lines = list(csv.reader(io.StringIO(complete.decode()), strict=True))
+        lines = [*csv.reader(io.StringIO(complete.decode()), strict=True)]
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: not a readable table ({error}): {mend}") from error
-    if lines[0] != list(HEADER):
-        raise InputError(f"{path}: its columns are those of another version: {mend}")
+    if lines[:1] != [list(HEADER)]:
+        raise InputError(f"{path}: its columns are not those of this version: {mend}")
     rows = {}
     for number, cells in enumerate(lines[1:], start=2):
         if len(cells) != len(HEADER):
