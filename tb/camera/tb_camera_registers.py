@@ -150,7 +150,7 @@ async def access(dut: Any, name: str) -> None:
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def offsets(dut: Any) -> None:
-    """What is not listed is refused, and what differs in one bit from a register is not taken for it."""
+    """Refuse registers that are not listed, and addresses that differ from a register in one bit."""
     async with checked(dut) as checker:
         values = dict(checker.model.values)
         near = {offset ^ 1 << bit for offset in OFFSET.values() for bit in range(2, ADDRESS_WIDTH)}
