@@ -10,6 +10,7 @@ module protocol_table_access (
   input  logic        write_refused,
   input  logic        read,
   input  logic        read_late,
+  output logic        given_write,
   output logic        holds,
   output logic        counts_late_data,
   output logic        counts_late_refused,
@@ -18,7 +19,8 @@ module protocol_table_access (
 
   logic reset, live = 1'b0, asked, answered;
   assign reset = rst | ~holds;
-  assign holds = ~(asked & (read | write)) & ~(write & (rst | write_refused));
+  assign holds = ~(asked & (read | write));
+  assign given_write = write & ~(rst | write_refused);
   always_ff @(posedge clk) begin
     live <= live | reset;
     asked <= read & read_late & ~reset;

@@ -8,13 +8,15 @@ module protocol_table_banks (
   input  logic rst,
   input  logic write,
   input  logic write_refused,
+  output logic given_write,
   output logic holds,
   output logic counts
 );
 
   logic live = 1'b0;
   always_ff @(posedge clk) live <= live | rst;
-  assign holds = ~(write & (rst | write_refused));
+  assign given_write = write & ~(rst | write_refused);
+  assign holds = 1'b1;
   assign counts = live;
 
 endmodule

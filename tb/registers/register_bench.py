@@ -16,7 +16,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.registers.axil_port import strobed_bits
-from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS
+from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, WORD
 from tb.stream import CLOCK_NS, REGRESS
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
@@ -140,10 +140,11 @@ class RegisterBench:
             await self.clock(write, any_offset(), rng.random() < resets, **self.random_inputs())
 
     async def other_offsets(self, registers: tuple[str, ...]) -> None:
-        """Write and read at every offset that differs in one bit from that of a register."""
-        for name in registers:
+        """Write and read at every offset that differs in one bit from that of a register, which was written before."""
+        for name in registers * 8:
             for bit in range(32):
                 offset = REGISTERS[name].offset ^ 1 << bit
+                await self.clock((name, WORD, WHOLE), **self.random_inputs())
                 await self.clock((offset, self.random.getrandbits(32) | 1, WHOLE), offset, **self.random_inputs())
                 await self.clock(read_at=name, **self.random_inputs())
 
