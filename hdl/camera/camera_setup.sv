@@ -42,7 +42,8 @@ module camera_setup #(
   output logic [7:0]            found
 );
 
-  localparam logic [1:0] VerifiedWrite = 2'd0, PlainWrite = 2'd1, Pins = 2'd3;  // and 2, a comparison alone
+  typedef enum logic [1:0] {VerifiedWrite, PlainWrite, Comparison, Pins} kind_e;
+  typedef enum logic [1:0] {Write, PutAddress, ReadBack} step_e;
   localparam logic [7:0] WriteId = 8'(DeviceId), ReadId = 8'(DeviceId + 1);
   localparam int AddressBits = 9 * AddressBytes;
   localparam int LongestBits = 18 + AddressBits;  // of a transmission, without start and stop
@@ -55,7 +56,7 @@ module camera_setup #(
   // The list.
 
   logic [25:0] word;
-  logic [1:0] kind;
+  kind_e kind;
   logic [15:0] address;
   logic [7:0] data;
   assign {kind, address, data} = word;
@@ -76,8 +77,7 @@ module camera_setup #(
   assign sent = sending & quarter_ends & quarter == 2'd3 & symbol == stop_symbol;
 
   logic load;
-  logic [1:0] step, load_step;
-  localparam logic [1:0] Write = 2'd0, PutAddress = 2'd1, ReadBack = 2'd2;
+  step_e step, load_step;
   logic [AddressBits-1:0] address_bits;
   if (AddressBytes == 1) begin : g_short
     assign address_bits = {address[7:0], 1'b1};
@@ -122,12 +122,14 @@ module camera_setup #(
       case (load_step)
         Write: bits <= {WriteId, 1'b1, address_bits, data, 1'b1};
         PutAddress: bits <= {WriteId, 1'b1, address_bits, 9'd511};
-        default: bits <= {ReadId, 1'b1, {(LongestBits - 9) {1'b1}}};
+        ReadBack: bits <= {ReadId, 1'b1, {(LongestBits - 9) {1'b1}}};
+        default: ;
       endcase
       case (load_step)  // behind the start and the bits
         Write: stop_symbol <= SymbolWidth'(19 + AddressBits);
         PutAddress: stop_symbol <= SymbolWidth'(10 + AddressBits);
-        default: stop_symbol <= SymbolWidth'(19);
+        ReadBack: stop_symbol <= SymbolWidth'(19);
+        default: ;
       endcase
     end
     if (rst || restart) sending <= 1'b0;
@@ -151,12 +153,13 @@ module camera_setup #(
     advance = 1'b0;
     if (state == Decode) begin
       load = kind != Pins;
-      load_step = kind == VerifiedWrite || kind == PlainWrite ? Write : PutAddress;
+      if (kind == Comparison) load_step = PutAddress;
     end else if (state == Wait) begin
       advance = milliseconds == '0;
     end else if (state == Send && sent) begin
       load = step == PutAddress || (step == Write && kind == VerifiedWrite);
-      load_step = step == Write ? PutAddress : ReadBack;
+      if (step == Write) load_step = PutAddress;
+      else load_step = ReadBack;
       advance = step == ReadBack ? ~differs : step == Write && kind == PlainWrite;
     end
   end
