@@ -99,8 +99,8 @@ module fv_reference_capture #(
     if (counts && seen && !(first && state == Armed)) assume (!in_pixel[16]);
   end
 
-  // Clocks of a node so far: four to fetch it, then for each gain one to start the divider, which counts its bits down.
-  localparam int GainSteps = Width + 3;
+  // Clocks of a node so far: five to fetch it, then for each gain one to start the divider, which counts its bits down.
+  localparam int FetchSteps = 5, GainSteps = Width + 3;
   localparam int Fetching = 3, Divides = 4;  // states of the core
   logic in_step, fetches, starts, divides;
   int steps;
@@ -108,12 +108,13 @@ module fv_reference_capture #(
   assign starts = dut.state == 3'(Divides) && dut.divide_start && !dut.u_divide.dividing && !dut.gains_valid;
   assign divides = dut.state == 3'(Divides) && !dut.divide_start && dut.u_divide.dividing && !dut.gains_valid;
   always_comb begin
-    steps = (32'(dut.divide_node) + 32'(dut.gains_valid)) * (4 + 3 * GainSteps);
-    if (fetches) steps = steps + 32'(dut.step);
-    else steps = steps + 4 + 32'(dut.channel) * GainSteps;
+    steps = (32'(dut.divide_node) + 32'(dut.gains_valid)) * (FetchSteps + 3 * GainSteps);
+    if (fetches) steps = steps + (dut.fetched ? FetchSteps - 1 : 32'(dut.step));
+    else steps = steps + FetchSteps + 32'(dut.channel) * GainSteps;
     if (divides) steps = steps + GainSteps - 1 - 32'(dut.u_divide.bits_to_come);
     in_step = 32'(to_done) == Clocks - 1 - steps && (fetches || ((starts || divides) && 32'(dut.channel) < 3))
-        && !(dut.gains_valid && dut.step != '0) && !(divides && 32'(dut.u_divide.bits_to_come) >= GainSteps - 1);
+        && !(dut.gains_valid && (dut.step != '0 || dut.fetched)) && !(dut.fetched && (dut.step != '0 || !fetches))
+        && !(divides && 32'(dut.u_divide.bits_to_come) >= GainSteps - 1);
   end
 
   always_comb begin
