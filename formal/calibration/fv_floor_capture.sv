@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_floor_capture: a capture begins with the first frame behind a request, takes 2^k frames, and is done 6 clocks
-// behind the last word of the last row of blocks; in the last frame each node is written once, 5 clocks behind the last
+// fv_floor_capture: a capture begins with the first frame behind a request, takes 2^k frames, and is done 7 clocks
+// behind the last word of the last row of blocks; in the last frame each node is written once, 6 clocks behind the last
 // word of its block, nothing else is, nothing while idle; no sum is read before it was written, or in the clock that
 // writes it. In a second part (Sums 1): an arbitrary depth of a capture, the only one that is not zero, is added once
 // to its node and to no other, and the floor of a node is its sum's mean, ties to even; what does nothing but add does
