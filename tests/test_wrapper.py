@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from commands.common import repository, wrapper
+from commands.common import simulator as simulation
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
@@ -83,6 +84,17 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
 
 
+def test_with_a_camera_the_module_has_the_front_end_inside(tmp_path: Path) -> None:
+    """Elaborate the module in Icarus, which refuses an unknown port or parameter."""
+    choices = ("N=64", "SOLVER=tridiagonal", "CAMERA=raw10", "BAYER=grbg")
+    assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
+    path = tmp_path / "tactile_depth_finger.sv"
+    assert "camera_front_end #(" in path.read_text()
+    files, build = [*repository.sources(), path], tmp_path / "build"
+    build.mkdir()
+    simulation.build("icarus", "tactile_depth_finger", files, {}, build, log=build / "build.log")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -90,6 +102,7 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
         (("NAME=Finger",), "NAME=Finger: accepted are small letters"),
         (("NAME=finger", "TABLES=finger"), "with a / at its end"),
         (("NAME=finger", "LANES=2"), "LANES"),
+        (("NAME=finger", "CAMERA=raw9"), "CAMERA=raw9 is unknown: accepted are"),
     ],
 )
 def test_bad_input_ends_with_one_line(arguments: tuple[str, ...], message: str) -> None:

@@ -3,7 +3,8 @@
 
 Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and the variables of `make sim` that choose
 a configuration. The module has the ports of tactile_depth. It and its table files go into the folder OUT. Modules for
-several configurations fit into one design, if each has its own folder of tables.
+several configurations fit into one design, if each has its own folder of tables. With CAMERA, and BAYER and WINDOW, the
+module has the camera front end inside, and its s_axis takes the words of that camera.
 """
 
 import os
@@ -22,7 +23,7 @@ NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 def main() -> None:
     with variables.reported("wrap"):
-        values = variables.given(sys.argv[1:], ("NAME", "OUT", "TABLES", *synth.CONFIGURING))
+        values = variables.given(sys.argv[1:], ("NAME", "OUT", "TABLES", *synth.CONFIGURING, *run_request.CAMERA))
         name = values.pop("NAME", "")
         if not NAME.fullmatch(name):
             raise InputError(f"NAME={name}: accepted are small letters, digits and _, beginning with a letter")
@@ -30,11 +31,13 @@ def main() -> None:
         tables = values.pop("TABLES", "./")
         if not tables.endswith("/") or '"' in tables:
             raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
-        config, calibration, _ = synth.configured(
-            run_request.parse([f"{key}={value}" for key, value in values.items()])
+        accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
+        config, calibration, camera = synth.configured(
+            run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
         )
         with files.workspace(out) as work:
-            path = wrapper.write(work, name, top_parameters(config, calibration.pixel_pitch_mm), tables)
+            parameters = top_parameters(config, calibration.pixel_pitch_mm)
+            path = wrapper.write(work, name, parameters, tables, camera)
             write_roms(work, calibration, config)
             names = [file.name for file in work.iterdir()]
             files.replace(work, names, out)

@@ -13,6 +13,7 @@ import pytest
 from commands import __main__ as entry
 from commands.__main__ import COMMANDS
 from commands.common.repository import ROOT
+from commands.hardware import asic
 from commands.run import sim
 
 
@@ -72,6 +73,12 @@ def test_a_value_that_is_not_accepted_is_named(
     assert refusal(monkeypatch, capsys, *words.split()) == f"make {command}: {REFUSED[words]}"
 
 
+def require_library() -> None:
+    """Skip a test of `make asic` without its default library."""
+    if not asic.DEFAULT_LIB.exists():
+        pytest.skip(f"{asic.DEFAULT_LIB} is not installed: apt-get install qflow-tech-osu018")
+
+
 LANES = {
     "LANES=2 SOLVER=spectral": "LANES=2 with SOLVER=spectral: it puts out one depth value per clock: set LANES=1, or "
     "SOLVER=tridiagonal",
@@ -89,6 +96,8 @@ LANES = {
 def test_lanes_that_cannot_be_built_are_refused(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str, words: str
 ) -> None:
+    if command == "asic":
+        require_library()
     line = refusal(monkeypatch, capsys, *command.split(), *words.split())
     assert line == f"make {command.split()[0]}: {LANES[words]}"
 
@@ -100,8 +109,7 @@ def test_an_out_that_is_too_long_is_refused(
     module = importlib.import_module(f"commands.{entry.COMMANDS[command]}.{command}")
     if command == "asic":
         monkeypatch.setattr(module, "TOOLS", {})
-        if not module.DEFAULT_LIB.exists():
-            pytest.skip(f"{module.DEFAULT_LIB} is not installed: apt-get install qflow-tech-osu018")
+        require_library()
     line = refusal(monkeypatch, capsys, command, f"OUT={tmp_path / ('x' * 300)}")
     assert "cannot be written (File name too long): give a folder that can" in line
     assert list(tmp_path.iterdir()) == []
