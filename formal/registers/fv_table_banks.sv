@@ -70,8 +70,8 @@ module fv_table_banks
       if (read_offset == FloorCaptureOffset) floor_reads: assert (read_data == 32'(floor_status.busy) << FloorCaptureBusyBit);
       if (asks) refused_or_not: assert (write_refused == !may_start);
       if (write_offset != CaptureOffset && write_offset != FloorCaptureOffset) no_other: assert (!write_refused);
-      if (is_reference) reference_asked: assert (reference_request == (write && asks));
-      if (is_floor) floor_asked: assert (floor_request == (write && asks));
+      if (is_reference) reference_asked: assert (reference_request == (write && asks && may_start));
+      if (is_floor) floor_asked: assert (floor_request == (write && asks && may_start));
 
       changes_over: cover (frame_start && requested && has && bank);
       after_a_capture: cover (frame_start && requested && is_floor && !rst);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_table_access: no access in the clock after a read of a table; no write in a reset, and none that is refused.
+// protocol_table_access: no access in the clock after a read of a table; no write in a reset.
 
 `default_nettype none
 
@@ -7,7 +7,6 @@ module protocol_table_access (
   input  logic        clk,
   input  logic        rst,
   input  logic        write,
-  input  logic        write_refused,
   input  logic        read,
   input  logic        read_late,
   output logic        given_write,
@@ -20,7 +19,7 @@ module protocol_table_access (
   logic reset, live = 1'b0, asked, answered;
   assign reset = rst | ~holds;
   assign holds = ~(asked & (read | write));
-  assign given_write = write & ~(rst | write_refused);
+  assign given_write = write & ~rst;
   always_ff @(posedge clk) begin
     live <= live | reset;
     asked <= read & read_late & ~reset;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_table_banks: no write in a reset, and none that is refused.
+// protocol_table_banks: no write in a reset.
 
 `default_nettype none
 
@@ -7,7 +7,6 @@ module protocol_table_banks (
   input  logic clk,
   input  logic rst,
   input  logic write,
-  input  logic write_refused,
   output logic given_write,
   output logic holds,
   output logic counts
@@ -15,7 +14,7 @@ module protocol_table_banks (
 
   logic live = 1'b0;
   always_ff @(posedge clk) live <= live | rst;
-  assign given_write = write & ~(rst | write_refused);
+  assign given_write = write & ~rst;
   assign holds = 1'b1;
   assign counts = live;
 

@@ -148,7 +148,7 @@ module axil_registers
   logic [3:0] closed;
   logic reference_request, floor_request;
   table_banks #(.Present(Present)) u_banks (
-    .clk, .rst, .cold_rst, .write(write_allowed), .write_offset, .write_ones, .write_refused(capture_refused),
+    .clk, .rst, .cold_rst, .write, .write_offset, .write_ones, .write_refused(capture_refused),
     .read_offset, .read_data(bank_data), .frame_start, .table_bank, .table_in_use, .closed,
     .reference_request, .reference_status, .floor_request, .floor_status
   );
@@ -160,7 +160,7 @@ module axil_registers
     .GradientWords(GradientWords), .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords),
     .FloorWords(FloorWords)
   ) u_access (
-    .clk, .rst, .write(write_allowed), .write_offset, .write_ones, .write_mask, .write_refused(entry_refused),
+    .clk, .rst, .write, .write_offset, .write_ones, .write_mask, .write_refused(entry_refused),
     .read, .read_offset, .read_data(entry_data), .read_late, .late_data, .late_refused,
     .select(settings[TableSelectSetting][TableSelectSelectLsb+:TableSelectSelectWidth]), .closed, .table_command,
     .table_answer

@@ -5,7 +5,8 @@
 // A write of TABLE_LOW makes that entry {TABLE_HIGH, TABLE_LOW}: table_command.write is high with `write`. A read of
 // TABLE_HIGH or TABLE_LOW raises table_command.read in the clock after `read`; the entry's words shall stand on
 // table_answer from 3 clocks later until the next such read, and stand on late_data then. Refused: what has no entry, a
-// write with a byte that is not strobed, and a write of a table that is `closed`. In a reset neither is commanded.
+// write with a byte that is not strobed, and a write of a table that is `closed`. A write that is refused does nothing.
+// In a reset neither is commanded.
 // Model: models/tactile_depth/registers/table_access.py.
 
 `default_nettype none
@@ -62,8 +63,8 @@ module table_access
   end
   assign last = IndexWidth'(size - 32'd1);
   assign has_entry = 32'(index) < size;
-  assign writes = write && write_offset == TableLowOffset;
   assign write_refused = write_offset == TableLowOffset && (!has_entry || !(&write_mask) || closed[select]);
+  assign writes = write && write_offset == TableLowOffset && !write_refused;
   assign reads = asked && has_entry && !rst;
   assign read_late = read_offset == TableHighOffset || read_offset == TableLowOffset;
   assign late_refused = !had_entry;

@@ -9,8 +9,8 @@
 // does. A start written to CAPTURE or FLOOR_CAPTURE raises the request in the clock of the write; from the next clock
 // to that of `done`, `busy` shall be high. Refused: a start for a table that the build has not, and one for the floor
 // while its change-over is pending: the floor takes it a solver's latency after the frame's start, and the capture
-// would write the bank that is to be used. rst forgets what no frame has taken and leaves the banks, because it leaves
-// the tables; cold_rst, together with rst, clears the banks.
+// would write the bank that is to be used. A write that is refused does nothing. rst forgets what no frame has taken
+// and leaves the banks, because it leaves the tables; cold_rst, together with rst, clears the banks.
 // Model: models/tactile_depth/registers/table_banks.py.
 
 `default_nettype none
@@ -46,7 +46,7 @@ module table_banks
   logic [3:0] requested;    // a change-over that no frame has taken
   logic [3:0] bank = '0;    // no reset: it says where the tables are, which no reset touches
   logic [3:0] pending, commits, captured;
-  logic starts, starts_reference, starts_floor;
+  logic starts, starts_reference, starts_floor, no_reference, no_floor;
 
   assign starts = frame_start && !rst;
   assign table_bank = bank ^ (requested & {4{starts}});
@@ -59,10 +59,11 @@ module table_banks
 
   assign starts_reference = write_offset == CaptureOffset && write_ones[CaptureStartBit];
   assign starts_floor = write_offset == FloorCaptureOffset && write_ones[FloorCaptureStartBit];
-  assign write_refused = (starts_reference && !Has[TableCommitReferenceBit])
-    || (starts_floor && (!Has[TableCommitFloorBit] || pending[TableCommitFloorBit] || floor_status.done));
-  assign reference_request = write && starts_reference;
-  assign floor_request = write && starts_floor;
+  assign no_reference = !Has[TableCommitReferenceBit];
+  assign no_floor = !Has[TableCommitFloorBit] || pending[TableCommitFloorBit] || floor_status.done;
+  assign write_refused = (starts_reference && no_reference) || (starts_floor && no_floor);
+  assign reference_request = write && starts_reference && !no_reference;
+  assign floor_request = write && starts_floor && !no_floor;
 
   always_ff @(posedge clk) begin
     requested <= (requested & {4{!frame_start}}) | ((commits | captured) & Has);

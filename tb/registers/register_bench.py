@@ -102,9 +102,10 @@ class RegisterBench:
         name, ones = OFFSET.get(offset, ""), data & mask
         self.ones = ones
         refused = self.refuses(name, ones, mask)
-        allowed = write is not None and not refused and not rst
+        taken = write is not None and not rst
+        allowed = taken and not refused
         read_offset = REGISTERS[read_at].offset if isinstance(read_at, str) else read_at
-        driven = {"write": allowed, "write_offset": offset, "write_ones": ones, "write_mask": mask, "rst": rst}
+        driven = {"write": taken, "write_offset": offset, "write_ones": ones, "write_mask": mask, "rst": rst}
         for pin, value in (driven | {"read_offset": read_offset} | self.inputs).items():
             if hasattr(dut, pin):
                 getattr(dut, pin).value = int(value)
