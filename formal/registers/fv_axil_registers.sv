@@ -7,6 +7,7 @@
 `default_nettype none
 
 module fv_axil_registers
+  import default_parameters_pkg::DefaultGainWidth;
   import register_map_pkg::*;
   import stream_pkg::*;
 #(
@@ -242,7 +243,7 @@ module fv_axil_registers
     else if (read_offset == DebounceOffset) word = frames_needed;
     else if (read_offset == InterruptStatusOffset) word = interrupts;
     else if (read_offset == InterruptMaskOffset) word = unmasked;
-    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 4);
+    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 4) | (DefaultGainWidth << DeviceGainWidthLsb);
     else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
     else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
     else if (read_offset == PitchOffset) word = width_nm;

@@ -62,20 +62,22 @@ module quadratic_gradient
 
   // A pixel and its position, by the cycles with en since it was taken.
 
+  logic frame_start;
   logic [ToSum:1] valid_q;
   position_t [ToSum-1:0] position_q;  // the oldest on top
   logic [LastLoad:1] first;   // it is the first of a frame
-  for (genvar age = 1; age <= LastLoad; age++) begin : g_first
-    assign first[age] = valid_q[age] & position_q[age-1].first_row & position_q[age-1].first_column;
-  end
   logic [LastUpdate:1] row;   // it is the first of another row
-  for (genvar age = 1; age <= LastUpdate; age++) begin : g_row
-    assign row[age] = valid_q[age] & ~position_q[age-1].first_row & position_q[age-1].first_column;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      first <= {first[LastLoad-1:1], frame_start};
+      row <= {row[LastUpdate-1:1], in_valid & ~in_position.first_row & in_position.first_column};
+    end
+    if (rst) {first, row} <= '0;
   end
 
   // The tables of a colour change over with its first read; those of the last colour are the last.
 
-  logic frame_start, table_fetched;
+  logic table_fetched;
   logic [2*Colours-1:0] in_use;
   logic [2*Colours-1:0][WordWidth-1:0] fetched_words;
   logic [WordWidth-1:0] fetched_word;

@@ -107,25 +107,24 @@ module axil_registers
     | (int'(CoefficientWords != 0) << TableSelectCoefficients)
     | (int'(ReferenceWords != 0) << TableSelectReference) | (int'(FloorWords != 0) << TableSelectFloor);
 
-  logic write, write_allowed, write_refused, entry_refused, capture_refused;
+  logic write, entry_refused, capture_refused;
   logic read, read_refused, read_late, late_refused;
   logic [31:0] write_offset, write_ones, write_mask, read_offset, read_data, late_data;
   axil_port u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
     .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready, .write, .write_offset, .write_ones, .write_mask,
-    .write_refused, .read, .read_offset, .read_data, .read_refused, .read_late, .late_data, .late_refused
+    .write_refused(!is_writable(write_offset) || entry_refused || capture_refused),
+    .read, .read_offset, .read_data, .read_refused, .read_late, .late_data, .late_refused
   );
-  assign write_refused = !is_writable(write_offset) || entry_refused || capture_refused;
-  assign write_allowed = write && !write_refused;
 
   logic [31:0] setting_data;
   logic [Settings-1:0][31:0] settings;
   setting_registers #(
     .Resets(SettingResets | ((32 * Settings)'($unsigned(PitchNm)) << (32 * PitchSetting)))
   ) u_settings (
-    .clk, .rst, .write(write_allowed), .write_offset, .write_ones, .write_mask, .read_offset, .read_data(setting_data),
-    .settings
+    .clk, .rst, .write(write && !capture_refused), .write_offset, .write_ones, .write_mask, .read_offset,
+    .read_data(setting_data), .settings
   );
   assign contact_settings = {
     settings[ThresholdSetting], settings[OffThresholdSetting], settings[MinimumAreaSetting],
@@ -139,7 +138,7 @@ module axil_registers
   always_ff @(posedge clk) events_q <= rst ? '0 : events;
   logic [31:0] event_data;
   event_registers u_events (
-    .clk, .rst, .write(write_allowed), .write_offset, .write_ones, .read_offset, .read_data(event_data),
+    .clk, .rst, .write, .write_offset, .write_ones, .read_offset, .read_data(event_data),
     .events(events_q), .levels, .first_depth_latency, .first_depth_latency_valid,
     .interrupt_mask(settings[InterruptMaskSetting]), .irq
   );
