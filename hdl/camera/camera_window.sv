@@ -23,7 +23,7 @@ module camera_window #(
   parameter int WindowRows    = 480,
   parameter int WordsPerPixel = 1,
   parameter int PixelPairs    = 0,
-  localparam int CountWidth = 13
+  parameter int CountWidth    = 13  // of the numbers of columns and rows
 ) (
   input  wire                  clk,
   input  wire                  rst,

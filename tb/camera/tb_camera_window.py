@@ -20,15 +20,15 @@ from tb.stream import CLOCK_NS, MANY, REGRESS, parameters
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 STALLS = {"none": ("none", "none"), "gaps": ("random", "none"), "both": ("random", "random")}
-LARGEST = (1 << 13) - 1
+LONG = 30  # columns or rows of the largest pictures
 
 
 class Bench:
     def __init__(self, dut: Any, offers: str = "none", enabled: str = "none") -> None:
         self.dut = dut
-        names = ("WindowColumns", "WindowRows", "WordsPerPixel", "PixelPairs")
-        self.width, self.height, self.words, pairs = parameters(dut, *names)
-        self.pairs = bool(pairs)
+        names = ("WindowColumns", "WindowRows", "WordsPerPixel", "PixelPairs", "CountWidth")
+        self.width, self.height, self.words, pairs, count_width = parameters(dut, *names)
+        self.pairs, self.largest = bool(pairs), (1 << count_width) - 1
         self.random = random.Random(cocotb.RANDOM_SEED)
         dut.rst.value, dut.en.value = 1, 1
         self.source = AxisSource(dut, "s", offers=profile(offers, 1))
@@ -49,10 +49,15 @@ class Bench:
             getattr(self.dut, name).value = value
 
     def any_settings(self) -> Settings:
-        """Return random settings: a window at the edges of a picture or anywhere in it."""
+        """Return random settings: a window at the edges of a picture or anywhere in it; one side may be long."""
         columns = self.width + self.random.choice((0, 1, 2, 5))
-        columns += columns % 2 if self.pairs else 0
         rows = self.height + self.random.choice((0, 1, 3))
+        match self.random.randrange(4):
+            case 0:
+                columns = self.random.randint(self.width, LONG)
+            case 1:
+                rows = self.random.randint(self.height, LONG)
+        columns += columns % 2 if self.pairs else 0
         x, y = self.random.randint(0, columns - self.width), self.random.randint(0, rows - self.height)
         return Settings(columns, rows, x, y)
 
@@ -160,8 +165,8 @@ async def windows_anywhere(dut: Any, stalls: str) -> None:
         if bench.random.random() < 0.4:
             field = bench.random.choice(Settings._fields)
             limit = {"columns": settings.x + bench.width, "rows": settings.y + bench.height}.get(field, 0)
-            settings = settings._replace(**{field: bench.random.choice((limit, max(limit - 1, 0), limit + 1, LARGEST))})
-        size = settings if max(settings.columns, settings.rows) < LARGEST else bench.settings
+            settings = settings._replace(**{field: bench.random.choice((limit, max(limit - 1, 0), limit + 1, bench.largest))})
+        size = settings if max(settings.columns, settings.rows) < bench.largest else bench.settings
         bench.use(settings)
         bench.settings = size
         await ClockCycles(dut.clk, bench.random.choice((0, 1, 2)))

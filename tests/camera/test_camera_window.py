@@ -14,14 +14,15 @@ KINDS = [kind for kind in BREAKS if kind not in SILENT]
 
 
 @pytest.mark.structures(
-    "width height words pairs",
-    verilator=[(4, 3, 1, 0)],
-    icarus=[(4, 3, 1, 0), (3, 2, 2, 1)],
-    regress=[(2, 2, 1, 1), (5, 4, 2, 0)],
-    regress_verilator=[(3, 2, 2, 1)],
+    "width height words pairs count_width",
+    verilator=[(4, 3, 1, 0, 13)],
+    icarus=[(4, 3, 1, 0, 5), (3, 2, 2, 1, 5)],
+    regress=[(2, 2, 1, 1, 13), (5, 4, 2, 0, 13)],
+    regress_verilator=[(3, 2, 2, 1, 13)],
 )
-def test_rtl(run_tb: Callable[..., None], width: int, height: int, words: int, pairs: int) -> None:
-    window = {"WindowColumns": width, "WindowRows": height}
+def test_rtl(run_tb: Callable[..., None], width: int, height: int, words: int, pairs: int, count_width: int) -> None:
+    """With few bits for columns and rows, small pictures reach every bit."""
+    window = {"WindowColumns": width, "WindowRows": height, "CountWidth": count_width}
     run_tb("camera_window", {**window, "WordsPerPixel": words, "PixelPairs": pairs})
 
 
