@@ -165,7 +165,9 @@ async def windows_anywhere(dut: Any, stalls: str) -> None:
         if bench.random.random() < 0.4:
             field = bench.random.choice(Settings._fields)
             limit = {"columns": settings.x + bench.width, "rows": settings.y + bench.height}.get(field, 0)
-            settings = settings._replace(**{field: bench.random.choice((limit, max(limit - 1, 0), limit + 1, bench.largest))})
+            settings = settings._replace(
+                **{field: bench.random.choice((limit, max(limit - 1, 0), limit + 1, bench.largest))}
+            )
         size = settings if max(settings.columns, settings.rows) < bench.largest else bench.settings
         bench.use(settings)
         bench.settings = size
