@@ -149,8 +149,7 @@ module forward_elimination #(
     // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its
     // use.
     localparam int MomentWidth = Width + 2 * RowWidth + 2;
-    logic [RowWidth:0] weight, weight_q;  // of d, row + 1
-    assign weight = frame_start_q[ToState-1] ? (RowWidth + 1)'(1) : weight_q;
+    logic [RowWidth:0] weight;  // of d, row + 1
     logic signed [Width+RowWidth+1:0] addend;
     logic signed [MomentWidth-1:0] moment;
     logic signed [Width-1:0] sum, sum_q, mean;
@@ -170,15 +169,13 @@ module forward_elimination #(
       .in(scaled), .out(mean), .clipped(clipped_now[1])
     );
     logic ends;  // the mean is used when the last row begins, so the last addend is that of the row before
-    assign ends = weight_q == (RowWidth + 1)'(Rows);
+    assign ends = weight == (RowWidth + 1)'(Rows - 1);
     logic signed [Width-1:0] mean_q;
     always_ff @(posedge clk) begin
       if (en) begin
         after <= {after[2:0], start_q[ToState-1]};
-        if (start_q[ToState-1]) begin
-          weight_q <= weight + (RowWidth + 1)'(1);
-        end
-        if (after[0]) moment <= (weight_q == (RowWidth + 1)'(2) ? '0 : moment) + MomentWidth'(addend);
+        if (start_q[ToState-2]) weight <= (frame_start_q[ToState-2] ? '0 : weight) + (RowWidth + 1)'(1);
+        if (after[0]) moment <= (weight == (RowWidth + 1)'(1) ? '0 : moment) + MomentWidth'(addend);
         if (after[1]) sum_q <= sum;
         if (after[3]) mean_q <= mean;
       end
