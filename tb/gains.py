@@ -217,3 +217,15 @@ async def reads_as_a_pause_ends(device: Any) -> None:
         await reading
         await sending
         await gains.changed()
+
+
+async def watch_active(dut: Any, latency: int) -> None:
+    """Check in every cycle that `active` is high while a word is inside, which takes `latency` cycles with en."""
+    inside = 0  # a bit for each cycle, the latest lowest
+    while True:
+        await RisingEdge(dut.clk)
+        assert bool(dut.active.value) == bool(inside), f"active is {dut.active.value}"
+        if dut.rst.value:
+            inside = 0
+        elif dut.en.value:
+            inside = (inside << 1 | int(dut.in_valid.value)) & (1 << latency) - 1

@@ -11,7 +11,7 @@ from tactile_depth.calibration.auto_zero import interpolated_floor
 from tactile_depth.calibration.floor_map import latency, side
 from tactile_depth.configuration import Configuration
 from tb.depth_frames import packed
-from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
+from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends, watch_active
 from tb.stream import Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
 
 BEATS = 1024  # that a test sends, at least
@@ -58,6 +58,7 @@ class Map:
 
     async def start(self, written: bool = True) -> None:
         await self.bench.start()
+        cocotb.start_soon(watch_active(self.dut, self.latency))
         await self.gains.settle(written)
 
     def expect(self, nodes: Any) -> None:

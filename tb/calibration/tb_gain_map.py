@@ -10,7 +10,7 @@ import numpy as np
 from tactile_depth.calibration.flat_field import interpolated_gains
 from tactile_depth.configuration import Configuration
 from tactile_depth.latency import GAIN_MAP
-from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends
+from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends, watch_active
 from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
 
 PLACES = 2048  # that a test sends, at least
@@ -49,6 +49,7 @@ class Map:
 
     async def start(self, written: bool = True) -> None:
         await self.bench.start()
+        cocotb.start_soon(watch_active(self.dut, GAIN_MAP))
         await self.gains.settle(written)
 
     async def send(self, frames: int = 1) -> None:
