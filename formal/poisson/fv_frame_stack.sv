@@ -83,7 +83,18 @@ module fv_frame_stack #(
     end
   end
 
-  bind ram ram_check #(.Depth(Depth)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
+  bind ram ram_check #(.Depth(Depth), .Covered(0)) u_check (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+  // Lane 0 reads no memory where the last row is its only one, and a lane beyond the rows never does.
+  for (genvar e = 0; e < Lanes; e++) begin : g_read
+    if (e == 0 ? Rows > Lanes : e < Rows) begin : g_memory
+      always_comb begin
+        if (started) last_word_read: cover (dut.g_lane[e].u_ram.read_en
+            && 32'(dut.g_lane[e].u_ram.read_address) == dut.g_lane[e].u_ram.Depth - 1);
+      end
+    end
+  end
 
 endmodule
 
