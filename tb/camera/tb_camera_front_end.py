@@ -16,8 +16,8 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.camera.camera_front_end import camera_front_end, camera_settings
-from tactile_depth.camera.camera_window import FAULTS
+from tactile_depth.camera.camera_front_end import SETTINGS, camera_front_end, camera_settings
+from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.frame.frame_guard import Word, frame_guard
 from tactile_depth.latency import camera_front_end_latency
@@ -169,6 +169,31 @@ async def settings_change_between_pictures(dut: Any) -> None:
     await bench.source.send(bench.picture()[0])
     assert await bench.frames() == []
     assert bench.faults == ["window_outside"]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(name=["columns", "rows", "window_x", "window_y"])
+async def settings_in_every_bit(dut: Any, name: str) -> None:
+    """Set size and place of the window with one bit wrong, for each bit: the faults are the model's, and with the right
+    settings the next picture is right."""
+    bench = Bench(dut)
+    await bench.start()
+    built, right = bench.camera, camera_settings(bench.camera)
+    crop, pairs = built.crop[2:], built.pixel_format == "yuyv"
+    names = ("columns", "rows", "window_x", "window_y")
+    for bit in range(SETTINGS[name]):
+        taken: list[tuple[Word, Settings]] = []
+        for settings in (right | {name: right[name] ^ 1 << bit}, right):
+            dut.settings.value = pack_settings(settings)
+            await ClockCycles(dut.clk, 2)
+            words, frame = bench.picture()
+            await bench.source.send(words)
+            await ClockCycles(dut.clk, SETTLE)
+            taken += [(word, Settings(*(settings[each] for each in names))) for word in words]
+        np.testing.assert_array_equal((await bench.frames())[-1], frame, f"{name}, bit {bit}")
+        want = camera_window(taken, crop, built.words_per_pixel, pairs)
+        assert bench.faults == [fault for _, fault in want.faults], f"{name}, bit {bit}"
+        bench.forget()
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")

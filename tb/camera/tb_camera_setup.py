@@ -31,10 +31,12 @@ LISTS = {
         Entry(Kind.WRITE, 0x03, 0xFF),
     ),
     "wide": (
+        Entry(Kind.PINS, 2, 0xA5),
         Entry(Kind.PINS, 1, 0),
         Entry(Kind.CHECK, 0x300A, 0x56),
         Entry(Kind.PLAIN_WRITE, 0x3008, 0x82),
         Entry(Kind.WRITE, 0xC35A, 0x01),
+        Entry(Kind.WRITE, 0x3CA5, 0xFE),
     ),
 }
 
