@@ -146,12 +146,16 @@ def read_protocol(top: str, parameters: Mapping[str, int | str], folder: Path) -
     return {name: (port["direction"], len(port["bits"])) for name, port in module["ports"].items()}
 
 
+def clocks(core: str, folder: Path) -> list[str]:
+    """Return the inputs of a core that are clocks; a clock that it makes for others, such as a camera, is an output."""
+    return [name for name, (side, _) in ports(core, folder).items() if side == "input" and name.endswith("clk")]
+
+
 def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int | str]) -> Graph:
     """Return the graph of the netlist with all mutants and its environment; memories become registers."""
     (folder / "environment.v").write_text(environment(core, folder, protocol, parameters))
     (folder / "first_wins.v").write_text(FIRST_WINS)
-    clocks = [name for name in ports(core, folder) if name.endswith("clk")]
-    steps = TO_GRAPH.format(**(TWO_CLOCKS if len(clocks) > 1 else ONE_CLOCK))
+    steps = TO_GRAPH.format(**(TWO_CLOCKS if len(clocks(core, folder)) > 1 else ONE_CLOCK))
     yosys(f"{steps}write_aiger -ascii -symbols graph.aag\n", folder, "graph")
     lines = iter((folder / "graph.aag").read_text().splitlines())
     _, _, inputs, latches, outputs, ands = next(lines).split()

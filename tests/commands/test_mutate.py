@@ -10,7 +10,7 @@ import pytest
 
 from commands.common import repository
 from commands.verify import mutants, mutate
-from commands.verify.equivalence import HOLDS, Gates, Graph, confined, graph
+from commands.verify.equivalence import HOLDS, Gates, Graph, clocks, confined, graph
 from commands.verify.mutants import SELECTOR
 from commands.verify.structures import structure
 
@@ -57,6 +57,12 @@ def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) ->
     mutants.make(core, built, 20, 1, tmp_path, flat=mutate.CORES[core].flat)
     outputs = graph(core, tmp_path, core, built.parameters).outputs
     assert any("s_axil_rdata" in name for name in outputs)
+
+
+@pytest.mark.parametrize(("core", "count"), [("camera_setup", 1), ("async_fifo", 2)])
+def test_a_clock_that_a_core_puts_out_is_none_of_its_clocks(tmp_path: Path, core: str, count: int) -> None:
+    mutants.make(core, structure(core, mutate.CORES[core].structures[0]), 1, 1, tmp_path)
+    assert len(clocks(core, tmp_path)) == count
 
 
 def contrary(mutant: Any) -> Any:
