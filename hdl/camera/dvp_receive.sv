@@ -2,7 +2,7 @@
 // dvp_receive: bytes of a parallel camera (DVP) from the camera's clock into the system's.
 //
 // In, on pclk, which runs between rows too: a frame begins as vsync rises, where a pulse between frames begins or ends;
-// a byte counts in each other clock with href high; href low ends a row. Stream out, on clk: the bytes of a frame in
+// href high in any other clock brings a byte; href low ends a row. Stream out, on clk: the bytes of a frame in
 // their order, tuser with its first, tlast with the last of each row. A byte crosses in 2 clocks of pclk and 3 or 4 of
 // clk (async_fifo).
 //

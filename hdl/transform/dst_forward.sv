@@ -5,7 +5,7 @@
 //   g = 2^-(halvings of sdf_fft) (1 - 2^(1 - CoeffWidth))^(twiddle stages + 1), and the drops below
 //
 // Stream in: bursts of Size samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Stream out: bursts, bit-reversed order.
-// Latency: 9 cycles + sdf_fft; bursts may have pauses between them; en low: nothing moves.
+// Latency: 10 cycles + sdf_fft; bursts may have pauses between them; en low: nothing moves.
 //
 //   sign (-1)^n  ->  sdf_fft  ->  rotate by exp(-j pi k / 2N), real part
 //

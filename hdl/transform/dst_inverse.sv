@@ -4,7 +4,7 @@
 //   out = g x when in = dst_forward(x),  g = (1 - 2^(1 - CoeffWidth))^(2 (twiddle stages + 1)), and the drops below
 //
 // Stream in: bursts of Size modes, bit-reversed order, as dst_forward puts them out.
-// Stream out: bursts of samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Latency: Size / 2 + 10 cycles
+// Stream out: bursts of samples in Makhoul order (0, 2, 4, .., 5, 3, 1). Latency: Size / 2 + 11 cycles
 // + sdf_fft; bursts may have pauses between them; en low: nothing moves.
 //
 //   mode_pairs  ->  rotate C[N-k] + j C[k] by exp(j pi k / 2N) / j  ->  inverse sdf_fft  ->  sign (-1)^n

@@ -6,7 +6,7 @@
 //
 // Stream in: bursts of Size complex words, natural order (Inverse: bit-reversed).
 // Stream out: bursts, bit-reversed order (Inverse: natural).
-// Latency: Size - 1 + 2 log2(Size) + 6 (twiddle stages) cycles; en low: nothing moves.
+// Latency: Size - 1 + 2 log2(Size) + 7 (twiddle stages) cycles; en low: nothing moves.
 //
 // Stages, forward: two butterflies and a twiddle multiplication for each block of Size, Size / 4, .. points, without
 // the multiplication for a block of 4 and with one butterfly alone for a block of 2. The inverse has the same stages
