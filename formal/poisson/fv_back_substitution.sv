@@ -57,7 +57,7 @@ module fv_back_substitution #(
   logic [$clog2(Lanes+1)-1:0] saturations;
   back_substitution #(
     .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes), .InWidth(InWidth), .Lift(Lift),
-    .TableWords(Words), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
+    .TableWords(Words), .SettledWidth(SettledWidth)
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );

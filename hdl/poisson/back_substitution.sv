@@ -22,7 +22,6 @@ module back_substitution #(
   parameter int Lift           = 3,  // fraction bits of z beyond those of d
   parameter int TableWords     = 1379,
   parameter int SettledWidth   = 7,
-  parameter int LastShiftWidth = 1,
   localparam int ClippedWidth = $clog2(Lanes + 1)
 ) (
   input  wire                      clk,
@@ -60,10 +59,10 @@ module back_substitution #(
     );
 
     logic signed [CoeffWidth-1:0] coefficient;
-    logic [LastShiftWidth-1:0] unused_shift;
+    logic unused_shift;
     thomas_table #(
       .TableFolder(TableFolder), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(TableWords),
-      .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
+      .SettledWidth(SettledWidth), .HasLastRow(1'b0)  // z[Rows] = 0: the last row multiplies nothing
     ) u_table (
       .clk, .en, .position, .row, .coefficient, .shift(unused_shift)
     );

@@ -5,9 +5,8 @@
 //
 // A position and a row in, its coefficient out 5 enabled clocks later. Down the rows a coefficient soon settles; what
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
-// shift, since its coefficients exceed 1 under Neumann. Bit-accurate model:
-// models/tactile_depth/poisson/thomas_table.py, which also writes
-// the ROMs.
+// shift, since its coefficients exceed 1 under Neumann. A user that multiplies nothing in that row leaves it out.
+// Bit-accurate model: models/tactile_depth/poisson/thomas_table.py, which also writes the ROMs.
 
 `default_nettype none
 
@@ -18,6 +17,7 @@ module thomas_table #(
   parameter int Size           = 128,  // modes in a row
   parameter int Words          = 1379,
   parameter int SettledWidth   = 7,
+  parameter bit HasLastRow     = 1'b1,  // 0: what is read for the last row has no meaning
   parameter int LastShiftWidth = 1,
   localparam int PositionWidth = $clog2(Size),
   localparam int RowWidth = $clog2(Rows),
@@ -42,35 +42,42 @@ module thomas_table #(
   );
 
   logic [RowWidth-1:0] row_q2;
-  logic [PositionWidth-1:0] position_q2, position_q3;
-  logic last_q3, last_q4;
   always_ff @(posedge clk) begin
     if (en) begin
       row_q <= row;
       position_q <= position;
       row_q2 <= row_q;
-      position_q2 <= position_q;
-      position_q3 <= position_q2;
-      last_q3 <= row_q2 == RowWidth'(Rows - 1);
-      last_q4 <= last_q3;
       address <= base
           + (CompareWidth'(row_q2) < CompareWidth'(settled) ? AddressWidth'(row_q2) : AddressWidth'(settled));
     end
   end
 
-  logic signed [CoeffWidth-1:0] inner, last;
-  logic [LastShiftWidth-1:0] last_shift;
+  logic signed [CoeffWidth-1:0] inner;
   rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, "thomas.hex"})) u_inner (
     .clk, .en, .address, .data(inner)
   );
-  rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File({TableFolder, "thomas_last.hex"})) u_last (
-    .clk, .en, .address(position_q3), .data({last_shift, last})
-  );
-  always_ff @(posedge clk) begin
-    if (en) begin
-      coefficient <= last_q4 ? last : inner;
-      shift <= last_q4 ? last_shift : '0;
+
+  if (HasLastRow) begin : g_last_row
+    logic [PositionWidth-1:0] position_q2, position_q3;
+    logic last_q3, last_q4;
+    logic signed [CoeffWidth-1:0] last;
+    logic [LastShiftWidth-1:0] last_shift;
+    rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File({TableFolder, "thomas_last.hex"})) u_last (
+      .clk, .en, .address(position_q3), .data({last_shift, last})
+    );
+    always_ff @(posedge clk) begin
+      if (en) begin
+        position_q2 <= position_q;
+        position_q3 <= position_q2;
+        last_q3 <= row_q2 == RowWidth'(Rows - 1);
+        last_q4 <= last_q3;
+        coefficient <= last_q4 ? last : inner;
+        shift <= last_q4 ? last_shift : '0;
+      end
     end
+  end else begin : g_inner_rows
+    assign shift = '0;
+    always_ff @(posedge clk) if (en) coefficient <= inner;
   end
 
   // A module that does not exist stops every tool where a parameter is refused.

@@ -99,8 +99,7 @@ module tridiagonal_solver #(
 
   back_substitution #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes),
-    .InWidth(DataWidth), .Lift(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth),
-    .LastShiftWidth(LastShiftWidth)
+    .InWidth(DataWidth), .Lift(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
     .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved), .saturations(clipped_up)

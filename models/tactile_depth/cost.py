@@ -199,6 +199,7 @@ def _tridiagonal(p: dict[str, int]) -> Parts:
     return _joined(
         _forward(p),
         _in("forward_elimination", *_thomas(p, size)),
+        _in("forward_elimination", [], [Memory("tables", p["LastShiftWidth"] + p["CoeffWidth"], size)]),
         _in("forward_elimination", mean, []),
         ([], [bank] * lanes),
         *[_in("back_substitution", *_thomas(p, size // lanes))] * lanes,
@@ -207,7 +208,10 @@ def _tridiagonal(p: dict[str, int]) -> Parts:
 
 
 def _thomas(p: dict[str, int], running: int) -> Parts:
-    """Count the parts of an elimination, or of a lane of the substitution, with so many words of the running row."""
+    """Count the parts of an elimination, or of a lane of the substitution, with so many words of the running row.
+
+    The table of the last row is not among them: only the elimination has one.
+    """
     width, coefficient, words = p["Width"], p["CoeffWidth"], p["TableWords"]
     return (
         [Multiplier(width, coefficient)],
@@ -215,7 +219,6 @@ def _thomas(p: dict[str, int], running: int) -> Parts:
             Memory("row buffers", width, running),
             Memory("tables", coefficient, words),
             Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Size"]),
-            Memory("tables", p["LastShiftWidth"] + coefficient, p["Size"]),
         ],
     )
 
