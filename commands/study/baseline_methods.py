@@ -19,6 +19,7 @@ import numpy as np
 import scipy.fft
 
 from tactile_depth import reference
+from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
 
@@ -30,7 +31,8 @@ class Method:
     """Method to solve in software.
 
     `prepare` takes a size and a number of threads. The method needs the distributions `packages`, the `program` and the
-    `device` (CUDA). A method with `one_core` has no threads.
+    `device` (CUDA). A method with `one_core` has no threads. A method `from_pixels` begins with the pixels, as the
+    pipeline does, all others with their divergence.
     """
 
     name: str
@@ -39,14 +41,16 @@ class Method:
     program: str = ""
     device: bool = False
     one_core: bool = False
+    from_pixels: bool = False
 
 
 @dataclass(frozen=True)
 class Prepared:
     """Method prepared for one grid.
 
-    `give` converts a float32 array to the input of `solve`, `take` its result to an array; neither is timed.
-    `synchronise` waits for a device. `clock` times solves in us if the overhead of a call from Python would count.
+    `give` converts a float32 array, or the pixels, uint8, to the input of `solve`, `take` its result to an array;
+    neither is timed. `synchronise` waits for a device. `clock` times solves in us if the overhead of a call from
+    Python would count.
     """
 
     solve: Solve
@@ -156,7 +160,7 @@ FLOATS = ("-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassoc
 COMPILER = ("cc", "-O3", "-march=native", *FLOATS, "-shared", "-fPIC")
 
 
-def with_c(size: int, threads: int) -> Prepared:
+def with_c(size: int, threads: int, from_pixels: bool = False) -> Prepared:
     """Prepare the tridiagonal solver in C with SIMD, compiled for this machine and grid.
 
     Raises RuntimeError: the compiler refuses it.
@@ -169,17 +173,20 @@ def with_c(size: int, threads: int) -> Prepared:
             raise RuntimeError(f"cc cannot compile {SIMD_SOLVER.name}: {result.stderr.splitlines()[0]}")
         solver = ctypes.CDLL(str(library))
     solver.prepare()
+    slopes = synthetic().table.astype(np.float32)
+    solver.load(ctypes.c_void_p(slopes.ctypes.data))
     depth = np.empty((size, size), np.float32)
     target = ctypes.c_void_p(depth.ctypes.data)
+    function = solver.solve_pixels if from_pixels else solver.solve
 
-    def solve(f: np.ndarray) -> np.ndarray:
-        solver.solve(ctypes.c_void_p(f.ctypes.data), target)
+    def solve(frame: np.ndarray) -> np.ndarray:
+        function(ctypes.c_void_p(frame.ctypes.data), target)
         return depth
 
     def clock(inputs: Sequence[np.ndarray], runs: int) -> list[float]:
         frames = (ctypes.c_void_p * len(inputs))(*(frame.ctypes.data for frame in inputs))
         nanoseconds = np.empty(runs, np.int64)
-        solver.time_solves(frames, len(inputs), target, runs, ctypes.c_void_p(nanoseconds.ctypes.data))
+        solver.time_solves(function, frames, len(inputs), target, runs, ctypes.c_void_p(nanoseconds.ctypes.data))
         return (nanoseconds / 1000).tolist()
 
     return Prepared(solve, give=np.ascontiguousarray, clock=clock)
@@ -253,6 +260,14 @@ METHODS = (
     Method("PyTorch, products of matrices", with_torch_matmul, ("torch",)),
     Method("ducc0 rows, numba tridiagonal", with_tridiagonal, ("ducc0", "numba")),
     Method("C with SIMD, tridiagonal", with_c, (), program="cc", one_core=True),
+    Method(
+        "C with SIMD, from the pixels",
+        lambda size, threads: with_c(size, threads, from_pixels=True),
+        (),
+        program="cc",
+        one_core=True,
+        from_pixels=True,
+    ),
     Method("PyTorch, rfft, CUDA", _on_cuda(with_torch_fft), ("torch",), device=True),
     Method("PyTorch, products of matrices, CUDA", _on_cuda(with_torch_matmul), ("torch",), device=True),
 )

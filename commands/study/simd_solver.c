@@ -2,10 +2,11 @@
 // Poisson solve of frames of N x N (-DN=128, a power of two from 16) in single precision on one core, for make
 // baselines: sine transforms down the columns, several columns side by side in a SIMD register, and Thomas's algorithm
 // along the rows, several modes side by side. This is the method of hdl/poisson/tridiagonal_solver.sv with rows and
-// columns exchanged, which needs half as many transpositions.
+// columns exchanged, which needs half as many transpositions. From the pixels on: slopes from a table of colours first.
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 #include <time.h>
 
 #if defined(__AVX512F__) && N >= 32
@@ -230,14 +231,65 @@ static void along_rows(void) {
   }
 }
 
-void solve(const float *f, float *depth) {
+void solve(const void *divergence, float *depth) {
+  const float *f = divergence;
   for (int column = 0; column < N; column += 2 * W) columns_forward(f + column, modes[0] + column);
   along_rows();
   for (int column = 0; column < N; column += 2 * W) columns_backward(modes[0] + column, depth + column);
 }
 
+// From the pixels on: slopes by the upper four bits of red, green and blue, and their divergence.
+
+typedef struct {
+  float x, y;
+} slope;
+static slope table[4096];  // by {blue, green, red}
+
+void load(const float *slopes) {  // (16, 16, 16, 2) by red, green and blue
+  for (int i = 0; i < 4096; i++) {
+    int at = (i & 0xf) << 8 | (i & 0xf0) | i >> 8;
+    table[i] = (slope){slopes[2 * at], slopes[2 * at + 1]};
+  }
+}
+
+// The upper halves of eight bytes, side by side.
+ALWAYS uint64_t upper_halves(const uint8_t *bytes) {
+  uint64_t word;
+  memcpy(&word, bytes, sizeof word);
+#ifdef __BMI2__
+  return __builtin_ia32_pext_di(word, 0xf0f0f0f0f0f0f0f0);
+#else
+  word = word >> 4 & 0x0f0f0f0f0f0f0f0f;
+  word = (word | word >> 4) & 0x00ff00ff00ff00ff;
+  word = (word | word >> 8) & 0x0000ffff0000ffff;
+  return (word | word >> 16) & 0xffffffff;
+#endif
+}
+
+void solve_pixels(const void *pixels, float *depth) {
+  static float f[N * N] __attribute__((aligned(64)));
+  static slope rows[2][N + 1];  // of this row and the one above, with a zero before the first
+  const uint8_t *rgb = pixels;
+  memset(rows, 0, sizeof rows);
+  for (int row = 0; row < N; row++) {
+    slope *here = rows[row % 2] + 1, *above = rows[1 - row % 2] + 1;
+    for (int i = 0; i < N; i += 8, rgb += 24) {
+      uint64_t a = upper_halves(rgb), b = upper_halves(rgb + 8), c = upper_halves(rgb + 16);
+      uint64_t low = a | b << 32, high = b >> 16 | c << 16;  // of pixels 0 to 3 and 4 to 7
+      _Pragma("GCC unroll 4") for (int j = 0; j < 4; j++) {
+        here[i + j] = table[low >> 12 * j & 0xfff];
+        here[i + j + 4] = table[high >> 12 * j & 0xfff];
+      }
+    }
+    for (int i = 0; i < N; i++) f[row * N + i] = here[i].x - here[i - 1].x + here[i].y - above[i].y;
+  }
+  solve(f, depth);
+}
+
 // Solve `runs` frames, `count` of them in turn, and write down the nanoseconds of each.
-void time_solves(const float *const *frames, int count, float *depth, int runs, int64_t *nanoseconds) {
+void time_solves(
+    void (*solve)(const void *, float *), const void *const *frames, int count, float *depth, int runs,
+    int64_t *nanoseconds) {
   for (int run = 0; run < runs; run++) {
     struct timespec begin, end;
     clock_gettime(CLOCK_MONOTONIC, &begin);

@@ -46,14 +46,15 @@ def test_methods_equal_the_reference(method: Any, threads: Any) -> None:
     if problem := baseline_methods.missing(method):
         pytest.skip(f"{problem}: `make baselines` installs it")
     prepared = method.prepare(32, threads)
-    f, wanted = baselines.frames(32)
-    for frame, want in zip(f, wanted, strict=True):
+    scene = baselines.scene(32)
+    frames = scene.pixels if method.from_pixels else scene.divergence
+    for frame, want in zip(frames, scene.depth, strict=True):
         depth = np.array(prepared.take(prepared.solve(prepared.give(frame))), np.float64)
         assert baselines.percent_of_peak(depth, want) <= baselines.TOLERANCE_PERCENT
 
 
 def job(runs: Any, seconds: float = 100) -> Any:
-    return baselines.Job(0, 1, {16: baselines.frames(16)}, runs, time.monotonic() + seconds, 1)
+    return baselines.Job(0, 1, {16: baselines.scene(16)}, runs, time.monotonic() + seconds, 1)
 
 
 def test_a_wrong_result_is_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
