@@ -49,8 +49,13 @@ module sdf_butterfly #(
   logic minus_re, minus_im;
   if (RotateBlock > 0) begin : g_rotate
     localparam int QuarterBit = $clog2(RotateBlock) - 2;
-    logic rotate;
-    assign rotate = &position[QuarterBit+:2];
+    logic rotate, rotate_q;  // rotate_q: the word after this one, unless it begins a burst
+    logic [PositionWidth-1:0] next;
+    logic unused_next;
+    assign next = position + PositionWidth'(1);
+    assign unused_next = ^next;
+    assign rotate = rotate_q & ~in_start;
+    always_ff @(posedge clk) if (en && active) rotate_q <= &next[QuarterBit+:2];
     assign minus_re = rotate & (Inverse != 0);
     assign minus_im = rotate & (Inverse == 0);
     assign b_re = $unsigned(rotate ? in_im : in_re) ^ {Width{minus_re}};
