@@ -5,16 +5,20 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
+from tactile_depth.calibration.floor_capture import captured_floor
 from tactile_depth.configuration import Configuration
+from tactile_depth.scenes import render
 from tactile_depth.sensor import synthetic
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
 from tb.tb_two_pipelines import calibration
 
 CONFIGURATIONS: dict[str, dict[str, Any]] = {
@@ -82,6 +86,18 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     write_roms(tmp_path / "direct", synthetic(4), Configuration(columns=16, solver="tridiagonal"))
     written = {path.name: path.read_text() for path in tmp_path.glob("*.hex")}
     assert written == {path.name: path.read_text() for path in (tmp_path / "direct").glob("*.hex")}
+
+
+def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
+    choices = ("N=16", "SOLVER=tridiagonal", "FLOOR=ball")
+    assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
+    (tmp_path / "direct").mkdir()
+    config = Configuration(columns=16, solver="tridiagonal", auto_zero=True)
+    at_rest = tactile_depth(render("ball", 16).frames, synthetic(), replace(config, auto_zero=False))
+    floor = captured_floor(at_rest, config)
+    assert np.abs(floor).max() > 0
+    write_roms(tmp_path / "direct", synthetic(4), config, floor)
+    assert (tmp_path / "floor_0.hex").read_text() == (tmp_path / "direct" / "floor_0.hex").read_text()
 
 
 def test_with_a_camera_the_module_has_the_front_end_inside(tmp_path: Path) -> None:

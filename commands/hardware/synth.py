@@ -37,7 +37,7 @@ from tactile_depth.camera.camera_front_end import camera_front_end_parameters
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.frames import REST_SCENE
+from tactile_depth.frames import REST_SCENE, Frames
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters
 
@@ -142,12 +142,15 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Req
     return TARGETS[name], name, sizes, run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
 
 
-def configured(request: run_request.Request) -> tuple[Configuration, Sensor, CameraConfiguration | None]:
-    """Return the configuration of a request, the calibration on its grid, and its camera. Raises InputError."""
+def configured(request: run_request.Request) -> tuple[Configuration, Sensor, Frames]:
+    """Return the configuration of a request, the calibration on its grid, and frames with its camera.
+
+    Raises InputError.
+    """
     # A reference frame gives the width of the camera's pixels on the grid, so it is read as a frame too.
     source = run_request.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
     frames, calibration, config = synthesis.design(request, source)
-    return config, calibration, frames.camera
+    return config, calibration, frames
 
 
 def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[run_request.Request, str]]:
@@ -409,9 +412,9 @@ def run(arguments: list[str]) -> int:
                 grid = {"grid": [each.rows, each.columns], "solver": each.solver}
                 built.append(Design(grid, {}, {}, [], [], f"not built: {reason}", 0.0))
             else:
-                config, calibration, camera = configured(each)
+                config, calibration, frames = configured(each)
                 folder = work / f"{config.solver}-{config.columns}"
-                built.append(synthesize(config, calibration, target, folder, camera))
+                built.append(synthesize(config, calibration, target, folder, frames.camera))
                 if not grids:
                     keep_sources(folder, config, out)
             document["designs"].append(asdict(built[-1]))
