@@ -516,12 +516,12 @@ PROOFS: tuple[Proof, ...] = (
         Proof(
             "back_substitution",
             "the recursion up an arbitrary column, from lane to lane; latency 8",
-            f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
-            {"Rows": 3, "Size": 8 * lanes, "Words": 16 * lanes, "Lanes": lanes},
+            f"z that waits in the memory, and z that goes straight on; {ROUNDING}",
+            {"Rows": 3, "Size": size, "Words": 2 * size, "Lanes": lanes},
             depth=60,
-            roms=thomas_roms(3, 8 * lanes, 16 * lanes, 3, 2, 1),
+            roms=thomas_roms(3, size, 2 * size, 3, 2, 1),
         )
-        for lanes in (1, 2)
+        for lanes, size in ((1, 8), (2, 16), (2, 8))
     ),
     *(
         Proof(

@@ -17,7 +17,7 @@ INVALID = {
     "mode_pairs": ["Size=12", "Size=2"],
     "frame_stack": ["Size=1", "Rows=1", "WordsPerRow=0", "Lanes=3", "Lanes=128"],
     "corner_turn": ["Lanes=1", "Lanes=12", "Lanes=128", "Size=96"],
-    "back_substitution": ["Lanes=3", "Lanes=32"],
+    "back_substitution": ["Lanes=3", "Lanes=64"],
     "frame_guard": ["Rows=1", "Columns=1"],
     "frame_output": ["Columns=12", "Rows=1"],
     "divergence": ["Columns=1"],

@@ -98,7 +98,7 @@ def test_resets_in_every_phase(device: Any, simulator: str, grid: Any) -> None:
 
 @pytest.mark.regress
 @pytest.mark.parametrize("simulator", ["verilator"], indirect=True)
-@pytest.mark.parametrize(("solver", "lanes"), [("tridiagonal", 1), ("tridiagonal", 16), ("spectral", 1)])
+@pytest.mark.parametrize(("solver", "lanes"), [("tridiagonal", 1), ("tridiagonal", 32), ("spectral", 1)])
 def test_a_sample_at_128(device: Any, simulator: Any, solver: Any, lanes: int) -> None:
     """Send whole frames of 16,384 pixels, with each kind of break at a random position, and resets."""
     config, rng = Configuration(columns=128, solver=solver, lanes=lanes), random.Random(SEED)

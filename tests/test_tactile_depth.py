@@ -30,6 +30,10 @@ STRUCTURES: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         TRIDIAGONAL | FLAT_QUADRATIC | {"columns": 32, "rows": 9, "lanes": 4, "neumann": True, "auto_zero": True},
         FORMATS,
     ),
+    "tridiagonal-9x16-4-lanes-sensor": (
+        TRIDIAGONAL | FLAT_QUADRATIC | {"rows": 9, "lanes": 4, "neumann": True, "auto_zero": True},
+        FORMATS,
+    ),
     "tridiagonal-21x16-2-lanes-zero": (
         TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "auto_zero": True},
         FORMATS,
@@ -88,6 +92,7 @@ def run(
         ("tridiagonal-8x16-2-lanes",),
         ("tridiagonal-9x32-4-lanes",),
         ("tridiagonal-21x16-2-lanes-zero",),
+        ("tridiagonal-9x16-4-lanes-sensor",),
     ],
     regress_verilator=[
         ("tridiagonal-8x16-2-lanes",),

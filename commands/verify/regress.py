@@ -97,6 +97,7 @@ JOBS = (
     Job(32, "tridiagonal", True, rows=9, lanes=4, gaps=0.2, stalls=0.3),
     Job(64, "tridiagonal", False, rows=50, lanes=8, stalls=0.2),
     Job(128, "tridiagonal", True, lanes=16),
+    Job(128, "tridiagonal", False, rows=100, lanes=32, gaps=0.1, stalls=0.1),
     Job(256, "tridiagonal", False, lanes=32, gaps=0.1),
     Job(16, "spectral", False, simulator="icarus", codes=60_000),
     Job(16, "tridiagonal", True, rows=8, simulator="icarus", codes=60_000),

@@ -63,7 +63,7 @@ module fv_back_substitution #(
   );
 
   // The word of the column, and z of the one before it when that leaves.
-  logic [LaneWidth-1:0] lane, lane_q;
+  logic [LaneWidth-1:0] lane, lane_q, lane_q2;
   logic [RowWidth-1:0] burst;
   logic signed [InWidth-1:0] in_word;
   logic signed [Width-1:0] out_word;
@@ -77,7 +77,7 @@ module fv_back_substitution #(
       if (present[e]) lane = LaneWidth'(e);
       if (present[e]) burst = row[e*RowWidth+:RowWidth];
       if (present[e]) in_word = in_data[e*InWidth+:InWidth];
-      if (Lanes == 1 || lane_q == LaneWidth'(e)) out_word = out_data[e*Width+:Width];
+      if (Lanes == 1 || lane_q2 == LaneWidth'(e)) out_word = out_data[e*Width+:Width];
     end
   end
 
@@ -85,17 +85,18 @@ module fv_back_substitution #(
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
   initial $readmemh("square.hex", square);
 
-  // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier
-  // takes it. A step from lane to lane is as long as the way, so the next word of the column finds the last one done.
+  // The recursion: a step in each clock in which the word followed is so old, as the multiplier takes it. A step from
+  // lane to lane is as long as the way from the product on, so the next word of the column finds the last one done.
+  // Before the product there may be a word already (d, c, lane_q), behind it another (d_q, c_q, lane_q2).
   logic [Latency*Lanes-1:0] start_q, frame_start_q;
   logic [Latency-1:0] old;  // old[n]: a word of the column was present n + 1 enabled clocks ago
-  logic signed [InWidth-1:0] d;
-  logic signed [CoeffWidth-1:0] c;
+  logic signed [InWidth-1:0] d, d_q;
+  logic signed [CoeffWidth-1:0] c, c_q;
   logic [LastShiftWidth-1:0] unused_shift;
   logic signed [Width-1:0] below, below_q, z;  // below: z of the row below
   logic signed [Width+CoeffWidth-1:0] product;
   logic signed [ExactWidth-1:0] exact;
-  logic unused_clipped, of_last_row, of_first_row;
+  logic unused_clipped, of_last_row, of_first_row, of_first_row_q;
   round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
     .in(exact), .out(z), .clipped(unused_clipped)
   );
@@ -118,9 +119,12 @@ module fv_back_substitution #(
         of_last_row <= burst == '0;
         of_first_row <= burst == RowWidth'(Rows - 1);
       end
-      if (old[2]) below_q <= of_last_row ? '0 : below;
-      if (old[4]) product <= below_q * c;
-      if (old[5]) exact <= (ExactWidth'(d) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
+      if (old[3]) begin
+        below_q <= of_last_row ? '0 : below;
+        {d_q, c_q, lane_q2, of_first_row_q} <= {d, c, lane_q, of_first_row};
+      end
+      if (old[4]) product <= below_q * c_q;
+      if (old[5]) exact <= (ExactWidth'(d_q) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
       if (old[6]) below <= z;
     end
     if (rst) begin
@@ -136,7 +140,7 @@ module fv_back_substitution #(
       frame_start_when_due: assert (out_frame_start == frame_start_q[(Latency-1)*Lanes+:Lanes]);
       if (old[Latency-1]) substituted: assert (out_word == below);
       if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
-      last_out: cover (old[Latency-1] && of_first_row && below != '0 && held);
+      last_out: cover (old[Latency-1] && of_first_row_q && below != '0 && held);
     end
   end
 

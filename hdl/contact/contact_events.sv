@@ -7,7 +7,7 @@
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat, raster order or,
 // BottomFirst, bottom row first; they are never held back. A frame that begins inside another begins afresh. Settings
 // and in_time are taken with a frame's first beat. From the last beat of a frame to that of the next lie at least
-// Latency cycles, which any frame of at least 32 beats has, 48 with 32 lanes. Gaps change nothing.
+// Latency cycles: a solver begins a frame every Rows Columns cycles, whatever Lanes is. Gaps change nothing.
 //
 // Record: 13 words of 32 bits, word n in bits 32 n + 31 to 32 n, kept until the next; zero after a reset. Words 4 to 12
 // are zero for a frame with nothing above the threshold. Positions are {row, column} in 31:16 and 15:0, with rows
@@ -113,8 +113,8 @@ module contact_events
   end
 
   // A module that does not exist stops every tool where a parameter is refused.
-  if (Rows * Columns / Lanes < Latency) begin : g_refused
-    a_frame_must_have_at_least_Latency_beats_48_are_enough u_refused ();
+  if (Rows * Columns < Latency) begin : g_refused
+    a_frame_must_take_at_least_Latency_cycles u_refused ();
   end
 
 endmodule

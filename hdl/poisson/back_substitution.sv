@@ -6,8 +6,9 @@
 // Stream in: bursts of Size words d, Rows of them a frame, last row first, to the lanes in turn; with more than one,
 // each row Size / Lanes clocks after the row before. Stream out: the same bursts of z, Width bits. Latency: 8 cycles;
 // en low: nothing moves.
-// The lanes are a ring: each takes z of the row below from the lane before it, the first from the last. One multiplier
-// for each lane. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
+// The lanes are a ring: each takes z of the row below from the lane before it, the first from the last. z waits in a
+// memory; where a row is 4 clocks behind the row before, it goes straight into the next product. One multiplier for
+// each lane. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
 
 `default_nettype none
 
@@ -44,6 +45,7 @@ module back_substitution #(
   localparam int Align = Lift + CoeffWidth - 1;
   localparam int SumWidth = (InWidth + Align > ProductWidth ? InWidth + Align : ProductWidth) + 1;
   localparam int ToSum = 7;
+  localparam int Direct = 4;  // clocks from the product with z of the row below to z
 
   logic [Lanes-1:0] clipped_q;
 
@@ -69,14 +71,13 @@ module back_substitution #(
 
     logic [ToSum:0] active_q;
     logic [ToSum-1:0] start_q, frame_start_q;
-    logic [(ToSum+1)*StepWidth-1:0] position_q;  // in the row of words that are below
     logic signed [InWidth-1:0] data_q, data_q2, data_q3, data_q4, data_q5, data_q6;
-    logic signed [Width-1:0] below, below_q2, below_q3, rounded;
+    logic signed [Width-1:0] below, rounded;
     logic signed [ProductWidth-1:0] product;
     logic signed [SumWidth-1:0] sum;
     logic first_q, first_q2, first_q3, clipped;
     multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-      .clk, .en, .a(below_q3), .b(coefficient), .product
+      .clk, .en, .a(below), .b(coefficient), .product
     );
     round_saturate #(.InWidth(SumWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
       .in(sum), .out(rounded), .clipped
@@ -87,7 +88,6 @@ module back_substitution #(
         start_q <= {start_q[ToSum-2:0], in_start[lane]};
         frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start[lane]};
         active_q <= {active_q[ToSum-1:0], active};
-        position_q <= {position_q[ToSum*StepWidth-1:0], position[StepWidth-1:0]};
         first_q <= row == RowWidth'(Rows - 1);
         first_q2 <= first_q;
         first_q3 <= first_q2;
@@ -98,8 +98,6 @@ module back_substitution #(
         data_q4 <= data_q3;
         data_q5 <= data_q4;
         data_q6 <= data_q5;
-        below_q2 <= first_q3 ? '0 : below;
-        below_q3 <= below_q2;
         sum <= (SumWidth'(data_q6) <<< Align) - SumWidth'(product);
         out_data[lane*Width+:Width] <= rounded;
         out_start[lane] <= start_q[ToSum-1];
@@ -116,20 +114,40 @@ module back_substitution #(
       end
     end
 
-    // z of the lane before: a word is read before the next one comes to its place, Step clocks behind it.
-    ram #(
-      .Width(Width),
-      .Depth(Step),
-      .Style((Width * Step > 4096) ? 1 : 0)
-    ) u_row_below (
-      .clk,
-      .write_en     (en & g_lane[Before].active_q[ToSum]),
-      .write_address(g_lane[Before].position_q[ToSum*StepWidth+:StepWidth]),
-      .write_data   (out_data[Before*Width+:Width]),
-      .read_en      (en & active_q[1]),
-      .read_address (position_q[StepWidth+:StepWidth]),
-      .read_data    (below)
-    );
+    // z of the row below, out of the lane before.
+    if (Step == Direct) begin : g_direct
+      logic first_q4;
+      always_ff @(posedge clk) begin
+        if (en) begin
+          first_q4 <= first_q3;
+          below <= first_q4 ? '0 : out_data[Before*Width+:Width];
+        end
+      end
+    end else begin : g_waits
+      // A word is read before the next one comes to its place, Step clocks behind it.
+      logic [(ToSum+1)*StepWidth-1:0] position_q;  // in the row of words that are below
+      logic signed [Width-1:0] waiting, below_q;
+      ram #(
+        .Width(Width),
+        .Depth(Step),
+        .Style((Width * Step > 4096) ? 1 : 0)
+      ) u_row_below (
+        .clk,
+        .write_en     (en & g_lane[Before].active_q[ToSum]),
+        .write_address(g_lane[Before].g_waits.position_q[ToSum*StepWidth+:StepWidth]),
+        .write_data   (out_data[Before*Width+:Width]),
+        .read_en      (en & active_q[1]),
+        .read_address (position_q[StepWidth+:StepWidth]),
+        .read_data    (waiting)
+      );
+      always_ff @(posedge clk) begin
+        if (en) begin
+          position_q <= {position_q[ToSum*StepWidth-1:0], position[StepWidth-1:0]};
+          below_q <= first_q3 ? '0 : waiting;
+          below <= below_q;
+        end
+      end
+    end
   end
 
   always_comb begin
@@ -138,8 +156,8 @@ module back_substitution #(
   end
 
   // A module that does not exist stops every tool where a parameter is refused.
-  if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || (Lanes > 1 && Size / Lanes < 8)) begin : g_refused
-    Lanes_must_be_a_power_of_two_and_at_most_Size_by_8 u_refused ();
+  if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || (Lanes > 1 && Size / Lanes < Direct)) begin : g_refused
+    Lanes_must_be_a_power_of_two_and_at_most_Size_by_4 u_refused ();
   end
 
 endmodule

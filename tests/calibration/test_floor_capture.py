@@ -24,6 +24,7 @@ from tb.stream import REGRESS
         ((16, 8, 1, 24, LARGEST_LOG2, 1),),
         ((128, 20, 3, 24, 2, 8),),
         ((256, 9, 3, 24, 1, 32),),
+        ((128, 17, 3, 24, 1, 32),),
     ],
 )
 def test_rtl(run_tb: Callable[..., None], case: tuple[int, ...]) -> None:

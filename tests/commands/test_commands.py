@@ -82,9 +82,9 @@ def require_library() -> None:
 LANES = {
     "LANES=2 SOLVER=spectral": "LANES=2 with SOLVER=spectral: it puts out one depth value per clock: set LANES=1, or "
     "SOLVER=tridiagonal",
-    "LANES=32 SOLVER=tridiagonal": "LANES=32 with N=128: accepted are 1 to 16",
+    "LANES=64 SOLVER=tridiagonal": "LANES=64 with N=128: accepted are 1 to 32",
     "LANES=6 SOLVER=tridiagonal": "LANES=6 is not a power of two: try LANES=4 or LANES=8",
-    "LANES=0 SOLVER=tridiagonal": "LANES=0 with N=128: accepted are 1 to 16",
+    "LANES=0 SOLVER=tridiagonal": "LANES=0 with N=128: accepted are 1 to 32",
     "LANES=many": "LANES=many: accepted is a whole number",
 }
 

@@ -55,7 +55,7 @@ def test_the_plan_is_the_issue_s() -> None:
         assert {row["columns"] for row in others} == {"32", "64", "128", "256", "512"}
         assert Counter(row["boundary"] for row in others)["neumann"] == 1
     lanes = [(row["columns"], int(row["lanes"])) for row in rows if row["lanes"] != "1"]
-    assert Counter(lanes) == Counter([("128", 1 << n) for n in range(1, 5)] + [("256", 1 << n) for n in range(1, 6)])
+    assert Counter(lanes) == Counter([("128", 1 << n) for n in range(1, 6)] + [("256", 1 << n) for n in range(1, 6)])
 
 
 def test_lanes_change_the_cost_and_the_last_depth_alone() -> None:

@@ -14,11 +14,12 @@ from tactile_depth.rom_files import write_thomas
 NAMES = ("Width", "CoeffWidth", "Rows", "Size", "TableWords", "SettledWidth")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 LANES = {"columns": 32, "rows": 11, "solver": "tridiagonal", "lanes": 4}
+MOST = CHOICES | {"lanes": 4}  # z of the row below does not wait
 
 
 @pytest.mark.structures(
     "choices",
-    verilator=[(CHOICES,), (LANES,)],
+    verilator=[(CHOICES,), (LANES,), (MOST,)],
     icarus=[
         (CHOICES | {"neumann": True},),
         (CHOICES | {"lanes": 2},),
@@ -27,7 +28,9 @@ LANES = {"columns": 32, "rows": 11, "solver": "tridiagonal", "lanes": 4}
         (CHOICES | {"data_width": 12, "coefficient_width": 10},),  # few bits are dropped: ties are common
         (CHOICES,),
         (LANES,),
+        (MOST,),
         (LANES | {"rows": 8, "columns": 128, "lanes": 16, "neumann": True},),  # fewer rows than lanes
+        (LANES | {"rows": 11, "columns": 128, "lanes": 32, "neumann": True},),
         (CHOICES | {"rows": 21, "data_width": 32, "coefficient_width": 24},),
     ],
 )

@@ -26,13 +26,15 @@ PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, mo
 @pytest.mark.structures(
     "choices store",
     verilator=[(CHOICES, {}), (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {})],
-    icarus=[(CHOICES | {"rows": 21, "neumann": True}, {}), (CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {})],
+    icarus=[(CHOICES | {"rows": 21, "neumann": True}, {}), (CHOICES | {"lanes": 4, "rows": 9, "neumann": True}, {})],
     regress=[
         (CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}),
         (CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
         (CHOICES | {"columns": 32, "rows": 11}, PACKED),
         (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {}),
         (CHOICES | {"columns": 64, "rows": 13, "lanes": 8}, PACKED),
+        (CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {}),
+        (CHOICES | {"columns": 128, "rows": 37, "lanes": 32}, {}),
         (CHOICES | {"columns": 256, "rows": 40, "lanes": 32, "neumann": True}, {}),
         (CHOICES, {}),
     ],
