@@ -105,7 +105,7 @@ CORES = {
     "frame_stack": Core((5, 6)),
     "spectral_divide": Core((2,), "bursts", rows_are="Size"),
     "forward_elimination": Core((2,), "bursts"),
-    "back_substitution": Core((4, 3)),
+    "back_substitution": Core((5, 4, 6)),
     "mode_pairs": Core((4,), "bursts"),
     "sdf_butterfly": Core((2,), "bursts"),
     "twiddle_multiply": Core((6,), "bursts"),
@@ -121,7 +121,7 @@ CORES = {
     "table_banks": Core(),
     "axil_registers": Core((1,), simulators=QUICK_FIRST, flat=False),
     "spectral_solver": Core((2,), "words", rows_are="Size", simulators=QUICK_FIRST, flat=False),
-    "tridiagonal_solver": Core((4, 3), "words", simulators=QUICK_FIRST, flat=False),
+    "tridiagonal_solver": Core((4, 9), "words", simulators=QUICK_FIRST, flat=False),
     "tactile_depth": Core((1,), simulators=("verilator",), flat=False),
 }
 # Files without mutants of their own.

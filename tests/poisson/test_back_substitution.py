@@ -26,6 +26,7 @@ MOST = CHOICES | {"lanes": 4}  # z of the row below does not wait
     ],
     regress=[
         (CHOICES | {"data_width": 12, "coefficient_width": 10},),  # few bits are dropped: ties are common
+        (MOST | {"data_width": 12, "coefficient_width": 10},),
         (CHOICES,),
         (LANES,),
         (MOST,),
