@@ -14,7 +14,7 @@ from tactile_depth.rom_files import write_words
 BLOCK = 16384  # bits of a block memory
 WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/ram.sv builds without slices
 
-MULTIPLIER, REGISTER = "MULT18X18D", "TRELLIS_FF"
+MULTIPLIER, REGISTER, MEMORY, LOGIC = "MULT18X18D", "TRELLIS_FF", "DP16KD", "LUT4"
 SIDES, WIDTH = "AB", 18
 CLOCKS = 4  # number of clocks, of enables and of resets of a multiplier
 Bit = int | str  # of Yosys' JSON: number of a net, or "0", "1", "x"
@@ -35,8 +35,10 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
     """Move registers around multipliers into them, in a flat module of Yosys' JSON after synth_ecp5.
 
     Operands move when every bit of both comes from a register without reset and each operand has one enable. A constant
-    bit counts as registered, because the other bits are unknown before their first clock too. The product of such a
-    multiplier moves when every bit goes into one register without reset and nowhere else, all with one enable.
+    bit counts as registered, because the other bits are unknown before their first clock too. They stay where one comes
+    from a block memory through logic: a memory takes more than half of a clock, so its register has to be near it. The
+    product of such a multiplier, moved or not, moves when every bit goes into one register without reset and nowhere
+    else, all with one enable.
 
     Returns
     -------
@@ -54,6 +56,7 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
         for bit in bits
     )
     readers.update(bit for port in module["ports"].values() if port["direction"] != "input" for bit in port["bits"])
+    late = _behind_memories(cells)
     multipliers = [cell for cell in cells.values() if cell["type"] == MULTIPLIER]
     before = len(cells)
     operands = products = 0
@@ -62,11 +65,14 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
         sources, controls = _sources(ports, cells, registers)
         if len(controls) != len(SIDES) or not _compatible(controls):
             continue
-        operands += 1
-        for pin, register in sources.items():
-            readers[ports[pin][0]] -= 1
-            ports[pin] = register["connections"]["DI"]
-            readers[ports[pin][0]] += 1
+        if any(register["connections"]["DI"][0] in late for register in sources.values()):
+            controls = {}
+        else:
+            operands += 1
+            for pin, register in sources.items():
+                readers[ports[pin][0]] -= 1
+                ports[pin] = register["connections"]["DI"]
+                readers[ports[pin][0]] += 1
         outputs = {pin: ports[pin][0] for pin in ports if pin[0] == "P" and readers[ports[pin][0]]}
         if outputs and all(readers[bit] == 1 and bit in behind for bit in outputs.values()):
             sinks = {pin: behind[bit] for pin, bit in outputs.items()}
@@ -77,12 +83,30 @@ def pack(module: dict[str, Any]) -> dict[str, int]:
                 for pin, name in sinks.items():
                     ports[pin] = cells.pop(name)["connections"]["Q"]
                     del registers[ports[pin][0]]
-        _configure(multiplier, {name: control for name, (control,) in controls.items() if control})
+        if controls:
+            _configure(multiplier, {name: control for name, (control,) in controls.items() if control})
     for bit, name in registers.items():
         if not readers[bit]:
             del cells[name]
     removed = before - len(cells)
     return {"multipliers": len(multipliers), "operands": operands, "products": products, "registers": removed}
+
+
+def _behind_memories(cells: Cells) -> set[Bit]:
+    """Return the outputs of logic that has a word of a block memory at an input."""
+    read = {
+        bit
+        for cell in cells.values()
+        if cell["type"] == MEMORY
+        for port, bits in cell["connections"].items()
+        if cell["port_directions"][port] == "output"
+        for bit in bits
+    }
+    return {
+        cell["connections"]["Z"][0]
+        for cell in cells.values()
+        if cell["type"] == LOGIC and any(cell["connections"][pin][0] in read for pin in "ABCD")
+    }
 
 
 def _sources(
