@@ -117,6 +117,18 @@ def test_only_registers_without_reset_are_packed() -> None:
     del straight["cells"]["r105"]
     assert ecp5.pack(straight) == left
 
+    memory = {
+        "type": ecp5.MEMORY,
+        "port_directions": {"DOB0": "output", "ADB0": "input"},
+        "connections": {"DOB0": [50], "ADB0": [51]},
+    }
+    chosen = {  # a word of the memory goes through logic to operand A
+        "type": ecp5.LOGIC,
+        "port_directions": {**dict.fromkeys("ABCD", "input"), "Z": "output"},
+        "connections": {"A": [50], "B": [52], "C": ["0"], "D": ["0"], "Z": [1100]},
+    }
+    assert ecp5.pack(module({"memory": memory, "chosen": chosen})) == left
+
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
