@@ -99,7 +99,8 @@ def environment(core: str, folder: Path, protocol: str, parameters: Mapping[str,
 
     - `holds`: the inputs are allowed. They must be in a reset with all other inputs at 0;
     - `given_<input>`: the value that replaces what is offered;
-    - `counts_<output>`: the cycles in which an output counts; `counts` is that of all outputs without their own.
+    - `counts_<output>`: the cycles in which an output counts, as a whole or, as wide as the output, bit by bit;
+      `counts` is that of all outputs without their own.
 
     Inputs that the protocol does not allow are replaced, in that cycle, by zeros and a reset. So the module accepts any
     inputs, and its core sees only allowed ones. Proofs by induction need that.
@@ -110,7 +111,8 @@ def environment(core: str, folder: Path, protocol: str, parameters: Mapping[str,
     rules = read_protocol(f"protocol_{protocol}", parameters, folder)
     declared = [f"input wire {across(bits)}any_{name}" for name, bits in inputs.items()]
     declared += [f"output wire [{bits - 1}:0] {name}" for name, bits in outputs.items()]
-    declared += [f"output wire looked_at_{name}" for name in outputs] + [f"output wire {HOLDS}"]
+    wide = {name: rules.get(f"counts_{name}", ("", 1))[1] for name in outputs}
+    declared += [f"output wire {across(wide[name])}looked_at_{name}" for name in outputs] + [f"output wire {HOLDS}"]
     declared += [f"input wire [11:0] {SELECTOR}", "input wire clk"]
     lines = [f"module environment ({', '.join(declared)});"]
     lines += [f"  wire [{bits - 1}:0] {name};" for name, bits in inputs.items()]
@@ -316,7 +318,8 @@ class Miter(Gates):
             port = name.split("[")[0]
             if port == HOLDS or port.startswith("looked_at_"):
                 continue
-            looked_at = read(value, source.outputs[f"looked_at_{port}"])
+            whole, own = f"looked_at_{port}", f"looked_at_{name}"  # of all bits, or of this one
+            looked_at = read(value, source.outputs[own if own in source.outputs else whole])
             wrong[name] = self.both(looked_at, self.differ(read(value, literal), read(other, literal)))
         for literal, following, _ in source.latches:
             if literal not in apart:

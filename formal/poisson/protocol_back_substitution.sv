@@ -10,7 +10,8 @@
 module protocol_back_substitution #(
   parameter int Size  = 8,
   parameter int Rows  = 3,
-  parameter int Lanes = 1
+  parameter int Lanes = 1,
+  parameter int Width = 3   // of a word
 ) (
   input  logic             clk,
   input  logic             rst,
@@ -21,8 +22,8 @@ module protocol_back_substitution #(
   output logic             holds,
   output logic             counts_out_start,
   output logic             counts_out_frame_start,
-  output logic             counts_saturations,
-  output logic             counts
+  output logic [Lanes*Width-1:0] counts_out_data,  // a word of its lane leaves
+  output logic             counts_saturations
 );
 
   localparam int Step = Size / Lanes;
@@ -41,7 +42,10 @@ module protocol_back_substitution #(
   assign counts_out_start = live & ~reset & en;
   assign counts_out_frame_start = counts_out_start;
   assign counts_saturations = live & ~reset;
-  assign counts = counts_out_start & (out_start != '0 | out_left != '0);
+  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
+    assign counts_out_data[lane*Width+:Width]
+        = {Width{counts_out_start & (out_start[lane] | out_left[lane*16+:16] != '0)}};
+  end
 
   always_ff @(posedge clk) begin
     live <= live | reset;

@@ -88,7 +88,7 @@ module back_substitution #(
         start_q <= {start_q[ToSum-2:0], in_start[lane]};
         frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start[lane]};
         active_q <= {active_q[ToSum-1:0], active};
-        first_q <= row == RowWidth'(Rows - 1);
+        first_q <= lane == 0 && row == RowWidth'(Rows - 1);
         first_q2 <= first_q;
         first_q3 <= first_q2;
         row_q <= row - (active && position == PositionWidth'(Size - 1) ? RowWidth'(Lanes) : '0);
