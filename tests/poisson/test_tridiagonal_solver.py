@@ -34,11 +34,8 @@ PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, mo
         (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {}),
         (CHOICES | {"columns": 64, "rows": 13, "lanes": 8}, PACKED),
         (CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {}),
+        (CHOICES | {"columns": 64, "rows": 21, "lanes": 16}, {}),  # 32 lanes: the codes of `make regress`
         (CHOICES, {}),
-    ],
-    regress_verilator=[
-        (CHOICES | {"columns": 128, "rows": 37, "lanes": 32}, {}),
-        (CHOICES | {"columns": 256, "rows": 40, "lanes": 32, "neumann": True}, {}),
     ],
 )
 def test_rtl(run_tb: Callable[..., None], choices: Any, store: Any) -> None:
