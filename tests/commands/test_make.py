@@ -15,7 +15,8 @@ import pytest
 from commands.__main__ import COMMANDS
 from commands.common.repository import ROOT
 
-WITHOUT_COMMAND = ("help", "live-test", "setup", "clean")
+WITHOUT_COMMAND = ("help", "live-test", "system-tools", "setup", "clean")
+WITH_ICARUS = ("lint", "mutate", "netlists", "quick", "regress", "test", "upsets")
 SPY = """#!/usr/bin/env python3
 import json, os, sys
 arguments = sys.argv[1:]
@@ -46,19 +47,24 @@ def targets() -> Any:
     return sorted(line.split()[1:])
 
 
+def _program(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+
+
 @pytest.fixture
 def place(tmp_path: Path) -> Any:
     """Return a folder with the Makefile and a complete virtual environment in which SPY replaces Python."""
     shutil.copy(ROOT / "Makefile", tmp_path)
-    (tmp_path / "commands" / "common").mkdir(parents=True)
-    (tmp_path / "commands" / "common" / "icarus.sh").write_text("true\n")
+    tools = {"iverilog": "", "dpkg": 'exit "${MISSING:-0}"', "id": 'echo "${USER_ID:-0}"'}
+    tools |= {"apt-get": 'echo apt-get "$@" >> system', "sudo": 'echo sudo >> system; exec "$@"'}
+    for name, script in tools.items():  # no test changes the system
+        _program(tmp_path / "tools" / name, f"#!/bin/sh\n{script}\n")
     (tmp_path / "submake").write_text("all:\n\t@true\n")
     for requirements in ROOT.glob("requirements*.txt"):
         (tmp_path / requirements.name).touch()
-    (tmp_path / ".venv" / "bin").mkdir(parents=True)
-    python = tmp_path / ".venv" / "bin" / "python"
-    python.write_text(SPY)
-    python.chmod(python.stat().st_mode | stat.S_IXUSR)
+    _program(tmp_path / ".venv" / "bin" / "python", SPY)
     for stamp in ("complete", "verification", "baselines", "hardware"):  # each is newer than its predecessor
         (tmp_path / ".venv" / stamp).touch()
     (tmp_path / ".venv-live").symlink_to(".venv")
@@ -67,8 +73,10 @@ def place(tmp_path: Path) -> Any:
 
 def make(place: Any, *words: Any, **environment: Any) -> Any:
     outside = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+    outside["PATH"] = f"{place / 'tools'}:{outside['PATH']}"
+    program = str(shutil.which("make"))
     return subprocess.run(
-        ["make", *words], cwd=place, env=outside | environment, capture_output=True, text=True, check=False
+        [program, *words], cwd=place, env=outside | environment, capture_output=True, text=True, check=False
     )
 
 
@@ -171,3 +179,43 @@ def test_make_shows_the_status_of_the_command_and_returns_2(place: Any, status: 
     result = make(place, "sim", SPY_STATUS=str(status))
     assert result.returncode == 2
     assert re.search(rf"^make: \*\*\* \[Makefile:\d+: sim\] Error {status}$", result.stderr, re.MULTILINE)
+
+
+def system(place: Any) -> Any:
+    """Return the calls of programs that change the system."""
+    log = place / "system"
+    return log.read_text().splitlines() if log.exists() else []
+
+
+@pytest.mark.parametrize("target", WITH_ICARUS)
+def test_without_icarus_a_target_prints_the_command_that_installs_it(place: Any, target: str) -> None:
+    (place / "tools" / "iverilog").unlink()
+    result = make(place, target, PATH=str(place / "tools"))
+    assert result.returncode == 2
+    line = "Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`"
+    assert result.stderr.splitlines()[0] == line
+    assert re.search(rf"\[Makefile:\d+: {target}\] Error 2$", result.stderr, re.MULTILINE)
+    assert (calls(place), system(place)) == ([], [])
+
+
+@pytest.mark.parametrize("target", sorted({*targets()} - {"system-tools"}))
+def test_no_other_target_changes_the_system(place: Any, target: str) -> None:
+    assert make(place, target, MISSING="1").returncode == 0
+    assert system(place) == []
+
+
+@pytest.mark.parametrize("user", [0, 1000])
+def test_system_tools_installs_what_the_system_lacks(place: Any, user: int) -> None:
+    assert make(place, "system-tools").returncode == 0
+    assert system(place) == [], "nothing is missing"
+    assert make(place, "system-tools", MISSING="1", USER_ID=str(user)).returncode == 0
+    sudo = ["sudo"] if user else []
+    install = "apt-get install -qq g++ git iverilog perl python3-venv"
+    assert system(place) == [*sudo, "apt-get update -qq", *sudo, install]
+
+
+def test_system_tools_names_the_packages_where_apt_is_missing(place: Any) -> None:
+    (place / "tools" / "apt-get").unlink()
+    result = make(place, "system-tools", PATH=str(place / "tools"))
+    assert result.returncode == 2
+    assert "g++ git iverilog perl python3-venv" in result.stderr
