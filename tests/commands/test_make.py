@@ -210,7 +210,7 @@ def test_system_tools_installs_what_the_system_lacks(place: Any, user: int) -> N
     assert system(place) == [], "nothing is missing"
     assert make(place, "system-tools", MISSING="1", USER_ID=str(user)).returncode == 0
     sudo = ["sudo"] if user else []
-    install = "apt-get install -qq g++ git iverilog perl python3-venv"
+    install = "apt-get install -qq g++ git iverilog libpython3-dev perl python3-venv"
     assert system(place) == [*sudo, "apt-get update -qq", *sudo, install]
 
 
@@ -218,4 +218,4 @@ def test_system_tools_names_the_packages_where_apt_is_missing(place: Any) -> Non
     (place / "tools" / "apt-get").unlink()
     result = make(place, "system-tools", PATH=str(place / "tools"))
     assert result.returncode == 2
-    assert "g++ git iverilog perl python3-venv" in result.stderr
+    assert "g++ git iverilog libpython3-dev perl python3-venv" in result.stderr

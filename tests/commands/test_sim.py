@@ -459,6 +459,17 @@ def test_bad_input(
     assert list(out.parent.rglob("*")) == [out], "something was left behind"
 
 
+def test_missing_libpython(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("find_libpython.find_libpython", lambda: None)
+    monkeypatch.setattr("sys.argv", ["sim", "N=16", f"OUT={tmp_path / 'out'}"])
+    with pytest.raises(SystemExit) as stop:
+        sim.main()
+    assert stop.value.code == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "make sim: cocotb needs Python's shared library: run `apt-get install libpython3-dev`"
+    ]
+
+
 def test_missing_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr("sys.argv", ["sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}"])
