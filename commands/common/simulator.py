@@ -44,7 +44,7 @@ COVERAGE_ARGUMENTS = (
 # for a large model, the headers cost several times as much as the code.
 VERILATOR_MAKEFLAGS = (
     "CFG_CXXFLAGS_STD=-std=gnu++20 CFG_CXXFLAGS_COROUTINES=-fcoroutines CFG_LDLIBS_THREADS=-pthread "
-    "VM_PARALLEL_BUILDS=0"
+    f"VM_PARALLEL_BUILDS=0 PYTHON3={sys.executable}"  # a system may have no `python`
 )
 
 RUNTIME = "runtime.h"
