@@ -4,7 +4,9 @@
 import csv
 import json
 import os
+import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -210,40 +212,50 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Any, moment: Any) -> None:
     assert sorted(names) == sorted(sweep.key(choices) for choices in rows)
 
 
+def free_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
+
+
 @pytest.fixture
-def dask_scheduler(tmp_path: Path) -> Iterator[Any]:
-    """Return the address of a cluster with one worker that runs in another folder and lacks the models."""
+def cluster(tmp_path: Path) -> Iterator[list[str]]:
+    """Start the cluster of docs/sweep-cluster.md without the models; yield the arguments of its `make sweep`.
+
+    The address is one of this machine. The commands run in another folder, where nothing of the repository is in reach.
+    """
     pytest.importorskip("distributed", reason="Dask is not installed: run `make setup`")
-    away = tmp_path / "away"
-    away.mkdir()
+    page = (repository.ROOT / "docs" / "sweep-cluster.md").read_text()
+    page = page.replace("192.0.2.1", "127.0.0.1").replace("8786", str(free_port()))
+    *servers, last = (line.split() for line in re.findall(r"^    (.*)$", page, re.MULTILINE))
+    assert [words[:2] for words in servers] == [[".venv/bin/dask", role] for role in ("scheduler", "worker", "worker")]
+    assert last[:2] == ["make", "sweep"]
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    options: dict[str, Any] = {
-        "cwd": away,
-        "env": environment,
-        "stdout": subprocess.DEVNULL,
-        "stderr": subprocess.DEVNULL,
-    }
-    dask = [sys.executable, "-m", "dask"]
-    where = ["--scheduler-file", "scheduler.json"]
-    scheduler = [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", *where]
-    worker = [*dask, "worker", "--nthreads", "1", "--no-dashboard", "--no-nanny", *where]
-    started = [subprocess.Popen(scheduler, **options)]
+    started = []
     try:
-        deadline = time.monotonic() + 60
-        while not (away / "scheduler.json").is_file():
-            assert time.monotonic() < deadline
-            time.sleep(0.1)
-        started.append(subprocess.Popen(worker, **options))
-        yield json.loads((away / "scheduler.json").read_text())["address"].removeprefix("tcp://")
+        for number, (_, *words) in enumerate(servers):
+            away = tmp_path / f"machine {number}"
+            away.mkdir()
+            with (away / "log").open("w") as log:
+                command = [sys.executable, "-m", "dask", *words]
+                started.append(subprocess.Popen(command, cwd=away, env=environment, stdout=log, stderr=log))
+        yield last[2:]
     finally:
         for process in reversed(started):
             process.terminate()
             process.wait()
 
 
-def test_a_dask_cluster_measures_the_same(tmp_path: Path, dask_scheduler: Any) -> None:
-    here = sweep.sweep(SMALL, tmp_path / "here")
-    assert sweep.sweep(SMALL, tmp_path / "there", dask_scheduler) == here
+def test_the_cluster_of_the_page_measures_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], cluster: list[str]
+) -> None:
+    monkeypatch.setattr(sweep, "CONNECT_S", 60)  # the scheduler has only just been started
+    monkeypatch.setattr(sweep, "plan", lambda: SMALL)
+    monkeypatch.setattr("sys.argv", ["sweep", *cluster, f"OUT={tmp_path / 'there'}"])
+    sweep.main()
+    assert f"{len(SMALL)} rows" in capsys.readouterr().out
+    rows = sweep.sweep(SMALL, tmp_path / "here")
+    assert sorted(map(str, table(tmp_path / "there"))) == sorted(map(str, rows))
 
 
 # Bad input: one line that names what was given, exit status 2, earlier results untouched.
