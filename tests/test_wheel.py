@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Package as users get it: a wheel, installed into an empty environment, gives the codes of the RTL."""
+"""Package as users get it: the archive of sources, and its wheel, which gives the codes of the RTL."""
 
 import email
 import fcntl
@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import textwrap
 import zipfile
 from collections.abc import Iterator
@@ -28,7 +29,8 @@ from tactile_depth.resampling import resampling
 from tactile_depth.tactile_depth import top_parameters
 from tests import real_data
 
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "models")
+VERSION = "9.8.7"  # a tag that only the copy has
+BESIDE_THE_PACKAGE = ("CHANGELOG.md", "CITATION.cff", "LICENSE", "PKG-INFO", "README.md", "pyproject.toml", "setup.py")
 UNREACHABLE = ("NewConnectionError", "ConnectTimeoutError", "ReadTimeoutError", "NameResolutionError", "ProxyError")
 DRAWN = """
     sample = td.sample("ball")
@@ -66,17 +68,34 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def wheel(folder: Path) -> Any:
-    """Build the wheel from a copy, because setuptools would include files in build/."""
-    if not list(folder.glob("*.whl")):
+def archive(folder: Path) -> Any:
+    """Build the archive of sources from a copy of the repository whose one commit has a tag."""
+    if not list(folder.glob("*.tar.gz")):
         sources = folder / "sources"
-        for name in SOURCES:
-            if (ROOT / name).is_dir():
-                shutil.copytree(ROOT / name, sources / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-            else:
-                sources.mkdir(exist_ok=True)
-                shutil.copy(ROOT / name, sources)
-        build: list[Any] = ["wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, sources]
+        listed = git(ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0")
+        for name in {*listed} - {""}:
+            if (ROOT / name).exists():
+                (sources / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(ROOT / name, sources / name)
+        git(sources, "init")
+        git(sources, "add", "--all")
+        git(sources, "-c", "user.name=test", "-c", "user.email=test@localhost", "commit", "--message", "copy")
+        git(sources, "tag", f"v{VERSION}")
+        build = f"from setuptools import build_meta; build_meta.build_sdist({str(folder)!r})"
+        subprocess.run([sys.executable, "-c", build], cwd=sources, check=True, capture_output=True)
+    (path,) = folder.glob("*.tar.gz")
+    return path
+
+
+def git(place: Path, *arguments: str) -> str:
+    return subprocess.run(["git", *arguments], cwd=place, check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(folder: Path, archive: Path) -> Any:
+    """Build the wheel from the archive of sources."""
+    if not list(folder.glob("*.whl")):
+        build: list[Any] = ["wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, archive]
         subprocess.run([sys.executable, "-m", "pip", *build], check=True, capture_output=True)
     (path,) = folder.glob("*.whl")
     return path
@@ -133,23 +152,70 @@ def examples() -> Iterator[Any]:
             yield pytest.param(block, id=f"{page}-{index}")
 
 
-def test_the_metadata_say_what_a_user_must_know(wheel: Any) -> None:
+def metadata(wheel: Path) -> Any:
     with zipfile.ZipFile(wheel) as archive:
         (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
-        metadata = email.message_from_bytes(archive.read(name))
-    assert metadata["Requires-Python"] == ">=3.10"
-    assert metadata["License-Expression"] == "Apache-2.0"
-    assert metadata.get_all("Provides-Extra") == ["fit", "plot", "live"]
-    required = [line for line in metadata.get_all("Requires-Dist") if "extra ==" not in line]  # type: ignore[union-attr]
+        return email.message_from_bytes(archive.read(name))
+
+
+def test_the_metadata_say_what_a_user_must_know(wheel: Path) -> None:
+    fields = metadata(wheel)
+    assert fields["Version"] == VERSION
+    assert fields["Requires-Python"] == ">=3.10"
+    assert fields["License-Expression"] == "Apache-2.0"
+    assert fields["Author"] and fields["Keywords"] and fields.get_all("Classifier")  # noqa: PT018
+    assert fields.get_all("Provides-Extra") == ["fit", "plot", "live"]
+    required = [line for line in fields.get_all("Requires-Dist") if "extra ==" not in line]
     assert [re.match(r"\w+", line)[0] for line in required] == ["numpy", "scipy", "Pillow"]  # type: ignore[index]
 
 
-def test_the_wheel_holds_every_module_and_the_data(wheel: Any) -> None:
+def test_every_link_of_the_description_leads_to_a_file(wheel: Path) -> None:
+    """Check README.md as a package index shows it: all links are absolute, and those into the repository exist."""
+    fields = metadata(wheel)
+    urls = dict(line.split(", ") for line in fields.get_all("Project-URL"))
+    address = urls["Repository"]
+    assert fields["Description-Content-Type"] == "text/markdown"
+    links = [*re.findall(r"\]\(([^)\s]+)\)", fields.get_payload()), *urls.values()]
+    assert [link for link in links if not link.startswith("https://")] == []
+    files = [link.removeprefix(address) for link in links if link.startswith(f"{address}/") and link != urls["Issues"]]
+    assert len(files) > 10
+    assert [file for file in files if not (ROOT / re.sub("^/(blob|raw)/main/", "", file)).is_file()] == []
+    other = [
+        line for line in fields.get_payload().split() if "tactile-depth/tactile-depth" in line and address not in line
+    ]
+    assert other == []
+
+
+def test_the_archive_holds_the_package_and_no_tests(archive: Path) -> None:
+    with tarfile.open(archive) as file:
+        names = {member.name.partition("/")[2] for member in file.getmembers() if member.isfile()}
+    package = [path.relative_to(ROOT).as_posix() for path in package_files()]
+    made = {name for name in names if "egg-info/" in name} | {"setup.cfg"}
+    assert names - made == {*BESIDE_THE_PACKAGE, *package}
+
+
+def test_the_version_without_a_tag_or_without_git(archive: Path, tmp_path: Path) -> None:
+    shutil.copytree(archive.parent / "sources", tmp_path / "clone")
+    for what, expected in (("refs/tags", r"0\.1\.1\.dev1\+g[0-9a-f]+"), ("", r"0\.1\.0")):
+        shutil.rmtree(tmp_path / "clone" / ".git" / what)
+        shown = run(sys.executable, tmp_path / "clone", "-m", "setuptools_scm")
+        assert re.fullmatch(expected, shown.strip())
+
+
+def package_files() -> list[Path]:
     package = ROOT / "models" / "tactile_depth"
+    return [*package.rglob("*.py"), *package.rglob("*.npz"), *package.rglob("*.json"), package / "py.typed"]
+
+
+def test_the_wheel_holds_every_module_and_the_data(wheel: Any) -> None:
     with zipfile.ZipFile(wheel) as archive:
         held = {name for name in archive.namelist() if ".dist-info/" not in name}
-    wanted = [*package.rglob("*.py"), *package.rglob("*.npz"), *package.rglob("*.json"), package / "py.typed"]
-    assert held == {path.relative_to(package.parent).as_posix() for path in wanted}
+    assert held == {path.relative_to(ROOT / "models").as_posix() for path in package_files()}
+
+
+def test_the_version_is_that_of_the_tag(environment: Any, tmp_path: Path) -> None:
+    script = "import sys, tactile_depth as td; print(td.__version__, 'numpy' in sys.modules)"
+    assert run(environment, tmp_path, "-c", script).split() == [VERSION, "False"]
 
 
 def test_nothing_beyond_the_declared_is_imported(environment: Any, pictures: Any) -> None:

@@ -17,6 +17,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    __version__: str
     from tactile_depth.errors import InputError, InputWarning
     from tactile_depth.evaluation import Evaluation, evaluate
     from tactile_depth.fitting import fit
@@ -60,6 +61,8 @@ _PLACES = {name: module for module, names in _MODULES.items() for name in names}
 
 def __getattr__(name: str) -> Any:
     """Import a public name on first use, so that a testbench that needs one model does not wait for the others."""
+    if name == "__version__":
+        return importlib.import_module("importlib.metadata").version("tactile-depth")
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(f"{__name__}.{_PLACES[name]}"), name)
