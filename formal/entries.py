@@ -76,5 +76,5 @@ class Structure:
 
 FULL_WIDTH = "the widths in use"
 ONE_ORDER = "the order is one formula for every power of two"
-ROUNDING = "rounding is proven of round_saturate at full width"
+ROUNDING = "rounding is proven of td_round_saturate at full width"
 WORD_FREE = "no word is looked at, so one bit stands for any width"

@@ -5,36 +5,35 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from commands.common.repository import UNITS
+from commands.common.repository import units
 from formal.camera.proofs import CAMERA_PROOFS, CAMERA_WITHOUT_CONTROL
 from formal.entries import FULL_WIDTH, ONE_ORDER, ROUNDING, WORD_FREE, Proof, Structure
 from formal.tables import (
     camera_list,
     factor_rom,
-    floor_lanes_rom,
-    floor_rom,
     gain_rom,
     gradient_rom,
     quadratic_roms,
     reciprocal_rom,
     thomas_roms,
     transform_roms,
+    zero_lanes_rom,
+    zero_rom,
 )
-from tactile_depth.calibration import floor_map
-from tactile_depth.common import divide
+from tactile_depth.common import td_divide, td_node_map
 from tactile_depth.contact import centroid, contact_events
 from tactile_depth.latency import (
     GAIN_MAP,
-    auto_zero_latency,
     dst_forward_latency,
     dst_inverse_latency,
     sdf_fft_latency,
+    zero_offset_latency,
 )
 
 PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
-            "round_saturate",
+            "td_round_saturate",
             "nearest value, ties to even, saturated; clipped exactly when that changes it",
             FULL_WIDTH,
             {"InWidth": in_width, "Drop": drop, "OutWidth": out_width},
@@ -49,9 +48,9 @@ PROOFS: tuple[Proof, ...] = (
             (12, 9, 8),
         )
     ),
-    Proof("axis_skid", "no word lost, repeated, reordered or changed; stable under stall; latency 1", WORD_FREE),
+    Proof("td_axis_skid", "no word lost, repeated, reordered or changed; stable under stall; latency 1", WORD_FREE),
     Proof(
-        "async_fifo",
+        "td_async_fifo",
         "no word lost, repeated, reordered or changed, for clocks of any ratio and wires of any delay below a period; "
         "stable under stall; words and room are seen within 4 clocks of a code's arrival",
         f"codes of three bits, words are only counted; {WORD_FREE}",
@@ -61,13 +60,17 @@ PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
-            "burst_counter", "position counts the words of a burst, active just as long", why, {"Size": size}, depth=20
+            "td_burst_counter",
+            "position counts the words of a burst, active just as long",
+            why,
+            {"Size": size},
+            depth=20,
         )
         for size, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
     ),
     *(
         Proof(
-            "delay_line",
+            "td_delay_line",
             "out is in, Delay enabled clocks later; holds while en is low",
             why,
             {"Delay": delay},
@@ -94,7 +97,7 @@ PROOFS: tuple[Proof, ...] = (
         "dvp_receive",
         "a front for each frame, its bytes without a hole up to the first without room; each frame given up counted "
         "once; out of the queue the same, from the first front after a reset on",
-        "the widths in use; async_fifo is proven by itself",
+        "the widths in use; td_async_fifo is proven by itself",
         free=("write_ready", "read_valid", "word"),
         clocks=2,
     ),
@@ -148,7 +151,7 @@ PROOFS: tuple[Proof, ...] = (
         free=("sums", "area", "mean_position"),
     ),
     *(
-        Proof("ram", "a read returns what was last written to its address", WORD_FREE, {"Style": style})
+        Proof("td_ram", "a read returns what was last written to its address", WORD_FREE, {"Style": style})
         for style in (0, 1, 2)
     ),
     Proof(
@@ -158,14 +161,14 @@ PROOFS: tuple[Proof, ...] = (
         depth=30,
     ),
     Proof(
-        "banked_table",
+        "td_banked_table",
         "a frame reads the bank named when it began; the free bank reads as it was written",
         WORD_FREE,
         depth=30,
     ),
     *(
         Proof(
-            "block_sum",
+            "td_block_sum",
             "a block's sum written 4 clocks behind its rows; an arbitrary word is added once to its block, to no other",
             "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
             {"Signed": signed, "ColumnLog2": column_log2},
@@ -174,17 +177,19 @@ PROOFS: tuple[Proof, ...] = (
         for signed, column_log2 in ((0, 1), (1, 1), (1, 0))
     ),
     Proof(
-        "divide",
+        "td_divide",
         "quotient and remainder, or overflow, a fixed number of clocks after the last start",
         "every numerator and divisor; a bit is found in the same way at any width",
-        {"DivisorWidth": 3, "QuotientWidth": 4, "Latency": divide.cycles(4)},
+        {"DivisorWidth": 3, "QuotientWidth": 4, "Latency": td_divide.cycles(4)},
         depth=30,
     ),
-    Proof("multiply", "the exact product of every enabled clock's operands", "no control but en; no width enters"),
-    Proof("dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),
+    Proof("td_multiply", "the exact product of every enabled clock's operands", "no control but en; no width enters"),
+    Proof(
+        "td_dot_product", "the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"
+    ),
     *(
         Proof(
-            "ramp",
+            "td_ramp",
             "an arbitrary word is the first and so many steps, log2(Count) enabled clocks later",
             "sums are exact at any width; no tree, and one of two levels",
             {"Count": count},
@@ -242,14 +247,14 @@ PROOFS: tuple[Proof, ...] = (
         for sums, claim in (
             (
                 0,
-                "2^k good frames in a row behind a request, done a fixed number of clocks later; memory as ram.sv asks",
+                "2^k good frames in a row behind a request, done a fixed number of clocks later; memory as td_ram asks",
             ),
             (1, "an arbitrary pixel is added once to its node, and to no other"),
         )
     ),
     *(
         Proof(
-            "gain_map",
+            "td_gain_map",
             claim,
             "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
             {"Along": along, "Columns": 4, "Channels": channels, "Latency": GAIN_MAP},
@@ -269,7 +274,7 @@ PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
-            "floor_map",
+            "td_node_map",
             claim,
             "a beat of a half, a whole block, two; a cut row of blocks; weights and sums are exact at any width",
             {
@@ -278,10 +283,10 @@ PROOFS: tuple[Proof, ...] = (
                 "Columns": columns,
                 "BlockLog2": block_log2,
                 "Lanes": lanes,
-                "Latency": floor_map.latency(lanes, block_log2),
+                "Latency": td_node_map.latency(lanes, block_log2),
             },
             depth=50,
-            roms=floor_lanes_rom(2 * (columns >> block_log2), floor_map.side(lanes, block_log2)),
+            roms=zero_lanes_rom(2 * (columns >> block_log2), td_node_map.side(lanes, block_log2)),
             free=("sums",) if along else (),
         )
         for along, claim in (
@@ -292,9 +297,9 @@ PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
-            "floor_capture",
+            "zero_capture",
             "2^k frames behind a request, each node written once, 6 clocks behind its block, done after 7; memory as "
-            "ram.sv asks; of several lanes all a clock later, depths of a block in a beat added up",
+            "td_ram.sv asks; of several lanes all a clock later, depths of a block in a beat added up",
             "two rows of blocks and a cut one, and a single whole one; rows, columns and frames are only counted; a "
             "beat of a block, and of two",
             {"Sums": 0, "Rows": rows, "Columns": 4 * lanes, "Lanes": lanes},
@@ -303,22 +308,22 @@ PROOFS: tuple[Proof, ...] = (
         for rows, lanes in ((5, 1), (2, 1), (3, 2), (3, 4))
     ),
     Proof(
-        "floor_capture",
-        "an arbitrary depth is added once to its node, and to no other; a floor is the mean, ties to even",
+        "zero_capture",
+        "an arbitrary depth is added once to its node, and to no other; a zero offset is the mean, ties to even",
         f"a cut row of blocks; sums are exact at any width; {ROUNDING}",
         {"Sums": 1, "Rows": 3},
         depth=60,
     ),
     *(
         Proof(
-            "auto_zero",
-            "the depths of an arbitrary beat less whatever floors gain_map or floor_map has, saturated, counted if "
-            "clipped, with their marks; its latency; active while a frame is inside; floors read back",
-            f"subtraction is exact at any width; {ROUNDING}; gain_map and floor_map are proven by themselves",
-            {"Rows": 2, "Lanes": lanes, "Latency": auto_zero_latency(lanes, 1)},
+            "zero_offset",
+            "the depths of an arbitrary beat less whatever td_gain_map or td_node_map holds, saturated, counted "
+            "if clipped, with their marks; its latency; active while a frame is inside; zero offsets read back",
+            f"subtraction is exact at any width; {ROUNDING}; td_gain_map and td_node_map are proven by themselves",
+            {"Rows": 2, "Lanes": lanes, "Latency": zero_offset_latency(lanes, 1)},
             depth=45,
-            roms=floor_rom,
-            free=("floor_words",),
+            roms=zero_rom,
+            free=("zero_words",),
         )
         for lanes in (1, 2)
     ),
@@ -548,7 +553,7 @@ STRUCTURES = tuple(
     for neumann, colours in (
         (0, {}),
         (1, {}),
-        (1, {"flat_field": 1, "auto_zero": 1}),
+        (1, {"flat_field": 1, "zero_offset": 1}),
         (0, {"flat_field": 1, "gradient_model": "quadratic"}),
     )
 )
@@ -559,8 +564,8 @@ WITHOUT_CONTROL: Mapping[str, str] = {
         ("setting_registers", "event_registers", "table_access"),
         "every register and output of it is proven through the port: axil_registers",
     ),
-    **dict.fromkeys(UNITS, "proven cores in a row; what it adds, the testbench of tactile_depth checks"),
-    "rom": "one read register and no other state; its contents and addresses are proven of those that use it",
+    **dict.fromkeys(units(), "proven cores in a row; what it adds, the testbench of tactile_depth checks"),
+    "td_rom": "one read register and no other state; its contents and addresses are proven of those that use it",
     **dict.fromkeys(
         ("spectral_solver", "tridiagonal_solver"),
         "a chain of proven cores, each of which takes what the one before it sends; no control of its own",

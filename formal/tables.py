@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_depth.camera.camera_setup import Entry, Kind
 from tactile_depth.camera.register_lists import write_list
-from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
+from tactile_depth.rom_files import write_gains, write_quadratic, write_words, write_zero
 
 
 def gradient_rom(folder: Path) -> None:
@@ -31,18 +31,18 @@ def gain_rom(nodes: int) -> Callable[[Path], None]:
     return lambda folder: write_gains(folder, np.stack((gains, gains, gains), axis=-1), 1)
 
 
-def floor_rom(folder: Path) -> None:
+def zero_rom(folder: Path) -> None:
     """Two nodes of two bits."""
-    write_floor(folder, np.array([-1, 1]), 2)
+    write_zero(folder, np.array([-1, 1]), 2)
 
 
-def floor_lanes_rom(nodes: int, side: int) -> Callable[[Path], None]:
+def zero_lanes_rom(nodes: int, side: int) -> Callable[[Path], None]:
     """Nodes of one bit, `side` of them in a word of the memory; nodes.hex: all of them in order."""
 
     def write(folder: Path) -> None:
-        floor = np.array([(node % 3 & 1) - 1 for node in range(nodes)])
-        write_floor(folder, floor, 1, side)
-        write_words(folder / "nodes.hex", floor + 1, 1)
+        zero = np.array([(node % 3 & 1) - 1 for node in range(nodes)])
+        write_zero(folder, zero, 1, side)
+        write_words(folder / "nodes.hex", zero + 1, 1)
 
     return write
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactile_depth: RGB frames of a lit gel in, depth maps and contact out.
 //
-//   s_axis -> video_in -> gradient_unit -> poisson_unit -> depth_unit -> contact_unit -> m_axis, contact, m_event
+//   s_axis -> video_unit -> gradient_unit -> poisson_unit -> depth_unit -> contact_unit -> m_axis, contact, m_event
 //                                    axil_registers <-> s_axil
 //
 // Stream in: AXI4-Stream Video, R in 23:16, B in 15:8, G in 7:0, raster order, one pixel per clock sustained.
@@ -14,9 +14,9 @@
 `default_nettype none
 
 module tactile_depth
-  import default_parameters_pkg::*;
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_config_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   // Tridiagonal 0: spectral solver; Neumann 1: zero slope at the edge, 0: zero depth; Size: columns; Lanes: depths in a
@@ -35,11 +35,11 @@ module tactile_depth
   parameter int TableWords = DefaultTableWords, parameter int SettledWidth = DefaultSettledWidth,
   parameter int LastShiftWidth = DefaultLastShiftWidth, parameter int MomentDrop = DefaultMomentDrop,
   parameter int MeanReciprocal = DefaultMeanReciprocal, parameter int MeanDrop = DefaultMeanDrop,
-  // Slopes from a table or, Quadratic, by quadratics; FlatField: colours relative to a reference frame; AutoZero: depth
-  // less what it reads where nothing touches.
+  // Slopes from a table or, Quadratic, by quadratics; FlatField: colours relative to a reference frame; ZeroOffset:
+  // depth less what it reads where nothing touches.
   parameter int BitsPerChannel = DefaultBitsPerChannel, parameter int Quadratic = DefaultQuadratic,
-  parameter int FlatField = DefaultFlatField, parameter int AutoZero = DefaultAutoZero,
-  parameter int BlockLog2 = DefaultBlockLog2, parameter int FloorLog2 = DefaultFloorLog2,
+  parameter int FlatField = DefaultFlatField, parameter int ZeroOffset = DefaultZeroOffset,
+  parameter int BlockLog2 = DefaultBlockLog2, parameter int ZeroLog2 = DefaultZeroLog2,
   parameter int CaptureLog2 = DefaultCaptureLog2, parameter int GainWidth = DefaultGainWidth,
   parameter int GainFraction = DefaultGainFraction, parameter int ColourWidth = DefaultColourWidth,
   parameter int ColourDrop = DefaultColourDrop, parameter int ColourOffset = DefaultColourOffset,
@@ -102,18 +102,18 @@ module tactile_depth
   logic [23:0] pixel_data;
   position_t pixel_position;
   faults_t faults;
-  video_in #(.Rows(Rows), .Columns(Size)) u_video (
+  video_unit #(.Rows(Rows), .Columns(Size)) u_video (
     .clk, .rst, .en, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
     .timeout, .faults, .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position, .pixel_frame_start,
     .pixel_frame_end, .pixel_bad, .now, .frame_time
   );
 
   table_command_t table_command;
-  table_answer_t slope_answer, floor_answer;
-  capture_command_t reference_command, floor_command;
-  capture_status_t reference_status, floor_status;
+  table_answer_t slope_answer, zero_answer;
+  capture_command_t reference_command, zero_command;
+  capture_status_t reference_status, zero_status;
   logic [7:0] dark_level;
-  logic [3:0] table_bank, slope_in_use, floor_in_use;
+  logic [3:0] table_bank, slope_in_use, zero_in_use;
   logic [2:0] slope_saturations;
   logic dark, slope_valid;
   position_t slope_position;
@@ -153,10 +153,10 @@ module tactile_depth
   logic [31:0] depth_time;
   depth_unit #(
     .TableFolder(TableFolder), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .Lanes(Lanes),
-    .FrameLatency(FrameLatency), .AutoZero(AutoZero), .BlockLog2(BlockLog2), .FloorLog2(FloorLog2)
+    .FrameLatency(FrameLatency), .ZeroOffset(ZeroOffset), .BlockLog2(BlockLog2), .ZeroLog2(ZeroLog2)
   ) u_depth (
-    .clk, .rst, .en, .table_command, .table_answer(floor_answer), .table_bank, .table_in_use(floor_in_use),
-    .capture_command(floor_command), .capture_status(floor_status), .saturations(depth_saturations), .out_of_step,
+    .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
+    .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
     .busy(depth_busy), .pixel_frame_end, .pixel_bad, .frame_time, .burst_start, .solved_frame_start, .solved_data,
     .depth_valid, .depth_position, .depth_data, .depth_time
   );
@@ -182,7 +182,7 @@ module tactile_depth
   axil_registers #(
     .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth),
     .GradientWidth(GradientWidth), .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
-    .FlatField(FlatField), .Quadratic(Quadratic), .AutoZero(AutoZero), .Lanes(Lanes), .BlockLog2(BlockLog2),
+    .FlatField(FlatField), .Quadratic(Quadratic), .ZeroOffset(ZeroOffset), .Lanes(Lanes), .BlockLog2(BlockLog2),
     .GainWidth(GainWidth), .PolynomialWords(PolynomialWords), .DepthMantissa(DepthMantissa),
     .DepthExponent(DepthExponent), .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
   ) u_registers (
@@ -191,8 +191,8 @@ module tactile_depth
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .irq, .events, .levels({video_busy | depth_busy | m_axis_tvalid, contact, touching}), .first_depth_latency,
     .first_depth_latency_valid, .record, .contact_settings, .timeout, .dark_level,
-    .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | floor_answer), .table_bank,
-    .table_in_use(slope_in_use | floor_in_use), .reference_command, .reference_status, .floor_command, .floor_status
+    .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer), .table_bank,
+    .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command, .zero_status
   );
 
 endmodule

@@ -14,7 +14,7 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from tactile_depth.frame.frame_guard import Word
+from tactile_depth.video.frame_guard import Word
 
 VIDEO = ("data", "last", "user")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of depth for auto_zero and floor_capture: words with the marks of frames and rows."""
+"""Frames of depth for zero_offset and zero_capture: words with the marks of frames and rows."""
 
 import random
 from typing import Any

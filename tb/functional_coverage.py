@@ -18,9 +18,9 @@ import cocotb
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.configuration import COLUMNS, ROWS, Configuration
-from tactile_depth.frame.frame_guard import FAULTS
 from tactile_depth.latency import frame_latency
 from tactile_depth.registers.register_map import MAP
+from tactile_depth.video.frame_guard import FAULTS
 from tb import structs
 from tb.axis import PROFILES
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bus and capture of gain_map and of the cores that contain it: expected content of both banks, change-overs."""
+"""Bus and capture of td_gain_map and of the cores that contain it: expected content of both banks, change-overs."""
 
 import random
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from tactile_depth.calibration.flat_field import unit_gains
-from tactile_depth.calibration.gain_map import ENTRIES_PER_NODE, table_entries
+from tactile_depth.common.td_gain_map import ENTRIES_PER_NODE, table_entries
 from tactile_depth.configuration import Configuration, Format, gain_fraction
+from tactile_depth.gradient.flat_field import unit_gains
 from tb.stream import parameters, places
 
 READ_CLOCKS = 2  # from table_read to the gain

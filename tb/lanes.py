@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tb.stream import Bench, StreamMonitor, check_frame_starts, check_words, interrupt
 
 

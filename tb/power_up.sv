@@ -12,7 +12,7 @@ module power_up (
 
   always_ff @(posedge clk) kept <= kept;
 
-  ram #(.Width(32), .Depth(16)) u_ram (
+  td_ram #(.Width(32), .Depth(16)) u_ram (
     .clk, .write_en(1'b0), .write_address('0), .write_data('0), .read_en(1'b1), .read_address(address),
     .read_data(word)
   );

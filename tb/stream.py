@@ -13,7 +13,7 @@ from cocotb.triggers import RisingEdge
 from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 
 CLOCK_NS = 6
@@ -84,7 +84,7 @@ def raster(rows: int, columns: int) -> list[Any]:
 
 
 def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
-    """Pack the position of a depth as depth_position_t of hdl/common/stream_pkg.sv."""
+    """Pack the position of a depth as depth_position_t of hdl/td_types_pkg.sv."""
     return int(frame_start) << 2 | int(row_end) << 1 | int(frame_end)
 
 
@@ -411,6 +411,8 @@ async def drive(dut: Any, stimuli: Any, outputs: Any, pause: float = 0.0) -> Any
     chance = random.Random(cocotb.RANDOM_SEED)
     has_en = hasattr(dut, "en")
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    for pin in stimuli[0]:
+        getattr(dut, pin).value = 0  # a pin that is random at first may write a word
     for pin in ("rst", "en"):
         if hasattr(dut, pin):
             getattr(dut, pin).value = 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Members by name of the packed structs in hdl/common/stream_pkg.sv, which a simulator shows as vectors."""
+"""Members by name of the packed structs in hdl/td_types_pkg.sv, which a simulator shows as vectors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from commands.common.repository import HDL
 
-SOURCE = HDL / "common" / "stream_pkg.sv"
+SOURCE = HDL / "td_types_pkg.sv"
 STRUCT = re.compile(r"typedef struct packed \{(.*?)\} (\w+);", re.DOTALL)
 MEMBER = re.compile(r"^ +(\w+) +(?:\[(\d+):0\] +)?(\w+);", re.MULTILINE)
 

@@ -74,9 +74,15 @@ def places(dut: Any) -> list[Place]:
             elif isinstance(child, HierarchyObject):
                 inner = child._def_name
                 if inner in cores():
-                    if inner != "rom":
+                    if inner != "td_rom":
                         # A memory counts for the core that contains it, and so does a counter or a delay line.
-                        shared = inner in ("ram", "delay_line", "burst_counter", "round_saturate", "dot_product")
+                        shared = inner in (
+                            "td_ram",
+                            "td_delay_line",
+                            "td_burst_counter",
+                            "td_round_saturate",
+                            "td_dot_product",
+                        )
                         visit(child, inner, owner if shared else inner)
                 else:
                     visit(child, module, owner)

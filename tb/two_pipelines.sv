@@ -6,7 +6,7 @@
 `default_nettype none
 
 module two_pipelines
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 (
   input  wire         clk,
   input  wire         rst,

@@ -12,20 +12,20 @@ from commands.common import repository
 from commands.hardware import yosys
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import CORES, KINDS, Multiplier, cost
+from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
-from tactile_depth.transform.sdf_fft import twiddle_stages
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
     {"columns": 32, "data_width": 30, "coefficient_width": 20, "neumann": True},
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "bits_per_channel": 2, "data_width": 20},
     {"columns": 64, "rows": 24, "solver": "tridiagonal", "neumann": True, "coefficient_width": 14},
-    {"columns": 32, "rows": 24, "solver": "tridiagonal", "neumann": True, "auto_zero": True},
+    {"columns": 32, "rows": 24, "solver": "tridiagonal", "neumann": True, "zero_offset": True},
     {"columns": 16, "rows": 24, "solver": "tridiagonal", "flat_field": True, "gradient_model": "quadratic"},
     {"columns": 512, "rows": 48, "solver": "tridiagonal", "bits_per_channel": 2},  # words three to a memory row
     {"columns": 16, "rows": 9, "solver": "tridiagonal", "lanes": 2, "bits_per_channel": 2},
-    {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "auto_zero": True, "neumann": True},
+    {"columns": 64, "rows": 21, "solver": "tridiagonal", "lanes": 8, "zero_offset": True, "neumann": True},
 ]
 
 INSTANCES = {  # in the units and solvers
@@ -45,8 +45,8 @@ INSTANCES = {  # in the units and solvers
     "u_up": "back_substitution",
     "u_row_inverse": "dst_inverse",
     "u_column_inverse": "dst_inverse",
-    "u_auto_zero": "auto_zero",
-    "u_capture": "floor_capture",
+    "u_zero_offset": "zero_offset",
+    "u_capture": "zero_capture",
 }
 
 
@@ -82,10 +82,10 @@ def operand_width(bits: Any) -> int:
 
 
 def is_address(cell: Any) -> bool:
-    """Return True for a product with a constant outside multiply.sv: it addresses a word and takes adders."""
+    """Return True for a product with a constant outside td_multiply.sv: it addresses a word and takes adders."""
     wires = cell["connections"]
     constant = any(all(isinstance(bit, str) for bit in wires[port]) for port in "AB")
-    return constant and not cell["attributes"]["src"].startswith("multiply.sv")
+    return constant and not cell["attributes"]["src"].startswith("td_multiply.sv")
 
 
 @pytest.mark.parametrize("choices", CASES, ids=str)
@@ -99,7 +99,9 @@ def test_multipliers_and_memories_are_those_of_the_rtl(tmp_path: Path, choices: 
             wires = cell["connections"]
             multipliers[tuple(sorted((operand_width(wires["A"]), operand_width(wires["B"]))))] += 1
         elif cell["type"].startswith("$mem"):
-            behind_wrapper = name.split(".")[-2].startswith("g_")  # ram.sv and rom.sv name their array in a generate
+            behind_wrapper = name.split(".")[-2].startswith(
+                "g_"
+            )  # td_ram.sv and td_rom.sv name their array in a generate
             if behind_wrapper:
                 width, words = (int(cell["parameters"][size], 2) for size in ("WIDTH", "SIZE"))
                 memories[core_of(name, config.lanes), width, words] += 1

@@ -10,8 +10,8 @@ from commands.common import repository, simulator, wrapper
 from tb.stream import REGRESS
 
 INVALID = {
-    "burst_counter": ["Size=1"],
-    "delay_line": ["Delay=0"],
+    "td_burst_counter": ["Size=1"],
+    "td_delay_line": ["Delay=0"],
     "row_reorder": ["Size=12", "Size=2"],
     "transpose": ["Size=12", "Size=2"],
     "mode_pairs": ["Size=12", "Size=2"],
@@ -27,19 +27,19 @@ INVALID = {
     "contact_events": [
         *("Width=1", "Width=33", "Rows=1", "Rows=1025", "Columns=1", "Columns=1025", "Rows=4 Columns=4"),
     ],
-    "divide": ["DivisorWidth=0", "QuotientWidth=1"],
-    "block_sum": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "SumWidth=27"],
-    "ram": ["Depth=1", 'Style=2 File="contents.hex"'],
-    "rom": ["Depth=1"],
+    "td_divide": ["DivisorWidth=0", "QuotientWidth=1"],
+    "td_block_sum": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "SumWidth=27"],
+    "td_ram": ["Depth=1", 'Style=2 File="contents.hex"'],
+    "td_rom": ["Depth=1"],
     "gradient_lookup": ["BitsPerChannel=0", *(["BitsPerChannel=9"] if REGRESS else [])],  # 4 GB of table
     "flat_field": ["Offset=1"],
-    "gain_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
-    "auto_zero": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "Lanes=128", "Lanes=3"],
-    "floor_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "Lanes=1", "Lanes=3", "Lanes=128"],
-    "ramp": ["Count=0", "Count=3", "StepWidth=33"],
-    "floor_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=9"],
+    "td_gain_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7"],
+    "zero_offset": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "Lanes=128", "Lanes=3"],
+    "td_node_map": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "Lanes=1", "Lanes=3", "Lanes=128"],
+    "td_ramp": ["Count=0", "Count=3", "StepWidth=33"],
+    "zero_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=9"],
     "reference_capture": ["BlockLog2=0", "Columns=96", "Columns=8", "Rows=7", "MaxLog2=11", "GainFraction=10"],
-    "async_fifo": ["DepthLog2=1"],
+    "td_async_fifo": ["DepthLog2=1"],
     "block_weights": ["Denominator=0", "Numerator=3"],
     "row_sums": ["Bayer=2", "Numerator=7"],
     "block_totals": ["Columns=3"],
@@ -53,7 +53,7 @@ INVALID = {
     "spectral_divide": ["Size=12", "Size=1"],
     "thomas_table": ["Size=12", "Rows=1"],
     "twiddle_multiply": ["Size=12", "Size=1", "Block=12", "Block=1", "Block=256"],
-    "tactile_depth": ["Quadratic=1", "Rows=64", "DataWidth=33", "AutoZero=2"],
+    "tactile_depth": ["Quadratic=1", "Rows=64", "DataWidth=33", "ZeroOffset=2"],
     "poisson_unit": [
         *(
             "Tridiagonal=2",
@@ -78,8 +78,14 @@ INVALID = {
         *(f"FlatField=1 Quadratic=1 {word}" for word in ("PolynomialWords=35", "PolynomialWidth=33", "SlopeDrop=100")),
         "FlatField=1 Quadratic=1 ColourCoeffWidth=33",
     ],
-    "depth_unit": ["AutoZero=2", "FrameLatency=0", "AutoZero=1 FloorLog2=9", "AutoZero=1 BlockLog2=0", "Columns=12"],
-    "round_saturate": ["Drop=46", "OutWidth=1"],
+    "depth_unit": [
+        "ZeroOffset=2",
+        "FrameLatency=0",
+        "ZeroOffset=1 ZeroLog2=9",
+        "ZeroOffset=1 BlockLog2=0",
+        "Columns=12",
+    ],
+    "td_round_saturate": ["Drop=46", "OutWidth=1"],
     "sdf_butterfly": [
         "Size=12",
         "Delay=0",
@@ -138,7 +144,7 @@ def test_every_parameter_of_the_top_has_a_value_that_is_refused() -> None:
 
 
 VALID = [
-    *("burst_counter Size=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"),
+    *("td_burst_counter Size=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"),
     *("contact_events Rows=4 Columns=8", "contact_events Rows=1024 Columns=1024 Width=32"),
 ]
 

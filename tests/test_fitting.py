@@ -12,10 +12,9 @@ from PIL import Image
 from scipy.ndimage import uniform_filter
 
 import tactile_depth as td
-from tactile_depth.calibration.auto_zero import auto_zero
-from tactile_depth.calibration.flat_field import captured_gains
-from tactile_depth.calibration.floor_capture import captured_floor
 from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_capture import captured_zero
+from tactile_depth.depth.zero_offset import zero_offset
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.evaluation import scores_of
 from tactile_depth.fitting import (
@@ -29,7 +28,8 @@ from tactile_depth.fitting import (
     recentred,
 )
 from tactile_depth.frames import read_picture
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.flat_field import captured_gains
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.press_folder import read_presses
 from tactile_depth.presses import GridPress
 from tactile_depth.reference import quadratic_slopes, quadratic_terms
@@ -378,11 +378,11 @@ def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> Non
 
 
 @pytest.mark.parametrize("model", ["lut", "quadratic"])
-def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(real_presses: Any, model: Any) -> None:
-    """Change the lights by -11 % to +9 % across the gel, then capture the reference, the floor, or both (Neumann,
+def test_captures_bring_the_zero_of_a_real_gel_back_when_its_light_has_drifted(real_presses: Any, model: Any) -> None:
+    """Change the lights by -11 % to +9 % across the gel, then capture the reference, the zero offset, or both (Neumann,
     bit-accurate).
 
-    Every capture restores the floor; heights are restored by a capture of the reference.
+    Every capture restores the zero offset; heights are restored by a capture of the reference.
     """
     presses, size, no_contact = real_presses, real_presses.size, real_presses.background_on_grid
     held_out = held_out_presses(presses)[1]
@@ -397,30 +397,30 @@ def test_captures_bring_the_floor_of_a_real_gel_back_when_its_light_has_drifted(
     def depth_codes(frame: Any, gains: np.ndarray) -> Any:
         return solve(divergence(slope_codes(frame, sensor, config, gains=gains), config.neumann), config)
 
-    def depth_mm(frame: Any, gains: np.ndarray, floor: np.ndarray | None = None) -> Any:
+    def depth_mm(frame: Any, gains: np.ndarray, zero: np.ndarray | None = None) -> Any:
         codes = depth_codes(frame, gains)
-        if floor is not None:
-            codes = auto_zero(codes, floor, config)
+        if zero is not None:
+            codes = zero_offset(codes, zero, config)
         return codes * config.depth_lsb_px * presses.grid_pitch_mm
 
     before, captured = captured_gains(no_contact[None], config), captured_gains(drifted(no_contact)[None], config)
     assert depth_mm(drifted(no_contact), before).std() > 0.1  # measured: 0.14 (lut), 0.31 mm
     at_rest = depth_mm(drifted(no_contact), captured)
     assert at_rest.std() < 0.007  # measured: 0.0020, 0.0062 mm
-    # The floor captured instead of the reference, and after it.
-    alone = captured_floor(depth_codes(drifted(no_contact), before)[None], config)
-    both = captured_floor(depth_codes(drifted(no_contact), captured)[None], config)
+    # The zero offset captured instead of the reference, and after it.
+    alone = captured_zero(depth_codes(drifted(no_contact), before)[None], config)
+    both = captured_zero(depth_codes(drifted(no_contact), captured)[None], config)
     assert depth_mm(drifted(no_contact), before, alone).std() < 0.01  # measured: 0.0057, 0.0084 mm
     assert depth_mm(drifted(no_contact), captured, both).std() < 0.002  # measured: 0.0011, 0.0016 mm
 
-    def caps(gains: np.ndarray, floor: np.ndarray | None = None) -> Any:
-        depths = (depth_mm(drifted(view.frame), gains, floor) / presses.grid_pitch_mm for view in held_out)
+    def caps(gains: np.ndarray, zero: np.ndarray | None = None) -> Any:
+        depths = (depth_mm(drifted(view.frame), gains, zero) / presses.grid_pitch_mm for view in held_out)
         return np.array([view.press.recovered(depth) for view, depth in zip(held_out, depths, strict=True)])
 
     as_calibrated = [score.cap_height for score in scores_of(sensor, presses, held_out, model)]
     for balls in (caps(captured), caps(captured, both)):
         assert np.abs(balls - as_calibrated).max() < 0.02
-    # A capture of the floor alone leaves the error of colours: measured 0.123 (lut), 0.023.
+    # A capture of the zero offset alone leaves the error of colours: measured 0.123 (lut), 0.023.
     off = np.abs(caps(before, alone) - as_calibrated).max()
     assert off < (0.03 if model == "quadratic" else 0.15)
 

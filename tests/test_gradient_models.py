@@ -9,7 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth import reference
-from tactile_depth.calibration.flat_field import (
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.flat_field import (
     captured_gains,
     dark_pixels,
     deviations,
@@ -18,11 +21,8 @@ from tactile_depth.calibration.flat_field import (
     pixel_gains,
     unit_gains,
 )
-from tactile_depth.common.round_saturate import Monitor
-from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.gradient.divergence import divergence
 from tactile_depth.gradient.quadratic_gradient import DROPPED, coefficient_map, polynomial_words, quadratic_gradient
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.sensor import Sensor, synthetic
 from tactile_depth.tactile_depth import slope_codes, slope_tables, solve
 
@@ -93,7 +93,7 @@ def test_gains_of_pixels_stand_for_those_of_nodes() -> None:
 
 
 def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
-    """Capture the floor under Neumann: drifting lights tilt and bend it, and the capture removes both."""
+    """Capture the zero offset under Neumann: drifting lights tilt and bend it, and the capture removes both."""
     calibration = quadratics(3)
     config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit)
     words = polynomial_words(calibration, config, 15 / 64)
@@ -101,13 +101,13 @@ def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
     y, x = np.indices((64, 64)) / 64
     drifted = np.clip(np.rint(before * (0.9 + 0.1 * np.stack([x, y, x * y], axis=-1))), 0, 255).astype(np.uint8)
 
-    def floor(frames: Any, gains: Any) -> Any:
+    def zero(frames: Any, gains: Any) -> Any:
         slopes = quadratic_gradient(deviations(frames[:1], gains, config), words, config)
         return np.std(solve(divergence(slopes, True), config)) * config.depth_lsb_px
 
-    calibrated = floor(before, captured_gains(before, config))
-    assert floor(drifted, captured_gains(before, config)) > 10 * calibrated
-    assert floor(drifted, captured_gains(drifted, config)) < 2 * calibrated
+    calibrated = zero(before, captured_gains(before, config))
+    assert zero(drifted, captured_gains(before, config)) > 10 * calibrated
+    assert zero(drifted, captured_gains(drifted, config)) < 2 * calibrated
 
 
 @pytest.mark.parametrize("choices", SHAPES, ids=str)

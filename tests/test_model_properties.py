@@ -11,18 +11,22 @@ from scipy.fft import dctn, dstn
 from scipy.linalg import solve_banded
 
 from tactile_depth import latency, reference
-from tactile_depth.common.axis_skid import CAPACITY, AxisSkid
-from tactile_depth.common.rom import rom
+from tactile_depth.common.td_axis_skid import CAPACITY, AxisSkid
+from tactile_depth.common.td_rom import rom
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.contact.threshold_comparator import ThresholdComparator
-from tactile_depth.frame.frame_guard import Word, frame_guard
-from tactile_depth.frame.frame_output import Clock, frame_output
-from tactile_depth.frame.frame_tags import FrameTags
+from tactile_depth.depth.frame_output import Clock, frame_output
+from tactile_depth.depth.frame_tags import FrameTags
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.transform.mode_pairs import mode_pairs
+from tactile_depth.poisson.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
+from tactile_depth.poisson.transform.row_reorder import row_reorder
+from tactile_depth.poisson.transform.transpose import transpose
+from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
 from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
 from tactile_depth.registers.axil_port import Response, strobed_bits
 from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events, Live
@@ -31,11 +35,7 @@ from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, 
 from tactile_depth.rom_files import pack, write_words
 from tactile_depth.sensor import Sensor, load, synthetic
 from tactile_depth.tactile_depth import solve, tactile_depth, top_parameters
-from tactile_depth.transform.mode_pairs import mode_pairs
-from tactile_depth.transform.orders import bit_reversed, eigenvalues, makhoul, mirror
-from tactile_depth.transform.row_reorder import row_reorder
-from tactile_depth.transform.transpose import transpose
-from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.video.frame_guard import Word, frame_guard
 
 SEED = st.integers(0, 2**32 - 1)
 SIZE = st.sampled_from([8, 16, 32, 64])
@@ -282,7 +282,7 @@ def test_a_saved_calibration_is_loaded_as_it_was(
 
 @given(st.lists(st.tuples(*[st.integers(-(1 << 26), (1 << 26) - 1)] * 3), min_size=1))
 def test_packed_fields_are_found_in_the_file(tmp_path_factory: pytest.TempPathFactory, rows: Any) -> None:
-    path = tmp_path_factory.mktemp("rom") / "words.hex"
+    path = tmp_path_factory.mktemp("td_rom") / "words.hex"
     words = pack(np.array(rows).T, 27)
     write_words(path, words, 81)
     read = [int(line, 16) for line in path.read_text().split()]

@@ -44,7 +44,7 @@ def test_defaults_suit_a_real_sensor(pipeline: Any) -> None:
     config = pipeline.config
     assert pipeline.grid == (96, 128)
     assert (config.solver, config.neumann, config.gradient_model) == ("tridiagonal", True, "quadratic")
-    assert (config.data_width, config.coefficient_width, config.auto_zero) == (24, 18, True)
+    assert (config.data_width, config.coefficient_width, config.zero_offset) == (24, 18, True)
     assert (pipeline.arithmetic, pipeline.threshold_mm) == ("chip", 0.1)
 
 
@@ -96,7 +96,7 @@ def test_codes_are_those_of_the_model_in_picture_order(small: Any, ball: Any) ->
     frames = np.stack([ball.image, ball.reference])
     result = small(frames)
     on_grid = np.rint(frames.reshape(2, 24, 10, 32, 10, 3).mean(axis=(2, 4))).astype(np.uint8)
-    codes = tactile_depth(on_grid, small.sensor, small.config, gains=small._gains, floor=small._floor)
+    codes = tactile_depth(on_grid, small.sensor, small.config, gains=small._gains, zero=small._zero)
     np.testing.assert_array_equal(result.codes, codes[:, ::-1])
 
 
@@ -284,7 +284,7 @@ def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: 
     assert described["parameters"] == top_parameters(small.config, small.pixel_pitch_mm)
     assert described["depth_lsb_mm"] == small.depth_lsb_mm
     (tmp_path / "again").mkdir()
-    write_tables(tmp_path / "again", small.sensor, small.config, small._floor, small._gains)
+    write_tables(tmp_path / "again", small.sensor, small.config, small._zero, small._gains)
     tables = {path.name: path.read_text() for path in (tmp_path / "again").iterdir()}
     assert described["tables"] == sorted(tables)
     assert {path.name: path.read_text() for path in (tmp_path / "hw").iterdir() if path != index} == tables
@@ -384,5 +384,5 @@ def test_names_of_the_package_exist() -> None:
     for name in td.__all__:
         assert getattr(td, name) is not None
     assert set(td.__all__) <= set(dir(td))
-    with pytest.raises(AttributeError, match="no attribute 'depth'"):
-        _ = td.depth
+    with pytest.raises(AttributeError, match="no attribute 'heights'"):
+        _ = td.heights

@@ -12,7 +12,7 @@ SEEDS = range(1, 9)
 
 
 def test_what_is_not_reset(simulator: str, tmp_path: Path) -> None:
-    files = [*repository.sources("ram"), repository.ROOT / "tb" / "power_up.sv"]
+    files = [*repository.sources("td_ram"), repository.ROOT / "tb" / "power_up.sv"]
     simulation.build(simulator, "power_up", files, {}, tmp_path, log=tmp_path / "build.log")
 
     def state(power_up: Any) -> Any:

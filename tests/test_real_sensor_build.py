@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from commands.run import bench
-from tactile_depth.calibration.floor_capture import captured_floor
 from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.evaluation import scores_of
 from tactile_depth.fitting import fit_presses
 from tactile_depth.frames import read_picture
@@ -35,7 +35,7 @@ def on_grid(sensor: Sensor, presses: GridPresses) -> Sensor:
 
 def real_sensor(sensor: Sensor, presses: GridPresses, words: dict[str, Any]) -> Configuration:
     """Return what a real sensor needs: flat field, quadratic, zero slope at the edge, zero offset."""
-    choices: dict[str, Any] = {"columns": presses.size, "solver": "tridiagonal", "neumann": True, "auto_zero": True}
+    choices: dict[str, Any] = {"columns": presses.size, "solver": "tridiagonal", "neumann": True, "zero_offset": True}
     return on_grid(sensor, presses).configuration("quadratic", **choices, **words)
 
 
@@ -55,7 +55,7 @@ def depth_of(
     """
     calibration = on_grid(sensor, presses)
     no_contact = presses.background_on_grid[None]
-    floor = captured_floor(tactile_depth(no_contact, calibration, replace(config, auto_zero=False)), config)
+    zero = captured_zero(tactile_depth(no_contact, calibration, replace(config, zero_offset=False)), config)
     frames = np.stack([view.frame for view in views])
     camera = None if choice is None else choice.on(presses.background.shape[:2], (config.rows, config.columns))
     if camera is None or words is None:
@@ -67,9 +67,9 @@ def depth_of(
     entries = np.concatenate([np.array(always, np.uint32), entries])
     count = len(views)
     clocks = 2 * bench.clocks_of(entries) + 4 * config.rows * config.columns
-    choices: dict[str, Any] = {"clocks": clocks, "total_frames": count, "floor": floor, "camera": camera}
+    choices: dict[str, Any] = {"clocks": clocks, "total_frames": count, "zero": zero, "camera": camera}
     played = bench.play(simulator, config, calibration, entries, folder, **choices)
-    codes = tactile_depth(frames, calibration, config, floor=floor)
+    codes = tactile_depth(frames, calibration, config, zero=zero)
     np.testing.assert_array_equal(played.codes.reshape(codes.shape), codes)
     if camera is not None:
         cycles = {after - at for after, at in zip(played.clocks("d"), played.clocks("t")[1::2], strict=True)}

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tactile_depth import reference
 from tactile_depth.errors import InputError
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.scenes import (
     BENCH,
     NOISE,

@@ -132,13 +132,13 @@ def test_a_sensor_and_a_configuration_that_disagree_are_refused(tmp_path: Path, 
     assert not list(tmp_path.iterdir())
 
 
-def test_gains_and_floors_of_another_grid_are_refused(tmp_path: Path) -> None:
-    config = Configuration(columns=16, flat_field=True, auto_zero=True)
+def test_gains_and_zeros_of_another_grid_are_refused(tmp_path: Path) -> None:
+    config = Configuration(columns=16, flat_field=True, zero_offset=True)
     with pytest.raises(InputError, match=r"gains have the shape \(5, 5, 3\): accepted is \(8, 8, 3\)"):
         tactile_depth(GREY, synthetic(), config, gains=np.full((5, 5, 3), 4096))
     with pytest.raises(InputError, match="gains have the shape"):
         write_roms(tmp_path, synthetic(), config, gains=np.full((5, 5, 3), 4096))
-    with pytest.raises(InputError, match=r"floor have the shape \(4, 4\)"):
+    with pytest.raises(InputError, match=r"zero have the shape \(4, 4\)"):
         write_roms(tmp_path, synthetic(), config, np.zeros((4, 4), int), np.full((8, 8, 3), 1 << 20))
     assert not list(tmp_path.iterdir())
 

@@ -27,20 +27,20 @@ STRUCTURES: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "tridiagonal-9x32-4-lanes": (TRIDIAGONAL | {"columns": 32, "rows": 9, "lanes": 4, "bits_per_channel": 2}, FORMATS),
     "tridiagonal-8x16-2-lanes": (TRIDIAGONAL | {"lanes": 2, "bits_per_channel": 2, "neumann": True}, FORMATS),
     "tridiagonal-9x32-4-lanes-sensor": (
-        TRIDIAGONAL | FLAT_QUADRATIC | {"columns": 32, "rows": 9, "lanes": 4, "neumann": True, "auto_zero": True},
+        TRIDIAGONAL | FLAT_QUADRATIC | {"columns": 32, "rows": 9, "lanes": 4, "neumann": True, "zero_offset": True},
         FORMATS,
     ),
     "tridiagonal-9x16-4-lanes-sensor": (
-        TRIDIAGONAL | FLAT_QUADRATIC | {"rows": 9, "lanes": 4, "neumann": True, "auto_zero": True},
+        TRIDIAGONAL | FLAT_QUADRATIC | {"rows": 9, "lanes": 4, "neumann": True, "zero_offset": True},
         FORMATS,
     ),
     "tridiagonal-21x16-2-lanes-zero": (
-        TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "auto_zero": True},
+        TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "zero_offset": True},
         FORMATS,
     ),
     "tridiagonal-8x16-quadratic": (TRIDIAGONAL | FLAT_QUADRATIC | {"gain_width": 17}, FORMATS),
-    "16-flat-neumann": ({"columns": 16, "flat_field": True, "neumann": True, "auto_zero": True}, FORMATS),
-    "tridiagonal-8x16-zero": (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "auto_zero": True}, FORMATS),
+    "16-flat-neumann": ({"columns": 16, "flat_field": True, "neumann": True, "zero_offset": True}, FORMATS),
+    "tridiagonal-8x16-zero": (TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "zero_offset": True}, FORMATS),
 }
 # `make test` runs every test on the tridiagonal solver, and each pair of gaps and stalls on one of the solvers.
 # `make regress` runs each test of the spectral solver on Icarus under one disturbance only.

@@ -282,7 +282,7 @@ def test_the_rtl_has_the_codes_of_the_wheel(
         work,
         clocks=10 * rows * columns,
         total_frames=1,
-        floor=pipeline._floor,
+        zero=pipeline._zero,
     )
     np.testing.assert_array_equal(played.codes.reshape(rows, columns)[::-1], codes)  # the bottom row leaves first
     described = json.loads((tmp_path / "hardware" / "parameters.json").read_text())

@@ -14,8 +14,8 @@ import pytest
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
-from tactile_depth.calibration.floor_capture import captured_floor
 from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.scenes import render
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
@@ -89,15 +89,15 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
 
 
 def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
-    choices = ("N=16", "SOLVER=tridiagonal", "FLOOR=ball")
+    choices = ("N=16", "SOLVER=tridiagonal", "ZERO=ball")
     assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
     (tmp_path / "direct").mkdir()
-    config = Configuration(columns=16, solver="tridiagonal", auto_zero=True)
-    at_rest = tactile_depth(render("ball", 16).frames, synthetic(), replace(config, auto_zero=False))
-    floor = captured_floor(at_rest, config)
-    assert np.abs(floor).max() > 0
-    write_roms(tmp_path / "direct", synthetic(4), config, floor)
-    assert (tmp_path / "floor_0.hex").read_text() == (tmp_path / "direct" / "floor_0.hex").read_text()
+    config = Configuration(columns=16, solver="tridiagonal", zero_offset=True)
+    at_rest = tactile_depth(render("ball", 16).frames, synthetic(), replace(config, zero_offset=False))
+    zero = captured_zero(at_rest, config)
+    assert np.abs(zero).max() > 0
+    write_roms(tmp_path / "direct", synthetic(4), config, zero)
+    assert (tmp_path / "zero_0.hex").read_text() == (tmp_path / "direct" / "zero_0.hex").read_text()
 
 
 def test_with_a_camera_the_module_has_the_front_end_inside(tmp_path: Path) -> None:

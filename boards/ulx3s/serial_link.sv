@@ -12,7 +12,7 @@
 `default_nettype none
 
 module serial_link
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 #(
   parameter int Rows    = 128,
   parameter int Columns = 128,
@@ -126,7 +126,7 @@ module serial_link
     end
   end
 
-  ram #(.Width(26), .Depth(1 << PlaceWidth), .Style(0)) u_waiting (
+  td_ram #(.Width(26), .Depth(1 << PlaceWidth), .Style(0)) u_waiting (
     .clk, .write_en(pixel), .write_address(head),
     .write_data({first, column == ColumnWidth'(Columns - 1), red_green[15:8], value, red_green[7:0]}),
     .read_en(fetch), .read_address(tail), .read_data(fetched)

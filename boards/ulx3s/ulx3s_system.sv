@@ -11,7 +11,7 @@
 `default_nettype none
 
 module ulx3s_system
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 #(
   parameter int ClockMhz  = 100,      // of clk
   parameter int Baud      = 3000000,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Index of the repository: the files of each core in hdl/, models/, tb/, tests/ and formal/, by the name of the core.
 
-These folders hold the same blocks (`hdl/transform/sdf_fft.sv`, `tb/transform/tb_sdf_fft.py`), so the index is read
+These folders hold the same units (`hdl/poisson/divergence.sv`, `tb/poisson/tb_divergence.py`), so the index is read
 from the tree, and no list is kept by hand.
 """
 
@@ -17,8 +17,6 @@ from tactile_depth.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
-# Units of the top, tested through it.
-UNITS = ("video_in", "gradient_unit", "poisson_unit", "depth_unit", "contact_unit")
 PACKAGE = "_pkg"  # end of the name of a SystemVerilog package, which is no core
 
 
@@ -27,7 +25,7 @@ class Core:
     """Files of one core. A file that does not exist is None."""
 
     name: str
-    block: str  # folder below hdl/, "" for a core at the root
+    block: str  # folder below hdl/, "" for the top
     hdl: Path
     model: Path | None
     benches: tuple[Path, ...]  # cocotb testbenches: tb_<name>.py, or the tb_*.py of a folder <name>
@@ -64,6 +62,11 @@ def cores() -> Mapping[str, Core]:
     return MappingProxyType(index)
 
 
+def units() -> list[str]:
+    """Return the units of the top, tested through it: `<folder>_unit` in each folder of hdl/ that has one."""
+    return [core.name for core in cores().values() if core.name == f"{core.block}_unit"]
+
+
 def chosen(names: str) -> list[str]:
     """Return the names of the cores in a value of CORE=a,b. Raises InputError: a name is no core."""
     wanted = [name.strip() for name in names.split(",")]
@@ -75,7 +78,7 @@ def chosen(names: str) -> list[str]:
 
 def tested(names: Sequence[str]) -> list[str]:
     """Return the cores whose testbenches test the cores with these names: a unit is tested through the top."""
-    return list(dict.fromkeys("tactile_depth" if name in UNITS else name for name in names))
+    return list(dict.fromkeys("tactile_depth" if name in units() else name for name in names))
 
 
 def sources(top: str | None = None) -> list[Path]:

@@ -29,7 +29,7 @@ BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ACCEPTED = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "FLOOR", "CALIBRATION", "CAMERA_SIZE", "GRADIENT"),
+    *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "ZERO", "CALIBRATION", "CAMERA_SIZE", "GRADIENT"),
     *("REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
@@ -53,7 +53,7 @@ class Request:
     frames: str
     press: Press
     reference: str | None
-    floor: str | None
+    zero: str | None
     calibration: str
     camera_size: tuple[int, int] | None  # rows, columns
     gradient: str  # a model; "": that of the calibration
@@ -104,7 +104,7 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
             number("NOISE", NOISE, 0, 255, float),
         ),
         reference=values.get("REFERENCE"),
-        floor=values.get("FLOOR"),
+        zero=values.get("ZERO"),
         calibration=_calibration(values),
         camera_size=_camera_size(values),
         gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
@@ -139,7 +139,7 @@ def _calibration(values: dict[str, str]) -> str:
     """Return the chosen calibration: scenes use the synthetic sensor, pictures need the calibration of their sensor."""
     if "CALIBRATION" in values:
         return values["CALIBRATION"]
-    for key in ("FRAMES", "REFERENCE", "FLOOR"):
+    for key in ("FRAMES", "REFERENCE", "ZERO"):
         if key in values and values[key] not in SCENES and os.path.exists(values[key]):
             raise InputError(
                 f"{key}={values[key]} needs CALIBRATION, that of the sensor that took it: {', '.join(BUILT_IN)}, or "
@@ -189,6 +189,7 @@ def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict
         raise InputError(f"CONFIG={path}: cannot be read ({reason}): give a file of `make tune`") from error
     if not isinstance(values, dict):
         raise InputError(f"CONFIG={path}: accepted is one JSON object of variables")
+    values = {variables.RENAMED.get(key, key): value for key, value in values.items()}  # of an earlier version
     for key, value in values.items():
         if key not in accepted:
             raise InputError(f"CONFIG={path}: unknown variable {key}: accepted are {', '.join(accepted)}")
@@ -212,7 +213,7 @@ def described(config: Configuration) -> dict[str, Any]:
         "gain_width": config.gain_width,
         "gradient_model": config.gradient_model,
         "flat_field": config.flat_field,
-        "auto_zero": config.auto_zero,
+        "zero_offset": config.zero_offset,
     }
 
 
@@ -261,5 +262,5 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         coefficient_width=request.coefficient_width,
         gain_width=request.gain_width,
         depth_range_px=depth_range_px,
-        auto_zero=request.floor is not None,
+        zero_offset=request.zero is not None,
     )

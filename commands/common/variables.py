@@ -40,6 +40,9 @@ VARIABLES = {
 }
 
 
+RENAMED = {"FLOOR": "ZERO"}  # old name: new name
+
+
 class Mismatch(Exception):
     """A result that differs from what it is checked against."""
 
@@ -52,6 +55,8 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
     values: dict[str, str] = {}
     for argument in arguments:
         name, equals, value = argument.partition("=")
+        if RENAMED.get(name) in names:
+            raise InputError(f"{name} is called {RENAMED[name]} now: give {RENAMED[name]}={value}")
         if not equals or name not in names:
             raise InputError(f"{argument}: unknown variable: {listed(names)}")
         if value:

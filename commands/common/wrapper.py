@@ -12,7 +12,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import top_parameters
 
 TOP = repository.HDL / "tactile_depth.sv"
-DEFAULTS = repository.HDL / "default_parameters_pkg.sv"
+DEFAULTS = repository.HDL / "td_config_pkg.sv"
 
 
 def ports() -> tuple[str, list[str]]:
@@ -28,20 +28,20 @@ def default_parameters() -> dict[str, int]:
     tridiagonal = Configuration(solver="tridiagonal")
     flat = [Configuration(flat_field=True, gradient_model=model) for model in ("quadratic", "lut")]
     merged: dict[str, int] = {}
-    for config in (*flat, Configuration(auto_zero=True), tridiagonal, Configuration()):
+    for config in (*flat, Configuration(zero_offset=True), tridiagonal, Configuration()):
         merged |= top_parameters(config)
     return merged
 
 
 def package() -> str:
-    """Return the text of hdl/default_parameters_pkg.sv."""
+    """Return the text of hdl/td_config_pkg.sv."""
     constants = "".join(f"  localparam int Default{name} = {value};\n" for name, value in default_parameters().items())
     return (
         "// SPDX-License-Identifier: Apache-2.0\n"
-        "// default_parameters_pkg: parameters of the default configuration, and of options that it leaves out.\n"
+        "// td_config_pkg: parameters of the default configuration, and of options that it leaves out.\n"
         "//\n"
         "// Written by `make registers` from models/tactile_depth/configuration.py: change it there.\n\n"
-        f"`default_nettype none\n\npackage default_parameters_pkg;\n\n{constants}\nendpackage\n\n"
+        f"`default_nettype none\n\npackage td_config_pkg;\n\n{constants}\nendpackage\n\n"
         "`default_nettype wire\n"
     )
 
@@ -66,8 +66,8 @@ def wrapper(
 `default_nettype none
 
 module tactile_depth_{name}
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter TableFolder = "{tables}",  // of its .hex files, with a / at the end
   localparam int DepthBytes = {depth_bytes}

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Zero offset of a request: the frames that FLOOR names, and what a capture of them measures."""
+"""Zero offset of a request: the frames that ZERO names, and what a capture of them measures."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from commands.common.run_request import Request
-from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
 from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.errors import InputError
 from tactile_depth.frames import Frames, load_frames
 from tactile_depth.scenes import SCENES
@@ -16,18 +16,18 @@ from tactile_depth.tactile_depth import tactile_depth
 
 
 def untouched(request: Request, frames: Frames) -> np.ndarray | None:
-    """Return the frames of `FLOOR`, uint8 (a power of two, rows, columns, 3); None without it. Raises InputError."""
-    if request.floor is None:
+    """Return the frames of `ZERO`, uint8 (a power of two, rows, columns, 3); None without it. Raises InputError."""
+    if request.zero is None:
         return None
-    reference = request.reference if request.floor in SCENES else None
-    no_contact = load_frames(request.floor, frames.pixels.shape[1:3], reference, request.seed, camera=request.camera)
+    reference = request.reference if request.zero in SCENES else None
+    no_contact = load_frames(request.zero, frames.pixels.shape[1:3], reference, request.seed, camera=request.camera)
     if no_contact.pixel_scale != frames.pixel_scale:
-        raise InputError(f"FLOOR={request.floor}: not of the size of {frames.name}: give frames of the same camera")
+        raise InputError(f"ZERO={request.zero}: not of the size of {frames.name}: give frames of the same camera")
     return no_contact.pixels[: 1 << min(LARGEST_LOG2, len(no_contact.pixels).bit_length() - 1)]
 
 
-def floor_of(no_contact: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray | None:
+def zero_of(no_contact: np.ndarray | None, calibration: Sensor, config: Configuration) -> np.ndarray | None:
     """Return the zero offset that a capture of these frames measures, codes (node rows, node columns)."""
     if no_contact is None:
         return None
-    return captured_floor(tactile_depth(no_contact, calibration, replace(config, auto_zero=False)), config)
+    return captured_zero(tactile_depth(no_contact, calibration, replace(config, zero_offset=False)), config)

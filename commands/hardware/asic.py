@@ -97,7 +97,7 @@ def memories(design: Mapping[str, Any]) -> dict[str, Macro]:
     """Return the modules that are a RAM or a ROM of more than MACRO_BITS, by name."""
     macros = {}
     for name, module in design["modules"].items():
-        if name.partition("$")[0] in ("ram", "rom"):
+        if name.partition("$")[0] in ("td_ram", "td_rom"):
             [array] = [cell["parameters"] for cell in module["cells"].values() if cell["type"] == "$mem_v2"]
             macro = Macro(int(array["WIDTH"], 2), int(array["SIZE"], 2), array["INIT"])
             if macro.width * macro.depth > memory_model.MACRO_BITS:

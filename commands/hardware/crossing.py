@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Routed delays of the pointer bits that cross between the clocks of hdl/common/async_fifo.sv.
+"""Routed delays of the pointer bits that cross between the clocks of hdl/common/td_async_fifo.sv.
 
 nextpnr takes no constraint between two clocks (its issue 967). The Gray code asks that each bit arrives within one
 period of the clock that it comes from, so the delays are read from its report and compared with that period.

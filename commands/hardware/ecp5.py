@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from tactile_depth.rom_files import write_words
 
 BLOCK = 16384  # bits of a block memory
-WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/ram.sv builds without slices
+WHOLE_WORDS = 2048  # words of a memory that boards/ecp5/td_ram.sv builds without slices
 
 MULTIPLIER, REGISTER, MEMORY, LOGIC = "MULT18X18D", "TRELLIS_FF", "DP16KD", "LUT4"
 SIDES, WIDTH = "AB", 18
@@ -157,7 +157,7 @@ def _configure(multiplier: dict[str, Any], controls: dict[str, Control]) -> None
 
 
 def write_slices(folder: Path) -> None:
-    """Write what boards/ecp5/ram.sv reads at power-up: the slices of each large table that a folder holds."""
+    """Write what boards/ecp5/td_ram.sv reads at power-up: the slices of each large table that a folder holds."""
     for table in folder.glob("*.hex"):
         lines = table.read_text().split()
         if WHOLE_WORDS < len(lines) <= BLOCK:

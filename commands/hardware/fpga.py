@@ -352,7 +352,7 @@ def run(request: Request, command: str) -> int:
     frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)
     colours = f"-{config.gradient_model}-g{config.gain_width}" if config.flat_field else ""
-    colours += "-zero" if config.auto_zero else ""
+    colours += "-zero" if config.zero_offset else ""
     colours += f"-{request.sensor.name}" if request.sensor else ""
     lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""
     name = f"{request.target}-{design.solver}{lanes}-{design.boundary}-{config.rows}x{config.columns}{colours}"

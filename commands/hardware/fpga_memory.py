@@ -54,7 +54,7 @@ def memories(design: Path) -> list[Memory]:
             depth, width, writers = (int(cell["parameters"][key], 2) for key in ("SIZE", "WIDTH", "WR_PORTS"))
             attributes = cell["attributes"]
             style = attributes.get("ram_style") or attributes.get("rom_style") or ""
-            # ram.sv and rom.sv call their array words, in a generate block of its style
+            # td_ram.sv and td_rom.sv call their array words, in a generate block of its style
             path = path_of(module) + ("" if ".words" in name else f".{name.removeprefix(chr(92))}")
             arrays.append(Memory(path.lstrip("."), depth, width, style, writers == 0))
     return sorted(arrays, key=lambda memory: (-memory.depth * memory.width, memory.path))

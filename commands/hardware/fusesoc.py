@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 
 from commands.common import run_request, wrapper  # noqa: E402
-from commands.common.zero_offset import floor_of, untouched  # noqa: E402
+from commands.common.zero_offset import untouched, zero_of  # noqa: E402
 from commands.hardware import synth  # noqa: E402
 from tactile_depth.errors import InputError  # noqa: E402
 from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
@@ -35,7 +35,7 @@ def generate(description: Path, folder: Path) -> None:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
     request = run_request.parse([f"{key}={value}" for key, value in values.items()])
     config, calibration, frames = synth.configured(request)
-    write_roms(folder, calibration, config, floor_of(untouched(request, frames), calibration, config))
+    write_roms(folder, calibration, config, zero_of(untouched(request, frames), calibration, config))
     parameters = top_parameters(config, calibration.pixel_pitch_mm)
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
     place = f"{module}/" if module else ""

@@ -55,14 +55,14 @@ class Map:
 HDL = ROOT / "hdl"
 PIPELINE = Map(
     "tactile_depth",
-    HDL / "registers" / "register_map_pkg.sv",
+    HDL / "registers" / "td_register_map_pkg.sv",
     "register_map.json",
     "registers.md",
     "the AXI4-Lite registers",
 )
 CAMERA = Map(
     "camera",
-    HDL / "camera" / "camera_map_pkg.sv",
+    HDL / "camera" / "td_camera_map_pkg.sv",
     "camera_map.json",
     "camera-registers.md",
     "the AXI4-Lite registers of the camera front end",

@@ -48,7 +48,7 @@ SOLVER = "u_poisson.u_solver"
 FRONT_END, FRONT_END_PATH = "camera_front_end", "u_camera"
 CONFIGURING = (
     *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "REFERENCE", "FLOOR"),
+    *("DEPTH_RANGE", "REFERENCE", "ZERO"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
 RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
@@ -379,7 +379,7 @@ def grid_rows(document: Mapping[str, Any]) -> list[list[str]]:
 
 def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
     """Write ROMs and parameters, which constraints/xczu7ev_ooc.tcl reads beside hdl/."""
-    kept_files = out / "rom"
+    kept_files = out / "td_rom"
     kept_files.mkdir(exist_ok=True)
     for old in kept_files.glob("*.hex"):
         old.unlink()

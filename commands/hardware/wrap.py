@@ -2,7 +2,7 @@
 """`make wrap NAME=finger`: a module tactile_depth_finger with every parameter of a configuration inside.
 
 Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and the variables of `make sim` that choose
-a configuration. The module has the ports of tactile_depth. It and its table files go into the folder OUT; with FLOOR
+a configuration. The module has the ports of tactile_depth. It and its table files go into the folder OUT; with ZERO
 the table of the zero offset holds what a capture of those frames measures. Modules for
 several configurations fit into one design, if each has its own folder of tables. With CAMERA, and BAYER and WINDOW, the
 module has the camera front end inside, and its s_axis takes the words of that camera.
@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 from commands.common import repository, run_request, variables, wrapper
-from commands.common.zero_offset import floor_of, untouched
+from commands.common.zero_offset import untouched, zero_of
 from commands.hardware import synth
 from tactile_depth import files
 from tactile_depth.errors import InputError
@@ -36,11 +36,11 @@ def main() -> None:
         accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
         request = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
         config, calibration, frames = synth.configured(request)
-        floor = floor_of(untouched(request, frames), calibration, config)
+        zero = zero_of(untouched(request, frames), calibration, config)
         with files.workspace(out) as work:
             parameters = top_parameters(config, calibration.pixel_pitch_mm)
             path = wrapper.write(work, name, parameters, tables, frames.camera)
-            write_roms(work, calibration, config, floor)
+            write_roms(work, calibration, config, zero)
             names = [file.name for file in work.iterdir()]
             files.replace(work, names, out)
         print(f"wrote {os.path.relpath(out / path.name)} and {len(names) - 1} table files beside it")

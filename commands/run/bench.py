@@ -152,15 +152,15 @@ def play(
     registers: Mapping[str, int] | None = None,
     seed: int = 1,
     waves: bool = False,
-    floor: np.ndarray | None = None,
+    zero: np.ndarray | None = None,
     camera: CameraConfiguration | None = None,
 ) -> Played:
     """Play entries in `folder` after a reset and the writes of `registers`; then read the registers.
 
-    `floor` is that of `tactile_depth.tactile_depth`. With a `camera` the entries are its stream. The run ends when all
+    `zero` is that of `tactile_depth.tactile_depth`. With a `camera` the entries are its stream. The run ends when all
     entries are sent and `total_frames` have left, and fails after `clocks` cycles.
     """
-    write_roms(folder, calibration, config, floor)
+    write_roms(folder, calibration, config, zero)
     np.asarray(entries, dtype=">u4").tofile(folder / "entries.bin")
     built = build(simulator, config, waves, camera)
     registers = dict(registers or {})

@@ -19,7 +19,7 @@ from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
 from commands.common.run_request import ACCEPTED, CAMERA, Request, check_grid, configure, load_sensor, parse
-from commands.common.zero_offset import floor_of, untouched
+from commands.common.zero_offset import untouched, zero_of
 from commands.run import bench
 from commands.run.compare import compare, warnings
 from commands.run.draw import draw_depth
@@ -27,10 +27,10 @@ from commands.run.flags import flags
 from commands.run.sim_table import check_registers, coefficient_words, measure, table
 from tactile_depth import files, latency, reference
 from tactile_depth.accuracy import errors
-from tactile_depth.calibration.auto_zero import exact_zero
 from tactile_depth.camera_configuration import CameraChoice
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_offset import exact_zero
 from tactile_depth.frames import Frames, load_frames
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
@@ -57,7 +57,7 @@ def simulate(
     frames: Frames,
     calibration: Sensor,
     folder: Path,
-    floor: np.ndarray | None = None,
+    zero: np.ndarray | None = None,
 ) -> bench.Played:
     """Run the bench in `folder` with a progress bar."""
     total = len(frames.pixels) * request.repeat
@@ -87,7 +87,7 @@ def simulate(
             registers={"THRESHOLD": run_request.threshold_code(config)},
             seed=request.seed,
             waves=request.waves,
-            floor=floor,
+            zero=zero,
             camera=frames.camera,
         )
 
@@ -107,12 +107,12 @@ def run(request: Request, frames: Frames | None = None) -> int:
     config = configure(request, calibration)
     flagged = flags(frames.pixels, calibration, config, request.reference)
     no_contact = untouched(request, frames)
-    floor = floor_of(no_contact, calibration, config)
+    zero = zero_of(no_contact, calibration, config)
     out = request.out or default_folder(request, config)
     with files.workspace(out, RESULTS) as work:
-        played = simulate(request, config, frames, calibration, work, floor)
+        played = simulate(request, config, frames, calibration, work, zero)
         monitor = Monitor()
-        codes = tactile_depth(frames.pixels, calibration, config, monitor, floor=floor)
+        codes = tactile_depth(frames.pixels, calibration, config, monitor, zero=zero)
         reference_px = exact_depth(frames.pixels, no_contact, calibration, config)
         rtl_codes = played.codes.reshape(request.repeat, *codes.shape)
         if config.solver == "tridiagonal":  # the bottom row leaves first; results are in the order of the input
@@ -170,7 +170,7 @@ def default_folder(request: Request, config: Configuration) -> Path:
     widths = f"d{config.data_width}-c{config.coefficient_width}"
     widths += f"-g{config.gain_width}" if config.flat_field else ""
     colours = f"-{config.gradient_model}" if config.flat_field else ""
-    colours += "-zero" if config.auto_zero else ""
+    colours += "-zero" if config.zero_offset else ""
     shape = f"{config.rows}x{config.columns}"
     camera = "" if request.camera is None else f"-{request.camera.pixel_format}"
     lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""

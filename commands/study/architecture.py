@@ -12,7 +12,7 @@ from tactile_depth.cost import CORES, KINDS, Cost, cost
 
 PAGE = ROOT / "docs" / "architecture.md"
 BEGIN, END = "<!-- tables: python -m commands.study.architecture -->", "<!-- end of the tables -->"
-SENSOR = {"flat_field": True, "gradient_model": "quadratic", "neumann": True, "auto_zero": True}
+SENSOR = {"flat_field": True, "gradient_model": "quadratic", "neumann": True, "zero_offset": True}
 BUILDS = {
     "tridiagonal, real sensor": Configuration(solver="tridiagonal", **SENSOR),  # type: ignore[arg-type]
     "tridiagonal, as sent": Configuration(solver="tridiagonal"),
@@ -48,8 +48,8 @@ def cycles(config: Configuration) -> list[tuple[object, ...]]:
     size = config.columns
     forward, inverse = latency.dst_forward_latency(size), latency.dst_inverse_latency(size)
     rows: list[tuple[str, str, int]] = [
-        ("video_in", "axis_skid", latency.AXIS_SKID),
-        ("video_in", "frame_guard", latency.FRAME_GUARD),
+        ("video_unit", "td_axis_skid", latency.AXIS_SKID),
+        ("video_unit", "frame_guard", latency.FRAME_GUARD),
         ("gradient_unit", "flat_field", latency.FLAT_FIELD if config.flat_field else 0),
         ("gradient_unit", "quadratic_gradient", latency.QUADRATIC_GRADIENT)
         if config.gradient_model == "quadratic"
@@ -76,7 +76,7 @@ def cycles(config: Configuration) -> list[tuple[object, ...]]:
     rows += [
         ("poisson_unit", "dst_inverse, of the first row out", inverse),
         ("poisson_unit", "row_reorder, waits for the whole row", size - 1 + latency.ROW_REORDER),
-        ("depth_unit", "auto_zero", latency.zero_offset_latency(config)),
+        ("depth_unit", "zero_offset", latency.zero_latency(config)),
         ("contact_unit", "depth_gate", latency.AXIS_SKID),
     ]
     total = sum(row[2] for row in rows)

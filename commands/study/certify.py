@@ -23,7 +23,7 @@ from commands.common import simulator as simulation
 from commands.run import sim, sim_table
 from tactile_depth import files
 from tactile_depth.certificate import Node, certify, slope_response
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import GRADIENT_MODELS, Configuration
 from tactile_depth.frames import Frames, camera_scale
 from tactile_depth.gradient.gradient_lookup import gradient_codes
@@ -32,7 +32,7 @@ from tactile_depth.tactile_depth import tactile_depth
 
 RESULTS = ("worst.npy", "certificate.json")
 BATCH = 8  # frames that the model runs at a time
-ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: tests/transform/test_dst_forward.py
+ROUNDING_STEPS = 4.0  # largest error of a transform, in steps of its word: tests/poisson/transform/test_dst_forward.py
 
 
 @dataclass(frozen=True)

@@ -109,7 +109,7 @@ def structure_script(structure: Structure, config: Configuration) -> str:
         f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {structure.core}",
         "memory_collect",
-        # gain_map delays colours and position in one memory: as registers, each bit is separate.
+        # td_gain_map delays colours and position in one memory: as registers, each bit is separate.
         "memory_map t:$mem_v2 */*u_map.u_delay.*words %i",
         "opt_clean",
         "simplemap",
@@ -135,7 +135,7 @@ def run_structure(structure: Structure, mode: str) -> Outcome:
     """Run Yosys in build/formal/<name>/."""
     choices = dict(structure.choices)
     config = Configuration(
-        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "auto_zero")}
+        **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "zero_offset")}
     )
     folder = BUILD / structure.name
     shutil.rmtree(folder, ignore_errors=True)

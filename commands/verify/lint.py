@@ -23,11 +23,11 @@ from commands.common import simulator as simulation
 from commands.common.signals import threads
 from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
-from tactile_depth.calibration.auto_zero import no_floor
-from tactile_depth.calibration.flat_field import unit_gains
 from tactile_depth.camera.register_lists import pins, write_list
 from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
-from tactile_depth.rom_files import write_floor, write_gains, write_quadratic, write_words
+from tactile_depth.depth.zero_offset import no_zero
+from tactile_depth.gradient.flat_field import unit_gains
+from tactile_depth.rom_files import write_gains, write_quadratic, write_words, write_zero
 from tactile_depth.sensor import load
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
@@ -36,7 +36,7 @@ TOP = "tactile_depth"
 FOLDER = repository.ROOT / "build" / "lint"
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
-DEFAULT_ROM = (128, 54)  # default words and bits of hdl/common/rom.sv
+DEFAULT_ROM = (128, 54)  # default words and bits of hdl/common/td_rom.sv
 DEFAULT_ENTRIES = 16  # of hdl/camera/camera_setup.sv
 
 
@@ -157,7 +157,7 @@ def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
     words, width = DEFAULT_ROM
     write_words(folder / "rom.hex", range(words), width)
     write_gains(folder, unit_gains(Configuration()), Configuration().gain_width)
-    write_floor(folder, no_floor(Configuration()), Configuration().depth.width)
+    write_zero(folder, no_zero(Configuration()), Configuration().depth.width)
     write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
     write_list(folder, [pins(False, True, 0)] * DEFAULT_ENTRIES)
     return yosys([Structure(name) for name in cores], files, folder)

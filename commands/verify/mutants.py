@@ -105,7 +105,7 @@ def base(core: str, structure: Structure, outside: Sequence[str] = (), flat: boo
     that a testbench can write them.
     """
     read = read_commands(core, structure, "" if flat else "--keep-hierarchy")
-    units = " ".join(f"{unit}$*" for unit in repository.UNITS)
+    units = " ".join(f"{unit}$*" for unit in repository.units())
     keep = "setattr -mod -{} keep_hierarchy{} *\n".format
     dissolve = f"{keep('set', ' 1')}setattr -mod -unset keep_hierarchy {units}\nflatten\n{keep('unset', '')}"
     return (

@@ -2,9 +2,9 @@
 """`make netlists`: every core after synthesis in its testbench, and the top at 32 x 32 with each solver.
 
 Takes CORE=name,.. and SEED=1. Yosys maps to 7-series logic, whose cells have simulation models in its library: LUT1 to
-LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as in ram.sv and rom.sv, because a macro replaces them. The
-testbench compares every output with the bit-accurate model, as it does for the RTL. Parameters are those at which `make
-mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
+LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as in td_ram.sv and td_rom.sv, because a macro replaces them.
+The testbench compares every output with the bit-accurate model, as it does for the RTL. Parameters are those at which
+`make mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
 """
 
 import json

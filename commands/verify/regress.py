@@ -27,7 +27,7 @@ from tqdm import tqdm
 
 from commands.common import markdown, repository, variables
 from commands.run import bench
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import SCENES, render

@@ -7,9 +7,9 @@
 `default_nettype none
 
 module fv_camera_registers
-  import camera_map_pkg::*;
-  import register_map_pkg::AddressWidth;
-  import stream_pkg::*;
+  import td_camera_map_pkg::*;
+  import td_register_map_pkg::AddressWidth;
+  import td_types_pkg::*;
 #(
   parameter int PictureColumns = 13'h1555,
   parameter int PictureRows    = 13'h0AAA,

@@ -2,7 +2,7 @@
 // fv_channel_gain: out is the sample less the black level times its gain, with the settings that stood beside the frame's
 // first pixel; pixels, marks and breaks leave 3 enabled clocks later.
 //
-// Gains are whole numbers here: rounding is proven of round_saturate. Samples are small, so that nothing saturates.
+// Gains are whole numbers here: rounding is proven of td_round_saturate. Samples are small, so that nothing saturates.
 
 `default_nettype none
 

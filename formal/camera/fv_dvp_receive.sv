@@ -3,7 +3,7 @@
 // the first that finds none; each frame given up is counted once, in the next front. What leaves are the bytes of the
 // queue, in order, from the first front after a reset on, with their marks; the counts leave once.
 //
-// Room in the queue, and what comes out of it, are free, but that a word stays until it is taken: async_fifo is proven by
+// Room in the queue, and what comes out of it, are free, but that a word stays until it is taken: td_async_fifo is proven by
 // itself. Both clocks rise whenever they like.
 
 `default_nettype none

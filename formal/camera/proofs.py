@@ -44,7 +44,7 @@ CAMERA_PROOFS: tuple[Proof, ...] = (
             "a word with each complete block, with its areas"
             + (" and totals" if totals else "")
             + "; latency 3; memory "
-            "as ram.sv asks",
+            "as td_ram.sv asks",
             "columns are only counted; totals are left to simulation where a block has several rows",
             {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer, "Totals": totals},
             depth=60,

@@ -9,7 +9,7 @@
 `default_nettype none
 
 module fv_contact_events
-  import stream_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Width   = 2,
   parameter int Rows    = 3,

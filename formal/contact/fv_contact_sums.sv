@@ -8,7 +8,7 @@
 `default_nettype none
 
 module fv_contact_sums
-  import stream_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Width       = 2,
   parameter int Rows        = 2,

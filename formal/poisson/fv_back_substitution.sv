@@ -2,7 +2,7 @@
 // fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 8 enabled clocks
 // behind d[i], in whichever lane it is, with the coefficient of its own row and column; start and frame_start with their
 // burst. No word of the frame before, and none from power-up, enters: the specification has none, and the memory begins
-// with any contents. Rounding is proven of round_saturate.
+// with any contents. Rounding is proven of td_round_saturate.
 
 `default_nettype none
 
@@ -97,7 +97,7 @@ module fv_back_substitution #(
   logic signed [Width+CoeffWidth-1:0] product;
   logic signed [ExactWidth-1:0] exact;
   logic unused_clipped, of_last_row, of_first_row, of_first_row_q;
-  round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
+  td_round_saturate #(.InWidth(ExactWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
     .in(exact), .out(z), .clipped(unused_clipped)
   );
 
@@ -144,7 +144,7 @@ module fv_back_substitution #(
     end
   end
 
-  bind ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
+  bind td_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule
 

@@ -2,7 +2,7 @@
 // fv_forward_elimination: d[i] = c[i] (f[i] - d[i-1]) for every row of an arbitrary column, of any frame, 7 enabled
 // clocks behind f[i], with the coefficient of its own row and column; start and frame_start with their burst. Neumann:
 // the last row of column 0 is minus the mean. No word of the frame before, and none from power-up, enters: the
-// specification has none, and the memories begin with any contents. Rounding is proven of round_saturate.
+// specification has none, and the memories begin with any contents. Rounding is proven of td_round_saturate.
 
 `default_nettype none
 
@@ -73,13 +73,13 @@ module fv_forward_elimination #(
   logic signed [Width+CoeffWidth:0] shifted;
   logic signed [OutWidth-1:0] stored, expected;
   logic [2:0] unused_clipped;
-  round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
+  td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
     .in((Width + 1)'(f) - (row_q == '0 ? '0 : (Width + 1)'(above))), .out(difference), .clipped(unused_clipped[0])
   );
-  round_saturate #(.InWidth(Width + CoeffWidth + 1), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_rounded (
+  td_round_saturate #(.InWidth(Width + CoeffWidth + 1), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_rounded (
     .in(shifted), .out(rounded), .clipped(unused_clipped[1])
   );
-  round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
+  td_round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
     .in(above), .out(stored), .clipped(unused_clipped[2])
   );
 
@@ -87,10 +87,10 @@ module fv_forward_elimination #(
   logic signed [Width-1:0] sum, sum_q, mean, mean_q;
   logic signed [Width+CoeffWidth-1:0] scaled;
   logic [1:0] unused_mean;
-  round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
+  td_round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
     .in(moment), .out(sum), .clipped(unused_mean[0])
   );
-  round_saturate #(.InWidth(Width + CoeffWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
+  td_round_saturate #(.InWidth(Width + CoeffWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
     .in(scaled), .out(mean), .clipped(unused_mean[1])
   );
   assign d = singular ? mean_q : rounded;

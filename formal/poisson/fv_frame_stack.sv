@@ -83,7 +83,7 @@ module fv_frame_stack #(
     end
   end
 
-  bind ram ram_check #(.Depth(Depth), .Covered(0)) u_check (
+  bind td_ram ram_check #(.Depth(Depth), .Covered(0)) u_check (
     .clk, .write_en, .write_address, .read_en, .read_address
   );
   // Lane 0 reads no memory where the last row is its only one, and a lane beyond the rows never does.

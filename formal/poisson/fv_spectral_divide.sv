@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_spectral_divide: word t of burst p meets the ROM word of the pair (p, t), whichever is larger, and leaves 6
 // enabled clocks later; start and frame_start likewise; p counts from the frame's start. The data are 1, so that what
-// leaves is M 2^S of the ROM word; square.hex says which, for every p and t. Rounding is proven of round_saturate.
+// leaves is M 2^S of the ROM word; square.hex says which, for every p and t. Rounding is proven of td_round_saturate.
 
 `default_nettype none
 

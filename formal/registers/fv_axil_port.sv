@@ -6,7 +6,7 @@
 `default_nettype none
 
 module fv_axil_port
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 (
   input logic                    clk,
   input logic                    rst,

@@ -7,9 +7,9 @@
 `default_nettype none
 
 module fv_axil_registers
-  import default_parameters_pkg::DefaultGainWidth;
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_config_pkg::DefaultGainWidth;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Quadratic        = 0,
   parameter int DepthMantissa    = 24'hABCDEF,
@@ -25,8 +25,8 @@ module fv_axil_registers
   localparam int BitsPerChannel   = 4,
   localparam int GradientWords    = Quadratic != 0 ? 0 : 1 << 3 * BitsPerChannel,
   localparam int CoefficientWords = Quadratic != 0 ? 36 : 0,
-  localparam int FloorWords       = 4 * 8,
-  localparam int ReferenceWords   = 4 * FloorWords,
+  localparam int ZeroWords       = 4 * 8,
+  localparam int ReferenceWords   = 4 * ZeroWords,
   localparam int Tables = TableSelectSelectCount,
   localparam int IndexWidth = $clog2(GradientWords > ReferenceWords ? GradientWords : ReferenceWords)
 ) (
@@ -53,7 +53,7 @@ module fv_axil_registers
   input table_answer_t           table_answer,
   input logic [Tables-1:0]       table_in_use,
   input capture_status_t         reference_status,
-  input capture_status_t         floor_status
+  input capture_status_t         zero_status
 );
 
   localparam logic [1:0] Okay = 2'b00;
@@ -66,11 +66,11 @@ module fv_axil_registers
   logic [Tables-1:0] table_bank;
   contact_settings_t contact_settings;
   table_command_t table_command;
-  capture_command_t reference_command, floor_command;
+  capture_command_t reference_command, zero_command;
   axil_registers #(
     .Tridiagonal(1), .Neumann(1), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
     .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel), .FlatField(1), .Quadratic(Quadratic),
-    .AutoZero(1), .BlockLog2(1), .PolynomialWords(36), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
+    .ZeroOffset(1), .BlockLog2(1), .PolynomialWords(36), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
     .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
   ) dut (.*);
 
@@ -96,21 +96,21 @@ module fv_axil_registers
   logic [1:0] select;
   logic [Tables-1:0] requested, has;
   logic [Tables-1:0] bank = '0;
-  logic [3:0] waits, closed;  // to the bus: while waiting, reference and floor while they are captured too
+  logic [3:0] waits, closed;  // to the bus: while waiting, reference and zero offset while they are captured too
   logic [31:0] next_index;
   logic [31:0] index;
   always_comb begin
     size = select == TableSelectGradient ? GradientWords : select == TableSelectCoefficients ? CoefficientWords
-        : select == TableSelectReference ? ReferenceWords : FloorWords;
+        : select == TableSelectReference ? ReferenceWords : ZeroWords;
     has = '0;
     has[TableCommitGradientBit] = GradientWords != 0;
     has[TableCommitCoefficientsBit] = CoefficientWords != 0;
     has[TableCommitReferenceBit] = ReferenceWords != 0;
-    has[TableCommitFloorBit] = FloorWords != 0;
+    has[TableCommitZeroBit] = ZeroWords != 0;
     waits = 4'(requested | ((bank ^ table_in_use) & has));
     closed = waits;
     if (reference_status.busy) closed[TableCommitReferenceBit] = 1'b1;
-    if (floor_status.busy) closed[TableCommitFloorBit] = 1'b1;
+    if (zero_status.busy) closed[TableCommitZeroBit] = 1'b1;
     next_index = index + 32'd1 == size ? '0 : 32'(IndexWidth'(index + 32'd1));
   end
 
@@ -127,15 +127,15 @@ module fv_axil_registers
         || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
         || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
         || offset == OffThresholdOffset || offset == MinimumAreaOffset || offset == DebounceOffset
-        || (offset == CaptureOffset && (ReferenceWords != 0 || !(data[CaptureStartBit] && strobes[CaptureStartBit/8])))
-        || (offset == FloorCaptureOffset
-            && (FloorWords != 0 && !waits[TableCommitFloorBit] && !floor_status.done
-                || !(data[FloorCaptureStartBit] && strobes[FloorCaptureStartBit/8])))
+        || (offset == ReferenceCaptureOffset && (ReferenceWords != 0 || !(data[ReferenceCaptureStartBit] && strobes[ReferenceCaptureStartBit/8])))
+        || (offset == ZeroCaptureOffset
+            && (ZeroWords != 0 && !waits[TableCommitZeroBit] && !zero_status.done
+                || !(data[ZeroCaptureStartBit] && strobes[ZeroCaptureStartBit/8])))
         || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
   end
   logic writes_control, writes_status, writes_threshold, writes_timeout;
   logic writes_select, writes_index, writes_high, writes_low, writes_commit;
-  logic writes_dark, writes_capture, writes_floor, writes_off, writes_area, writes_debounce;
+  logic writes_dark, writes_capture, writes_zero, writes_off, writes_area, writes_debounce;
   logic writes_interrupt, writes_mask, writes_pitch;
   assign writes_control = effective & (offset == ControlOffset);
   assign writes_status = effective & (offset == StatusOffset);
@@ -147,8 +147,8 @@ module fv_axil_registers
   assign writes_low = effective & (offset == TableLowOffset) & ~refused;
   assign writes_commit = effective & (offset == TableCommitOffset);
   assign writes_dark = effective & (offset == DarkLevelOffset);
-  assign writes_capture = effective & (offset == CaptureOffset) & ~refused;
-  assign writes_floor = effective & (offset == FloorCaptureOffset) & ~refused;
+  assign writes_capture = effective & (offset == ReferenceCaptureOffset) & ~refused;
+  assign writes_zero = effective & (offset == ZeroCaptureOffset) & ~refused;
   assign writes_off = effective & (offset == OffThresholdOffset);
   assign writes_area = effective & (offset == MinimumAreaOffset);
   assign writes_interrupt = effective & (offset == InterruptStatusOffset);
@@ -166,7 +166,7 @@ module fv_axil_registers
   endfunction
 
   logic hold, drop;
-  logic [31:0] dim, averaged, floor_averaged, off, area, frames_needed, dark, given_up, lost;
+  logic [31:0] dim, averaged, zero_averaged, off, area, frames_needed, dark, given_up, lost;
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
   assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
@@ -227,13 +227,13 @@ module fv_axil_registers
     else if (read_offset == TableCommitOffset) word = 32'(waits);
     else if (read_offset == TableSizeOffset) word = size;
     else if (read_offset == DarkLevelOffset) word = dim;
-    else if (read_offset == CaptureOffset) begin
+    else if (read_offset == ReferenceCaptureOffset) begin
       word = averaged;
-      word[CaptureBusyBit] = reference_status.busy;
+      word[ReferenceCaptureBusyBit] = reference_status.busy;
     end
-    else if (read_offset == FloorCaptureOffset) begin
-      word = floor_averaged;
-      word[FloorCaptureBusyBit] = floor_status.busy;
+    else if (read_offset == ZeroCaptureOffset) begin
+      word = zero_averaged;
+      word[ZeroCaptureBusyBit] = zero_status.busy;
     end
     else if (read_offset == DarkPixelsOffset) word = dark;
     else if (read_offset == DepthDroppedOffset) word = given_up;
@@ -291,7 +291,7 @@ module fv_axil_registers
     if (writes_control && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
     if (writes_dark) dim <= written(dim) & 32'hff;
     if (writes_capture) averaged <= written(averaged) & 32'hf;
-    if (writes_floor) floor_averaged <= written(floor_averaged) & 32'hf;
+    if (writes_zero) zero_averaged <= written(zero_averaged) & 32'hf;
     if (writes_off) off <= written(off);
     if (writes_area) area <= written(area);
     if (writes_debounce) frames_needed <= written(frames_needed) & 32'hff;
@@ -307,7 +307,7 @@ module fv_axil_registers
       else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !closed[table_number])
         requested[table_number] <= 1'b1;
       if (reference_status.done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
-      if (floor_status.done && table_number == TableSelectFloor && has[table_number]) requested[table_number] <= 1'b1;
+      if (zero_status.done && table_number == TableSelectZero && has[table_number]) requested[table_number] <= 1'b1;
     end
     interrupts <= (interrupts & ~(writes_interrupt ? data & mask : '0)) | interrupts_happened;
     if (writes_mask) unmasked <= written(unmasked) & 32'h3;
@@ -329,7 +329,7 @@ module fv_axil_registers
       off <= 32'h7fffffff;
       area <= 32'd1;
       frames_needed <= 32'd1;
-      {drop, dim, averaged, floor_averaged, dark, given_up, lost} <= '0;
+      {drop, dim, averaged, zero_averaged, dark, given_up, lost} <= '0;
       requested <= '0;
       {interrupts, unmasked, raised} <= '0;
       width_nm <= PitchNm;
@@ -340,7 +340,7 @@ module fv_axil_registers
 
   always_comb begin
     never_in_reset: assert (!((table_command.write || table_command.read || reference_command.request
-        || floor_command.request) && rst));
+        || zero_command.request) && rst));
     if (started) begin
       // The bus.
       one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
@@ -360,12 +360,12 @@ module fv_axil_registers
       contact_words: assert (contact_settings.off_threshold == off && contact_settings.minimum_area == area
           && 32'(contact_settings.debounce) == frames_needed);
       stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
-          && 32'(reference_command.log2_frames) == averaged && 32'(floor_command.log2_frames) == floor_averaged);
+          && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
       interrupt: assert (irq == raised);
       captures: assert (reference_command.request
-          == (writes_capture && data[CaptureStartBit] && mask[CaptureStartBit] && !rst));
-      floor_captures: assert (floor_command.request
-          == (writes_floor && data[FloorCaptureStartBit] && mask[FloorCaptureStartBit] && !rst));
+          == (writes_capture && data[ReferenceCaptureStartBit] && mask[ReferenceCaptureStartBit] && !rst));
+      zero_captures: assert (zero_command.request
+          == (writes_zero && data[ZeroCaptureStartBit] && mask[ZeroCaptureStartBit] && !rst));
       // Tables.
       table_written: assert (table_command.write == (writes_low && !rst));
       table_asked: assert (table_command.read == (since == 3'd1 && index < size && !rst));
@@ -376,19 +376,19 @@ module fv_axil_registers
       banks: assert (table_bank == ((frame_start && !rst) ? bank ^ requested : bank));
       if (table_command.write) only_settled: assert (table_bank[select] == table_in_use[select]);
       if (table_command.write) not_captured: assert (!(reference_status.busy && select == TableSelectReference)
-          && !(floor_status.busy && select == TableSelectFloor));
+          && !(zero_status.busy && select == TableSelectZero));
       absent: assert ((table_bank & ~has) == '0);
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
       interrupted: cover (irq && interrupts == 32'h2);
       set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
           && sticky[StatusRowLongBit]);
-      refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitFloorBit]);
-      refused_outside: cover (effective && offset == TableLowOffset && index == size && size == FloorWords && refused);
-      captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !floor_status.busy);
+      refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitZeroBit]);
+      refused_outside: cover (effective && offset == TableLowOffset && index == size && size == ZeroWords && refused);
+      captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !zero_status.busy);
       reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);
       changes_over: cover (frame_start && requested == has);
-      last_entry: cover (table_command.read && !upper && index == 31 && size == FloorWords);
+      last_entry: cover (table_command.read && !upper && index == 31 && size == ZeroWords);
       second_bin: cover (table_command.write && table_command.index == 24'd1);
       data_first: cover (has_data && !has_address && aw);
       cleared: cover (clears && frames_in != 0 && seen.frame_in);

@@ -6,8 +6,8 @@
 `default_nettype none
 
 module fv_table_banks
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Present = 15
 ) (
@@ -21,11 +21,11 @@ module fv_table_banks
   input logic            frame_start,
   input logic [3:0]      table_in_use,
   input capture_status_t reference_status,
-  input capture_status_t floor_status,
+  input capture_status_t zero_status,
   input logic [1:0]      pick
 );
 
-  logic write_refused, reference_request, floor_request;
+  logic write_refused, reference_request, zero_request;
   logic [31:0] read_data;
   logic [3:0] table_bank, closed;
   table_banks #(.Present(Present)) dut (.*);
@@ -36,19 +36,19 @@ module fv_table_banks
   always_comb if (started) assume (pick == pick_was);
 
   // The followed table: a request that no frame has taken, its bank, and its capture.
-  logic has, requested, bank, waits, busy, done, commits, is_reference, is_floor, shown;
+  logic has, requested, bank, waits, busy, done, commits, is_reference, is_zero, shown;
   assign has = Present[pick];
   assign is_reference = 32'(pick) == TableSelectReference;
-  assign is_floor = 32'(pick) == TableSelectFloor;
-  assign busy = (is_reference && reference_status.busy) || (is_floor && floor_status.busy);
-  assign done = (is_reference && reference_status.done) || (is_floor && floor_status.done);
+  assign is_zero = 32'(pick) == TableSelectZero;
+  assign busy = (is_reference && reference_status.busy) || (is_zero && zero_status.busy);
+  assign done = (is_reference && reference_status.done) || (is_zero && zero_status.done);
   assign waits = requested || (has && bank != table_in_use[pick]);
   assign commits = write && write_offset == TableCommitOffset && write_ones[pick] && has && !waits && !busy;
   assign shown = table_bank[pick];
   logic asks, may_start;
-  assign asks = (is_reference && write_offset == CaptureOffset && write_ones[CaptureStartBit])
-    || (is_floor && write_offset == FloorCaptureOffset && write_ones[FloorCaptureStartBit]);
-  assign may_start = has && !(is_floor && (waits || done));
+  assign asks = (is_reference && write_offset == ReferenceCaptureOffset && write_ones[ReferenceCaptureStartBit])
+    || (is_zero && write_offset == ZeroCaptureOffset && write_ones[ZeroCaptureStartBit]);
+  assign may_start = has && !(is_zero && (waits || done));
 
   always_ff @(posedge clk) begin
     started <= 1'b1;
@@ -66,15 +66,15 @@ module fv_table_banks
       bank_of_the_frame: assert (shown == (bank ^ (requested && frame_start && !rst)));
       closed_while_it_waits: assert (closed[pick] == (waits || busy));
       if (read_offset == TableCommitOffset) commit_reads: assert (read_data[pick] == waits && read_data[31:4] == '0);
-      if (read_offset == CaptureOffset) reference_reads: assert (read_data == 32'(reference_status.busy) << CaptureBusyBit);
-      if (read_offset == FloorCaptureOffset) floor_reads: assert (read_data == 32'(floor_status.busy) << FloorCaptureBusyBit);
+      if (read_offset == ReferenceCaptureOffset) reference_reads: assert (read_data == 32'(reference_status.busy) << ReferenceCaptureBusyBit);
+      if (read_offset == ZeroCaptureOffset) zero_reads: assert (read_data == 32'(zero_status.busy) << ZeroCaptureBusyBit);
       if (asks) refused_or_not: assert (write_refused == !may_start);
-      if (write_offset != CaptureOffset && write_offset != FloorCaptureOffset) no_other: assert (!write_refused);
+      if (write_offset != ReferenceCaptureOffset && write_offset != ZeroCaptureOffset) no_other: assert (!write_refused);
       if (is_reference) reference_asked: assert (reference_request == (write && asks && may_start));
-      if (is_floor) floor_asked: assert (floor_request == (write && asks && may_start));
+      if (is_zero) zero_asked: assert (zero_request == (write && asks && may_start));
 
       changes_over: cover (frame_start && requested && has && bank);
-      after_a_capture: cover (frame_start && requested && is_floor && !rst);
+      after_a_capture: cover (frame_start && requested && is_zero && !rst);
       cold: cover (cold_rst && bank && started);
     end
   end

@@ -4,7 +4,7 @@
 `default_nettype none
 
 module protocol_axil_registers
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 (
   input  logic                    clk,
   input  logic                    rst,

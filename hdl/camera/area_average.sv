@@ -60,7 +60,7 @@ module area_average #(
     .clk, .rst, .en, .in_valid, .in_samples, .in_blue_column(in_colour[0]), .in_row_start,
     .out_ends(ends), .out_sums(sums), .out_red_columns(red_columns)
   );
-  delay_line #(.Width(3), .Delay(RowSums)) u_marks (
+  td_delay_line #(.Width(3), .Delay(RowSums)) u_marks (
     .clk, .rst, .en, .in({in_valid & in_row_start, in_frame_start, in_colour[1]}),
     .out({row_start, frame_start, blue_row})
   );

@@ -90,7 +90,7 @@ module block_totals #(
       {complete_q, complete_q2, out_valid} <= '0;
     end
   end
-  ram #(.Width(3 * TotalWidth), .Depth(Columns), .Style(Style)) u_line (
+  td_ram #(.Width(3 * TotalWidth), .Depth(Columns), .Style(Style)) u_line (
     .clk, .write_en(en & ends_q3), .write_address(column_q3), .write_data(stored),
     .read_en(en & in_ends & ~in_first_row), .read_address(column), .read_data(earlier)
   );
@@ -98,10 +98,10 @@ module block_totals #(
   logic [Lanes*TotalWidth-1:0] parts, wholes;
   for (genvar l = 0; l < Lanes; l++) begin : g_product
     logic signed [SumWidth+WeightWidth:0] part, whole;
-    multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_part (
+    td_multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_part (
       .clk, .en, .a(sums_q[l*SumWidth+:SumWidth]), .b({1'b0, weight_q}), .product(part)
     );
-    multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_whole (
+    td_multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_whole (
       .clk, .en, .a(sums_q[l*SumWidth+:SumWidth]), .b({1'b0, Pixel}), .product(whole)
     );
     assign parts[l*TotalWidth+:TotalWidth] = TotalWidth'(part);
@@ -161,10 +161,10 @@ module block_totals #(
         out_areas <= {blue[AreaWidth-1:0], Area - red[AreaWidth-1:0] - blue[AreaWidth-1:0], red[AreaWidth-1:0]};
       end
     end
-    multiply #(.AWidth(BlockWidth + 1), .BWidth(BlockWidth + 1)) u_red (
+    td_multiply #(.AWidth(BlockWidth + 1), .BWidth(BlockWidth + 1)) u_red (
       .clk, .en, .a({1'b0, red_rows_q}), .b({1'b0, red_columns_q}), .product(red)
     );
-    multiply #(.AWidth(BlockWidth + 1), .BWidth(BlockWidth + 1)) u_blue (
+    td_multiply #(.AWidth(BlockWidth + 1), .BWidth(BlockWidth + 1)) u_blue (
       .clk, .en, .a({1'b0, blue_rows_q}), .b({1'b0, blue_columns_q}), .product(blue)
     );
   end else begin : g_area

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // camera_front_end: the pixels of the grid from the words of a camera.
 //
-//   s_axis -> axis_skid -> camera_window -> pixel_format -> channel_gain -> area_average -> axis_skid -> m_axis
+//   s_axis -> td_axis_skid -> camera_window -> pixel_format -> channel_gain -> area_average -> td_axis_skid -> m_axis
 //
 // Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv); WordsPerPixel 2: single bytes.
 // Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel per clock.
@@ -13,7 +13,7 @@
 `default_nettype none
 
 module camera_front_end
-  import stream_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Rows          = 128,  // of the grid
   parameter int Columns       = 128,
@@ -57,7 +57,7 @@ module camera_front_end
 
   logic held_valid, held_ready, held_last, held_user;
   logic [23:0] held_data;
-  axis_skid #(.Width(26)) u_input (
+  td_axis_skid #(.Width(26)) u_input (
     .clk, .rst,
     .s_valid(s_axis_tvalid), .s_ready(s_axis_tready), .s_data({s_axis_tuser, s_axis_tlast, s_axis_tdata}),
     .m_valid(held_valid), .m_ready(held_ready), .m_data({held_user, held_last, held_data})
@@ -112,7 +112,7 @@ module camera_front_end
     .out_valid(pixel_valid), .out_pixel(pixel), .out_last(pixel_last), .out_user(pixel_user)
   );
 
-  axis_skid #(.Width(26)) u_output (
+  td_axis_skid #(.Width(26)) u_output (
     .clk, .rst,
     .s_valid(pixel_valid), .s_ready(en), .s_data({pixel_user, pixel_last, pixel}),
     .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_data({m_axis_tuser, m_axis_tlast, m_axis_tdata})

@@ -13,9 +13,9 @@
 `default_nettype none
 
 module camera_registers
-  import camera_map_pkg::*;
-  import register_map_pkg::AddressWidth;
-  import stream_pkg::*;
+  import td_camera_map_pkg::*;
+  import td_register_map_pkg::AddressWidth;
+  import td_types_pkg::*;
 #(
   parameter int PictureColumns = 640,  // after a reset, as the other settings
   parameter int PictureRows    = 480,

@@ -60,7 +60,7 @@ module camera_setup #(
   logic [15:0] address;
   logic [7:0] data;
   assign {kind, address, data} = word;
-  rom #(.Width(26), .Depth(Entries), .File({TableFolder, "camera.hex"})) u_list (
+  td_rom #(.Width(26), .Depth(Entries), .File({TableFolder, "camera.hex"})) u_list (
     .clk, .en(1'b1), .address(entry), .data(word)
   );
 

@@ -88,10 +88,10 @@ module channel_gain #(
         out_samples[c*Width+:Width] <= rounded;
       end
     end
-    multiply #(.AWidth(Width + 1), .BWidth(GainWidth + 1)) u_gain (
+    td_multiply #(.AWidth(Width + 1), .BWidth(GainWidth + 1)) u_gain (
       .clk, .en, .a(difference), .b({1'b0, gain_q}), .product(product)
     );
-    round_saturate #(.InWidth(Product), .Drop(GainFraction), .OutWidth(Width)) u_round (
+    td_round_saturate #(.InWidth(Product), .Drop(GainFraction), .OutWidth(Width)) u_round (
       .in(product), .out(rounded), .clipped(unused_clipped)
     );
   end

@@ -4,7 +4,7 @@
 // In, on pclk, which runs between rows too: a frame begins as vsync rises, where a pulse between frames begins or ends;
 // href high in any other clock brings a byte; href low ends a row. Stream out, on clk: the bytes of a frame in
 // their order, tuser with its first, tlast with the last of each row. A byte crosses in 2 clocks of pclk and 3 or 4 of
-// clk (async_fifo).
+// clk (td_async_fifo).
 //
 // Back-pressure ends at 2^FifoLog2 bytes: the camera does not wait. A frame with a byte that finds no room is given up:
 // no byte of it follows, so that what has left is a frame cut short, and the next frame is whole. frames_lost is the
@@ -72,7 +72,7 @@ module dvp_receive #(
 
   logic read_valid, read_ready;
   logic [9:0] word;
-  async_fifo #(.Width(10), .DepthLog2(FifoLog2)) u_fifo (
+  td_async_fifo #(.Width(10), .DepthLog2(FifoLog2)) u_fifo (
     .write_clk(pclk), .write_valid(opening | held), .write_ready,
     .write_data(opening ? {2'b10, given_up} : {1'b0, ~in_row, held_data}),
     .read_clk(clk), .read_valid, .read_ready, .read_data(word)

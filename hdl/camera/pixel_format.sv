@@ -129,16 +129,16 @@ module pixel_format #(
     end
 
     logic signed [Product-1:0] red_cr, green_cb, green_cr, blue_cb;
-    multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_red_cr (
+    td_multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_red_cr (
       .clk, .en, .a(cr), .b(Coefficient'(RedCr)), .product(red_cr)
     );
-    multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_green_cb (
+    td_multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_green_cb (
       .clk, .en, .a(cb), .b(Coefficient'(GreenCb)), .product(green_cb)
     );
-    multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_green_cr (
+    td_multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_green_cr (
       .clk, .en, .a(cr), .b(Coefficient'(GreenCr)), .product(green_cr)
     );
-    multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_blue_cb (
+    td_multiply #(.AWidth(Chroma), .BWidth(Coefficient)) u_blue_cb (
       .clk, .en, .a(cb), .b(Coefficient'(BlueCb)), .product(blue_cb)
     );
     logic signed [Product+1:0] grey, red, green, blue;
@@ -151,7 +151,7 @@ module pixel_format #(
     for (genvar c = 0; c < 3; c++) begin : g_round
       logic signed [Width-1:0] rounded;
       logic unused_clipped;
-      round_saturate #(.InWidth(Product + 2), .Drop(Fraction + 8 - Bits), .OutWidth(Width)) u_round (
+      td_round_saturate #(.InWidth(Product + 2), .Drop(Fraction + 8 - Bits), .OutWidth(Width)) u_round (
         .in(colours[c]), .out(rounded), .clipped(unused_clipped)
       );
       always_ff @(posedge clk) if (en) out_samples[c*Width+:Width] <= rounded;

@@ -71,10 +71,10 @@ module row_sums #(
   logic [Channels*SumWidth-1:0] parts, wholes;
   for (genvar c = 0; c < Channels; c++) begin : g_product
     logic signed [ProductWidth-1:0] part, whole;
-    multiply #(.AWidth(Width), .BWidth(WeightWidth + 1)) u_part (
+    td_multiply #(.AWidth(Width), .BWidth(WeightWidth + 1)) u_part (
       .clk, .en, .a(samples_q[c*Width+:Width]), .b({1'b0, weight_q}), .product(part)
     );
-    multiply #(.AWidth(Width), .BWidth(WeightWidth + 1)) u_whole (
+    td_multiply #(.AWidth(Width), .BWidth(WeightWidth + 1)) u_whole (
       .clk, .en, .a(samples_q[c*Width+:Width]), .b(Pixel), .product(whole)
     );
     assign parts[c*SumWidth+:SumWidth] = SumWidth'(part);

@@ -36,7 +36,7 @@ module centroid #(
   logic [AreaWidth-1:0] remainder;
   logic unused_overflow;
   assign sum = start ? column_sum : row_sum;
-  divide #(.DivisorWidth(AreaWidth), .QuotientWidth(QuotientWidth)) u_divide (
+  td_divide #(.DivisorWidth(AreaWidth), .QuotientWidth(QuotientWidth)) u_divide (
     .clk, .rst, .start(start | (divided & ~of_row)), .numerator({1'b0, sum, 5'd0}), .divisor(area),
     .done(divided), .quotient, .remainder, .overflow(unused_overflow)
   );
@@ -44,7 +44,7 @@ module centroid #(
   logic signed [QuotientWidth:0] rounded;
   logic unused_clipped;
   logic [1:0] unused_rounded;  // no mean of positions is larger than the largest
-  round_saturate #(.InWidth(QuotientWidth + 2), .Drop(2), .OutWidth(QuotientWidth + 1)) u_round (
+  td_round_saturate #(.InWidth(QuotientWidth + 2), .Drop(2), .OutWidth(QuotientWidth + 1)) u_round (
     .in($signed({1'b0, quotient, remainder != '0})), .out(rounded), .clipped(unused_clipped)
   );
   assign {unused_rounded, row} = rounded;

@@ -13,7 +13,7 @@
 `default_nettype none
 
 module contact_sums
-  import stream_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Width       = 24,
   parameter int Rows        = 128,

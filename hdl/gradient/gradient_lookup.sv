@@ -5,16 +5,16 @@
 //
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy,
 // z positive into the gel. Latency: 4 cycles; a gap in, a gap out.
-// The table is a banked_table, both banks with the calibration at power-up. A frame uses the bank that table_bank names
-// when its first pixel is taken, or in reset; table_in_use says which. The other is written by table_write, whenever no
-// change-over is due (table_bank is table_in_use), and read by table_read: the entry stands on table_read_* from 2
-// cycles later until the next, en or not. In the cycle of a change-over the entry is of the bank that was left.
+// The table is a td_banked_table, both banks with the calibration at power-up. A frame uses the bank that table_bank
+// names when its first pixel is taken, or in reset; table_in_use says which. The other is written by table_write,
+// whenever no change-over is due (table_bank is table_in_use), and read by table_read: the entry stands on table_read_*
+// from 2 cycles later until the next, en or not. In the cycle of a change-over the entry is of the bank that was left.
 // Bit-accurate model: models/tactile_depth/gradient/gradient_lookup.py, which also writes the table.
 
 `default_nettype none
 
 module gradient_lookup
-  import stream_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Width          = 21,  // of a slope; its fraction bits are those of the table
   parameter int BitsPerChannel = 4,
@@ -56,7 +56,7 @@ module gradient_lookup
   logic valid_q, valid_q2, valid_q3, fetched;
   position_t position_q, position_q2, position_q3;
   logic [2*Width-1:0] word, word_q, free_word;
-  banked_table #(.Width(2 * Width), .Depth(1 << IndexWidth), .File(File)) u_table (
+  td_banked_table #(.Width(2 * Width), .Depth(1 << IndexWidth), .File(File)) u_table (
     .clk, .rst, .en, .table_bank, .table_in_use,
     .frame_start(in_valid & in_position.first_row & in_position.first_column),
     .change(valid_q & position_q.first_row & position_q.first_column),

@@ -17,7 +17,7 @@
 `default_nettype none
 
 module quadratic_gradient
-  import stream_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Width          = 21,  // of a slope
@@ -116,7 +116,7 @@ module quadratic_gradient
           : first[3+colour] ? TermWidth'(2)
           : first[4+colour] ? TermWidth'(3)
           : row[1+colour] ? TermWidth'(4) : TermWidth'(5);
-      banked_table #(
+      td_banked_table #(
         .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "quadratic_", 8'(48 + Polynomial), ".hex"})
       ) u_words (
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first[1+colour]),
@@ -154,7 +154,7 @@ module quadratic_gradient
       logic signed [DeviationWidth-1:0] deviation_q;
       logic signed [CoeffWidth-1:0] coefficient_q;
       logic signed [ProductWidth-1:0] product;
-      multiply #(.AWidth(DeviationWidth), .BWidth(CoeffWidth)) u_product (
+      td_multiply #(.AWidth(DeviationWidth), .BWidth(CoeffWidth)) u_product (
         .clk, .en, .a(deviation_q), .b(coefficient_q), .product
       );
       always_ff @(posedge clk) begin
@@ -169,7 +169,7 @@ module quadratic_gradient
       always_ff @(posedge clk) if (en) sums[SumWidth*Polynomial+:SumWidth] <= sum_before + SumWidth'(product);
     end
 
-    round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(Width)) u_round (
+    td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(Width)) u_round (
       .in($signed(sums[SumWidth*Colours*(axis+1)-1-:SumWidth])),
       .out(slopes[Width*axis+:Width]),
       .clipped(clipped[axis])

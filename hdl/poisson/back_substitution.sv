@@ -56,7 +56,7 @@ module back_substitution #(
     logic [RowWidth-1:0] row, row_q;
     logic active;
     assign row = in_frame_start[lane] ? RowWidth'(Rows - 1 - lane) : row_q;
-    burst_counter #(.Size(Size)) u_counter (
+    td_burst_counter #(.Size(Size)) u_counter (
       .clk, .rst, .en, .start(in_start[lane]), .position, .active
     );
 
@@ -76,10 +76,10 @@ module back_substitution #(
     logic signed [ProductWidth-1:0] product;
     logic signed [SumWidth-1:0] sum;
     logic first_q, first_q2, first_q3, clipped;
-    multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
+    td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
       .clk, .en, .a(below), .b(coefficient), .product
     );
-    round_saturate #(.InWidth(SumWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
+    td_round_saturate #(.InWidth(SumWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_round (
       .in(sum), .out(rounded), .clipped
     );
 
@@ -127,7 +127,7 @@ module back_substitution #(
       // A word is read before the next one comes to its place, Step clocks behind it.
       logic [(ToSum+1)*StepWidth-1:0] position_q;  // in the row of words that are below
       logic signed [Width-1:0] waiting, below_q;
-      ram #(
+      td_ram #(
         .Width(Width),
         .Depth(Step),
         .Style((Width * Step > 4096) ? 1 : 0)

@@ -50,7 +50,7 @@ module forward_elimination #(
   logic [RowWidth-1:0] row, row_q;
   logic active;
   assign row = in_frame_start ? '0 : row_q;
-  burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Size(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
 
@@ -96,17 +96,17 @@ module forward_elimination #(
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
   logic [2:0] clipped, clipped_q;
-  multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
+  td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
     .clk, .en, .a(difference_q2), .b(coefficient), .product
   );
-  round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
+  td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
     .in((Width + 1)'(data_q3) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
   );
-  round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
+  td_round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
     .in(shifted), .out(rounded), .clipped(clipped[1])
   );
   logic signed [OutWidth-1:0] stored;
-  round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
+  td_round_saturate #(.InWidth(Width), .Drop(StoreDrop), .OutWidth(OutWidth)) u_store (
     .in(d), .out(stored), .clipped(clipped[2])
   );
   always_ff @(posedge clk) begin
@@ -130,7 +130,7 @@ module forward_elimination #(
     end
   end
 
-  ram #(
+  td_ram #(
     .Width(Width),
     .Depth(Size),
     .Style((Width * Size > 4096) ? 1 : 0)
@@ -156,16 +156,16 @@ module forward_elimination #(
     logic signed [ProductWidth-1:0] scaled;
     logic [3:0] after;  // clocks since d at position 0 was there
     logic [1:0] clipped_now;
-    multiply #(.AWidth(Width), .BWidth(RowWidth + 2)) u_addend (
+    td_multiply #(.AWidth(Width), .BWidth(RowWidth + 2)) u_addend (
       .clk, .en(en & start_q[ToState-1]), .a(d), .b({1'b0, weight}), .product(addend)
     );
-    multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_scaled (
+    td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_scaled (
       .clk, .en(en & after[2]), .a(sum_q), .b(CoeffWidth'(-MeanReciprocal)), .product(scaled)
     );
-    round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
+    td_round_saturate #(.InWidth(MomentWidth), .Drop(MomentDrop), .OutWidth(Width)) u_sum (
       .in(moment), .out(sum), .clipped(clipped_now[0])
     );
-    round_saturate #(.InWidth(ProductWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
+    td_round_saturate #(.InWidth(ProductWidth), .Drop(MeanDrop), .OutWidth(Width)) u_mean (
       .in(scaled), .out(mean), .clipped(clipped_now[1])
     );
     logic ends;  // the mean is used when the last row begins, so the last addend is that of the row before

@@ -22,7 +22,7 @@ module frame_stack #(
   parameter int Size        = 128,
   parameter int Lanes       = 1,
   parameter int WordsPerRow = 1,
-  parameter int Style       = 1   // of the memory, hdl/common/ram.sv
+  parameter int Style       = 1   // of the memory, hdl/common/td_ram.sv
 ) (
   input  wire                    clk,
   input  wire                    rst,
@@ -82,7 +82,7 @@ module frame_stack #(
   logic write_active, write_end, write_last_q, write_row;
   logic [Kept*Width-1:0] kept;  // words before in_data, the latest in the lowest bits
   logic [Width-1:0] kept_q;
-  burst_counter #(.Size(Size)) u_write (
+  td_burst_counter #(.Size(Size)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
   assign write_end = write_active & (write_position == LastPosition);
@@ -123,7 +123,7 @@ module frame_stack #(
     logic read_past_q, read_past_q2, start_q, start_q2, frame_start_q, frame_start_q2;
     logic [Width-1:0] word_q;  // the word that is read stands in a register before it goes on
     logic [WordsPerRow*Width-1:0] read_data;
-    burst_counter #(.Size(Size)) u_read (
+    td_burst_counter #(.Size(Size)) u_read (
       .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
     );
     assign read_start = read_begin[lane] | read_more;
@@ -149,7 +149,7 @@ module frame_stack #(
       end
     end
 
-    ram #(.Width(WordsPerRow * Width), .Depth(Depth), .Style(Style)) u_ram (
+    td_ram #(.Width(WordsPerRow * Width), .Depth(Depth), .Style(Style)) u_ram (
       .clk,
       .write_en     (en & write_row & (bank == BankWidth'(lane))),
       .write_address(write_address),

@@ -42,7 +42,7 @@ module spectral_divide #(
   logic [PositionWidth-1:0] p_q, p, t;
   logic [AddressWidth-1:0] tri_p_q, tri_p, tri_t_q, tri_t, address;
   logic active;
-  burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Size(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position(t), .active
   );
   assign tri_t = in_start ? '0 : tri_t_q;
@@ -63,7 +63,7 @@ module spectral_divide #(
 
   logic [ShiftWidth-1:0] shift, shift_q, shift_q2;
   logic signed [CoeffWidth-1:0] mantissa, mantissa_q;
-  rom #(.Width(ShiftWidth + CoeffWidth), .Depth(Words), .File(File)) u_rom (
+  td_rom #(.Width(ShiftWidth + CoeffWidth), .Depth(Words), .File(File)) u_rom (
     .clk, .en, .address, .data({shift, mantissa})
   );
 
@@ -73,10 +73,10 @@ module spectral_divide #(
   logic [ToShifted-1:0] start_q, frame_start_q, active_q;
   logic signed [Width-1:0] rounded;
   logic clipped;
-  multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
+  td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
     .clk, .en, .a(data_q3), .b(mantissa_q), .product
   );
-  round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
+  td_round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
     .in(shifted), .out(rounded), .clipped
   );
 

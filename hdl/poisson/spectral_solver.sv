@@ -28,7 +28,7 @@ module spectral_solver #(
   parameter int DivideShiftWidth = 4,
   parameter int DivideDrop       = 23,
   parameter int Neumann          = 0,   // 1: zero slope at the edge and zero mean, by cosine transforms
-  parameter int StoreStyle       = 1    // of the frame stores, hdl/common/ram.sv
+  parameter int StoreStyle       = 1    // of the frame stores, hdl/common/td_ram.sv
 ) (
   input  wire                         clk,
   input  wire                         rst,
@@ -112,7 +112,7 @@ module spectral_solver #(
   );
 
   logic [$clog2(Size)-1:0] unused_position;
-  burst_counter #(.Size(Size)) u_depth_valid (
+  td_burst_counter #(.Size(Size)) u_depth_valid (
     .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
   );
   row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (

@@ -37,7 +37,7 @@ module thomas_table #(
   logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
-  rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File({TableFolder, "thomas_index.hex"})) u_index (
+  td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File({TableFolder, "thomas_index.hex"})) u_index (
     .clk, .en, .address(position_q), .data({base, settled})
   );
 
@@ -53,7 +53,7 @@ module thomas_table #(
   end
 
   logic signed [CoeffWidth-1:0] inner;
-  rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, "thomas.hex"})) u_inner (
+  td_rom #(.Width(CoeffWidth), .Depth(Words), .File({TableFolder, "thomas.hex"})) u_inner (
     .clk, .en, .address, .data(inner)
   );
 
@@ -62,7 +62,7 @@ module thomas_table #(
     logic last_q3, last_q4;
     logic signed [CoeffWidth-1:0] last;
     logic [LastShiftWidth-1:0] last_shift;
-    rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File({TableFolder, "thomas_last.hex"})) u_last (
+    td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File({TableFolder, "thomas_last.hex"})) u_last (
       .clk, .en, .address(position_q3), .data({last_shift, last})
     );
     always_ff @(posedge clk) begin

@@ -35,7 +35,7 @@ module tridiagonal_solver #(
   parameter int MomentDrop     = 7,
   parameter int MeanReciprocal = 65536,
   parameter int MeanDrop       = 16,
-  parameter int StoreStyle     = 1,    // of the frame store, hdl/common/ram.sv
+  parameter int StoreStyle     = 1,    // of the frame store, hdl/common/td_ram.sv
   parameter int WordsPerRow    = 1,    // of its memory
   localparam int ClippedWidth = 8 + $clog2(Lanes)
 ) (
@@ -119,7 +119,7 @@ module tridiagonal_solver #(
   if (Lanes == 1) begin : g_one_lane
     logic depth_valid;
     logic [$clog2(Size)-1:0] unused_position;
-    burst_counter #(.Size(Size)) u_depth_valid (
+    td_burst_counter #(.Size(Size)) u_depth_valid (
       .clk, .rst, .en, .start(depth_start[0]), .position(unused_position), .active(depth_valid)
     );
     row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (

@@ -11,7 +11,7 @@
 `default_nettype none
 
 module axil_port
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 (
   input  wire                     clk,
   input  wire                     rst,

@@ -15,9 +15,9 @@
 `default_nettype none
 
 module axil_registers
-  import default_parameters_pkg::*;
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_config_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Tridiagonal      = DefaultTridiagonal,
   parameter int Neumann          = DefaultNeumann,
@@ -29,7 +29,7 @@ module axil_registers
   parameter int BitsPerChannel   = DefaultBitsPerChannel,
   parameter int FlatField        = DefaultFlatField,
   parameter int Quadratic        = DefaultQuadratic,
-  parameter int AutoZero         = DefaultAutoZero,
+  parameter int ZeroOffset         = DefaultZeroOffset,
   parameter int Lanes            = DefaultLanes,
   parameter int BlockLog2        = DefaultBlockLog2,
   parameter int GainWidth        = DefaultGainWidth,
@@ -82,8 +82,8 @@ module axil_registers
   input  wire  [3:0]                table_in_use,
   output capture_command_t          reference_command,
   input  wire capture_status_t      reference_status,
-  output capture_command_t          floor_command,
-  input  wire capture_status_t      floor_status
+  output capture_command_t          zero_command,
+  input  wire capture_status_t      zero_status
 );
 
   localparam logic [31:0] GridWord = (Rows << GridRowsLsb) | (Columns << GridColumnsLsb);
@@ -91,7 +91,7 @@ module axil_registers
     | (GradientFraction << FormatGradientFractionLsb)
     | ((Quadratic != 0 ? 0 : BitsPerChannel) << FormatBitsPerChannelLsb);
   localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
-    | (Quadratic << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (AutoZero << DeviceZeroOffsetBit)
+    | (Quadratic << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (ZeroOffset << DeviceZeroOffsetBit)
     | (Lanes << DeviceLanesLsb) | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
   localparam logic [31:0] DepthUnitWord =
     (DepthMantissa << DepthUnitMantissaLsb) | (DepthExponent << DepthUnitExponentLsb);
@@ -102,10 +102,10 @@ module axil_registers
   localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0;
   localparam int Nodes = (Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2));
   localparam int ReferenceWords = FlatField != 0 ? 4 * Nodes : 0;
-  localparam int FloorWords = AutoZero != 0 ? Nodes : 0;
+  localparam int ZeroWords = ZeroOffset != 0 ? Nodes : 0;
   localparam int Present = (int'(GradientWords != 0) << TableSelectGradient)
     | (int'(CoefficientWords != 0) << TableSelectCoefficients)
-    | (int'(ReferenceWords != 0) << TableSelectReference) | (int'(FloorWords != 0) << TableSelectFloor);
+    | (int'(ReferenceWords != 0) << TableSelectReference) | (int'(ZeroWords != 0) << TableSelectZero);
 
   logic write, entry_refused, capture_refused;
   logic read, read_refused, read_late, late_refused;
@@ -145,19 +145,19 @@ module axil_registers
 
   logic [31:0] bank_data;
   logic [3:0] closed;
-  logic reference_request, floor_request;
+  logic reference_request, zero_request;
   table_banks #(.Present(Present)) u_banks (
     .clk, .rst, .cold_rst, .write, .write_offset, .write_ones, .write_refused(capture_refused),
     .read_offset, .read_data(bank_data), .frame_start, .table_bank, .table_in_use, .closed,
-    .reference_request, .reference_status, .floor_request, .floor_status
+    .reference_request, .reference_status, .zero_request, .zero_status
   );
-  assign reference_command = {reference_request, settings[CaptureSetting][CaptureLog2FramesLsb+:4]};
-  assign floor_command = {floor_request, settings[FloorCaptureSetting][FloorCaptureLog2FramesLsb+:4]};
+  assign reference_command = {reference_request, settings[ReferenceCaptureSetting][ReferenceCaptureLog2FramesLsb+:4]};
+  assign zero_command = {zero_request, settings[ZeroCaptureSetting][ZeroCaptureLog2FramesLsb+:4]};
 
   logic [31:0] entry_data;
   table_access #(
     .GradientWords(GradientWords), .CoefficientWords(CoefficientWords), .ReferenceWords(ReferenceWords),
-    .FloorWords(FloorWords)
+    .ZeroWords(ZeroWords)
   ) u_access (
     .clk, .rst, .write, .write_offset, .write_ones, .write_mask, .write_refused(entry_refused),
     .read, .read_offset, .read_data(entry_data), .read_late, .late_data, .late_refused,

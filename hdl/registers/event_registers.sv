@@ -10,8 +10,8 @@
 `default_nettype none
 
 module event_registers
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 (
   input  wire          clk,
   input  wire          rst,

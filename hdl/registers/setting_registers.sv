@@ -9,7 +9,7 @@
 `default_nettype none
 
 module setting_registers
-  import register_map_pkg::*;
+  import td_register_map_pkg::*;
 #(
   parameter int Count = Settings,
   parameter logic [32*Count-1:0] Offsets = SettingOffsets,

@@ -12,13 +12,13 @@
 `default_nettype none
 
 module table_access
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int GradientWords    = 4096,  // entries of each table; 0: the build has none
   parameter int CoefficientWords = 0,
   parameter int ReferenceWords   = 0,
-  parameter int FloorWords       = 0
+  parameter int ZeroWords       = 0
 ) (
   input  wire                  clk,
   input  wire                  rst,
@@ -41,7 +41,7 @@ module table_access
 );
 
   localparam int SlopeWords = GradientWords > CoefficientWords ? GradientWords : CoefficientWords;
-  localparam int MapWords = ReferenceWords > FloorWords ? ReferenceWords : FloorWords;
+  localparam int MapWords = ReferenceWords > ZeroWords ? ReferenceWords : ZeroWords;
   localparam int IndexWidth = $clog2(SlopeWords > MapWords ? SlopeWords : MapWords);
 
   logic [31:0] size, high;
@@ -53,7 +53,7 @@ module table_access
       TableSelectGradient: size = GradientWords;
       TableSelectCoefficients: size = CoefficientWords;
       TableSelectReference: size = ReferenceWords;
-      default: size = FloorWords;
+      default: size = ZeroWords;
     endcase
     case (read_offset)
       TableIndexOffset: read_data = 32'(index);

@@ -6,18 +6,18 @@
 // shows the bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand within a
 // frame of the head of the pipeline. Until then the change-over is pending. A table is `closed`, to writes and to
 // commits, while its change-over is pending or it is captured. `done` of a capture requests the change-over as a commit
-// does. A start written to CAPTURE or FLOOR_CAPTURE raises the request in the clock of the write; from the next clock
-// to that of `done`, `busy` shall be high. Refused: a start for a table that the build has not, and one for the floor
-// while its change-over is pending: the floor takes it a solver's latency after the frame's start, and the capture
-// would write the bank that is to be used. A write that is refused does nothing. rst forgets what no frame has taken
-// and leaves the banks, because it leaves the tables; cold_rst, together with rst, clears the banks.
-// Model: models/tactile_depth/registers/table_banks.py.
+// does. A start written to REFERENCE_CAPTURE or ZERO_CAPTURE raises the request in the clock of the write; from the
+// next clock to that of `done`, `busy` shall be high. Refused: a start for a table that the build has not, and one for
+// the zero offset while its change-over is pending: the zero offset takes it a solver's latency after the frame's
+// start, and the capture would write the bank that is to be used. A write that is refused does nothing. rst forgets
+// what no frame has taken and leaves the banks, because it leaves the tables; cold_rst, together with rst, clears the
+// banks. Model: models/tactile_depth/registers/table_banks.py.
 
 `default_nettype none
 
 module table_banks
-  import register_map_pkg::*;
-  import stream_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
 #(
   parameter int Present = 15  // bit n: the build has table n of TABLE_SELECT
 ) (
@@ -37,8 +37,8 @@ module table_banks
   output logic [3:0]            closed,
   output logic                  reference_request,
   input  wire  capture_status_t reference_status,
-  output logic                  floor_request,
-  input  wire  capture_status_t floor_status
+  output logic                  zero_request,
+  input  wire  capture_status_t zero_status
 );
 
   localparam logic [3:0] Has = 4'(Present);
@@ -46,24 +46,24 @@ module table_banks
   logic [3:0] requested;    // a change-over that no frame has taken
   logic [3:0] bank = '0;    // no reset: it says where the tables are, which no reset touches
   logic [3:0] pending, commits, captured;
-  logic starts, starts_reference, starts_floor, no_reference, no_floor;
+  logic starts, starts_reference, starts_zero, no_reference, no_zero;
 
   assign starts = frame_start && !rst;
   assign table_bank = bank ^ (requested & {4{starts}});
   assign pending = requested | ((bank ^ table_in_use) & Has);
   assign captured =
-    (4'(reference_status.done) << TableCommitReferenceBit) | (4'(floor_status.done) << TableCommitFloorBit);
+    (4'(reference_status.done) << TableCommitReferenceBit) | (4'(zero_status.done) << TableCommitZeroBit);
   assign closed = pending
-    | (4'(reference_status.busy) << TableCommitReferenceBit) | (4'(floor_status.busy) << TableCommitFloorBit);
+    | (4'(reference_status.busy) << TableCommitReferenceBit) | (4'(zero_status.busy) << TableCommitZeroBit);
   assign commits = write && write_offset == TableCommitOffset ? write_ones[3:0] & ~closed : '0;
 
-  assign starts_reference = write_offset == CaptureOffset && write_ones[CaptureStartBit];
-  assign starts_floor = write_offset == FloorCaptureOffset && write_ones[FloorCaptureStartBit];
+  assign starts_reference = write_offset == ReferenceCaptureOffset && write_ones[ReferenceCaptureStartBit];
+  assign starts_zero = write_offset == ZeroCaptureOffset && write_ones[ZeroCaptureStartBit];
   assign no_reference = !Has[TableCommitReferenceBit];
-  assign no_floor = !Has[TableCommitFloorBit] || pending[TableCommitFloorBit] || floor_status.done;
-  assign write_refused = (starts_reference && no_reference) || (starts_floor && no_floor);
+  assign no_zero = !Has[TableCommitZeroBit] || pending[TableCommitZeroBit] || zero_status.done;
+  assign write_refused = (starts_reference && no_reference) || (starts_zero && no_zero);
   assign reference_request = write && starts_reference && !no_reference;
-  assign floor_request = write && starts_floor && !no_floor;
+  assign zero_request = write && starts_zero && !no_zero;
 
   always_ff @(posedge clk) begin
     requested <= (requested & {4{!frame_start}}) | ((commits | captured) & Has);
@@ -73,8 +73,8 @@ module table_banks
   end
 
   assign read_data = read_offset == TableCommitOffset ? 32'(pending)
-    : read_offset == CaptureOffset ? 32'(reference_status.busy) << CaptureBusyBit
-    : read_offset == FloorCaptureOffset ? 32'(floor_status.busy) << FloorCaptureBusyBit : '0;
+    : read_offset == ReferenceCaptureOffset ? 32'(reference_status.busy) << ReferenceCaptureBusyBit
+    : read_offset == ZeroCaptureOffset ? 32'(zero_status.busy) << ZeroCaptureBusyBit : '0;
 
   logic unused_bits;
   assign unused_bits = ^write_ones;

@@ -17,7 +17,7 @@ import numpy as np
 
 from tactile_depth import reference
 from tactile_depth.certificate import deepest
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import cost
 from tactile_depth.errors import InputError

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
-from tactile_depth.transform.dst_forward import dst_forward
-from tactile_depth.transform.dst_inverse import dst_inverse
-from tactile_depth.transform.orders import eigenvalues, makhoul
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.orders import eigenvalues, makhoul
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from itertools import product
 import numpy as np
 
 from tactile_depth import reference
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration, Format
 from tactile_depth.poisson import spectral_solver, tridiagonal_solver
 from tactile_depth.poisson.back_substitution import back_substitution
@@ -30,7 +30,7 @@ from tactile_depth.poisson.forward_elimination import forward_elimination
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.spectral_divide import reciprocals
 from tactile_depth.poisson.thomas_table import thomas_table
-from tactile_depth.transform.orders import makhoul
+from tactile_depth.poisson.transform.orders import makhoul
 
 BLOCK_BYTES = 1 << 26  # bytes of responses held at a time
 TRIED = 1 << 32  # most products computed for a node of the inverse row transform, whose words are tried one by one

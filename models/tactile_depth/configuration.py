@@ -4,7 +4,7 @@
 Every fixed-point format, HDL parameter and expected latency is derived here from a few choices. Formats
 follow from two bounds: no slope exceeds `gradient_limit`, no depth exceeds `depth_range_px`. Every step from
 slope to depth is linear, so the largest value of a node is an L1 norm. The norm is computed by the
-bit-accurate model, run on unit vectors of floats (models/tactile_depth/common/round_saturate.py).
+bit-accurate model, run on unit vectors of floats (models/tactile_depth/common/td_round_saturate.py).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import numpy as np
 
 from tactile_depth.bounds import Bounds, bounds, difference_bounds
 from tactile_depth.errors import InputError
-from tactile_depth.transform.sdf_fft import twiddle_stages
-from tactile_depth.transform.twiddle_multiply import coefficient_gain
+from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
+from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 
 GUARD_BITS = 3  # bits of the arithmetic below a stored word: a DSP48E2 multiplies 27 bits at the cost of 24
 DEPTH_HEADROOM = 9 / 8  # full scale of the depth code over the depth range: margin for depth errors
@@ -26,7 +26,7 @@ DEEPEST = 0.67  # largest depth over N pixels for slopes up to 1 (L1 norm of the
 COARSEST_LSB = 1 / 32  # of a mode's word, as a fraction of the deepest depth: coarser words lose the shape
 SMALLEST_DEPTH_RANGE_PX = 1 / 16
 
-# Styles of ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
+# Styles of td_ram.sv for a frame store. A store as large as two UltraRAMs or more takes UltraRAM, which is cheaper.
 BLOCK, ULTRA = 1, 2
 ULTRA_WORDS, ULTRA_WIDTH = 4096, 72
 
@@ -118,7 +118,7 @@ class Configuration:
         Bits of a gain of the flat field.
     gradient_model : str
         `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
-    auto_zero : bool
+    zero_offset : bool
         The depth that is read without contact is subtracted.
     lanes : int
         Depth values per clock, a power of two. Only the tridiagonal solver has more than one.
@@ -135,7 +135,7 @@ class Configuration:
     bits_per_channel: int = 4
     flat_field: bool = False
     gradient_model: str = "lut"
-    auto_zero: bool = False
+    zero_offset: bool = False
     lanes: int = 1
     gain_width: int = 24
 

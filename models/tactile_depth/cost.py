@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Counts multipliers, memory bits and latency of a configuration, from the parameters of the RTL.
 
-Memories are those in ram.sv and rom.sv. Registers are not counted, nor are delays of up to LONGEST_SHIFT,
+Memories are those in td_ram.sv and td_rom.sv. Registers are not counted, nor are delays of up to LONGEST_SHIFT,
 which are registers. A test elaborates the RTL and compares the counts.
 """
 
@@ -11,20 +11,20 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from tactile_depth.calibration import floor_map
+from tactile_depth.common import td_node_map
 from tactile_depth.configuration import Configuration
 from tactile_depth.latency import GAIN_MAP, first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.poisson.transform.sdf_fft import stages
 from tactile_depth.tactile_depth import top_parameters
-from tactile_depth.transform.sdf_fft import stages
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
     *("flat_field", "gradient_lookup", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
-    *("corner_turn", "auto_zero", "floor_capture"),
+    *("corner_turn", "zero_offset", "zero_capture"),
 )
-LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/delay_line.sv
-PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through gain_map
+LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
+PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_gain_map
 DEPTH_MARKS = 3  # the position: it travels with a depth
 
 # A DSP48E2 multiplies 27 by 18 bits, signed. The low parts of a wider operand are unsigned and hold one bit less.
@@ -134,7 +134,7 @@ def _pipeline(p: dict[str, int]) -> Parts:
     else:
         rows += [Memory("row buffers", data, 2 * size, "corner_turn")] * p["Lanes"]
     solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
-    return _joined(_colours(p), ([], rows), solver, _floor(p))
+    return _joined(_colours(p), ([], rows), solver, _zero(p))
 
 
 def _colours(p: dict[str, int]) -> Parts:
@@ -155,23 +155,23 @@ def _colours(p: dict[str, int]) -> Parts:
     return multipliers, memories
 
 
-def _floor(p: dict[str, int]) -> Parts:
-    """Count the parts of auto_zero.sv and floor_capture.sv: row weights, two banks of floors, sums, delayed depths."""
-    if not p["AutoZero"]:
+def _zero(p: dict[str, int]) -> Parts:
+    """Count the parts of zero_offset.sv and zero_capture.sv: row weights, two banks of nodes, sums, delayed depths."""
+    if not p["ZeroOffset"]:
         return [], []
     log2, data, lanes = p["BlockLog2"], p["DataWidth"], p["Lanes"]
-    side = floor_map.side(lanes, log2)  # nodes that are written at once
+    side = td_node_map.side(lanes, log2)  # nodes that are written at once
     words = (p["Rows"] >> log2) * (p["Size"] >> log2) // side
     if lanes == 1:
         weight, tables, delay = log2 + 3, 2, GAIN_MAP
     else:  # each bank is held twice, for the nodes above and for those below
-        weight, tables, delay = log2 + 2, 4, floor_map.latency(lanes, log2)
+        weight, tables, delay = log2 + 2, 4, td_node_map.latency(lanes, log2)
     memories = [
-        *[Memory("tables", data, words, "auto_zero")] * (tables * side),
-        Memory("delay lines", lanes * data + DEPTH_MARKS, delay, "auto_zero"),
-        Memory("tables", side * (data + 2 * log2 + p["FloorLog2"]), words, "floor_capture"),
+        *[Memory("tables", data, words, "zero_offset")] * (tables * side),
+        Memory("delay lines", lanes * data + DEPTH_MARKS, delay, "zero_offset"),
+        Memory("tables", side * (data + 2 * log2 + p["ZeroLog2"]), words, "zero_capture"),
     ]
-    return [Multiplier(data + 1, weight, "auto_zero")] * side, memories
+    return [Multiplier(data + 1, weight, "zero_offset")] * side, memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:
@@ -224,14 +224,14 @@ def _thomas(p: dict[str, int], running: int) -> Parts:
 
 
 def _forward(p: dict[str, int]) -> Parts:
-    """Count the parts of hdl/transform/dst_forward.sv, which forms only the real part of the product with the phase."""
+    """Count the parts of dst_forward.sv, which forms only the real part of the product with the phase."""
     phase = [Multiplier(p["Width"], p["CoeffWidth"])] * 2
     phases = [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]
     return _in("dst_forward", *_joined(_fft(p, inverse=False), (phase, phases)))
 
 
 def _inverse(p: dict[str, int], in_width: int) -> Parts:
-    """Count the parts of hdl/transform/dst_inverse.sv with its mode_pairs."""
+    """Count the parts of hdl/poisson/transform/dst_inverse.sv with its mode_pairs."""
     size = p["Size"]
     memories = [
         Memory("delay lines", in_width, size // 2 + 1),
@@ -243,7 +243,7 @@ def _inverse(p: dict[str, int], in_width: int) -> Parts:
 
 
 def _fft(p: dict[str, int], inverse: bool) -> Parts:
-    """Count the parts of hdl/transform/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
+    """Count the parts of hdl/poisson/transform/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
     multipliers, memories = [], []
     for stage in stages(p["Size"], inverse):
         if stage.delay > LONGEST_SHIFT:

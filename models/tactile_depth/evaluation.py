@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.errors import InputError
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
     NOTHING_TOUCHES,
     PITCHES_AGREE,

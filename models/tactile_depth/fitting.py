@@ -31,12 +31,12 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from tactile_depth import reference
-from tactile_depth.calibration.flat_field import FLAT_CODE
 from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
 from tactile_depth.configuration import DEVIATION, GRADIENT_LIMITS
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.evaluation import Evaluation, Score, scores_of
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.flat_field import FLAT_CODE
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
     FITTED_SHARE,
     NOTHING_TOUCHES,

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from tactile_depth.calibration import floor_map
 from tactile_depth.camera_configuration import CameraConfiguration
+from tactile_depth.common import td_node_map
 from tactile_depth.configuration import Configuration
-from tactile_depth.transform.sdf_fft import twiddle_stages
+from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 
 MEMORY_READ = 1
 MULTIPLY = 1
@@ -75,9 +75,9 @@ def tridiagonal_solver_latency(size: int, lanes: int = 1) -> int:
     return down + up + (ROW_REORDER if lanes == 1 else CORNER_TURN)
 
 
-def auto_zero_latency(lanes: int, block_log2: int) -> int:
-    """Return the latency of auto_zero: gain_map, or floor_map with several lanes, and the subtraction."""
-    return (GAIN_MAP if lanes == 1 else floor_map.latency(lanes, block_log2)) + 1
+def zero_offset_latency(lanes: int, block_log2: int) -> int:
+    """Return the latency of zero_offset: td_gain_map, or td_node_map with several lanes, and the subtraction."""
+    return (GAIN_MAP if lanes == 1 else td_node_map.latency(lanes, block_log2)) + 1
 
 
 def pixel_format_latency(camera: CameraConfiguration) -> int:
@@ -111,12 +111,12 @@ def frame_latency(config: Configuration) -> int:
 
 def last_pixel_to_first_depth(config: Configuration) -> int:
     """Return the cycles of the pipeline from the last pixel of a frame to its first depth, for any gaps."""
-    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero_offset_latency(config) + AXIS_SKID
+    return AXIS_SKID + FRAME_GUARD + frame_latency(config) + zero_latency(config) + AXIS_SKID
 
 
-def zero_offset_latency(config: Configuration) -> int:
+def zero_latency(config: Configuration) -> int:
     """Return the cycles that the zero offset takes."""
-    return auto_zero_latency(config.lanes, config.reference_block_log2) if config.auto_zero else 0
+    return zero_offset_latency(config.lanes, config.reference_block_log2) if config.zero_offset else 0
 
 
 def last_pixel_to_last_depth(config: Configuration) -> int:

@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 
 from tactile_depth import reference as exact
-from tactile_depth.calibration.auto_zero import exact_zero, no_floor
-from tactile_depth.calibration.flat_field import captured_gains, dark_pixels, require_light, unit_gains
-from tactile_depth.calibration.floor_capture import LARGEST_LOG2, captured_floor
-from tactile_depth.calibration.reference_capture import largest_log2_frames
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
+from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import InputError, is_number
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale, read_pictures
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
+from tactile_depth.gradient.reference_capture import largest_log2_frames
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.resampling import Resampling, resampling
 from tactile_depth.result import Result
 from tactile_depth.sensor import Sensor
@@ -137,7 +137,7 @@ class Pipeline:
             **shape,
             **widths,
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
-            auto_zero=zero_offset,
+            zero_offset=zero_offset,
         )
         self.arithmetic = arithmetic
         self.depth_lsb_mm = self.config.depth_lsb_px * self.pixel_pitch_mm
@@ -150,8 +150,8 @@ class Pipeline:
         self._threshold = round(threshold_mm / self.depth_lsb_mm)
         self._events = ContactEvents(rows, columns, bottom_first=solver == "tridiagonal")
         self._gains = unit_gains(self.config)
-        self._floor = no_floor(self.config)
-        self._exact_floor = np.zeros(self.grid)
+        self._zero = no_zero(self.config)
+        self._exact_zero = np.zeros(self.grid)
         if rest is None:
             self._prepare()
         else:
@@ -181,10 +181,10 @@ class Pipeline:
         monitor = Monitor()
         if self.arithmetic == "chip":
             slopes, stream = self._chip(frames, monitor)
-            stream = zeroed(stream, self.config, monitor, self._floor)
+            stream = zeroed(stream, self.config, monitor, self._zero)
         else:
             slopes, stream = self._exact(frames)
-            stream = stream - self._exact_floor
+            stream = stream - self._exact_zero
         codes = np.rint(stream).astype(np.int32)
         settings = Settings(self._threshold, self._threshold, minimum_area=1, debounce=1)
         records = tuple(self._events.whole_frame(frame, settings, time=0) for frame in codes)
@@ -235,7 +235,7 @@ class Pipeline:
         InputError
             The number of pictures is not 1, 2, 4, .. 256, or the pipeline has no zero offset.
         """
-        if not self.config.auto_zero:
+        if not self.config.zero_offset:
             raise InputError("pictures: this pipeline has no zero offset: make it with zero_offset=True")
         frames, _ = self._read(pictures, "pictures")
         _power_of_two(len(frames), LARGEST_LOG2)
@@ -261,7 +261,7 @@ class Pipeline:
         """
         folder = Path(folder)
         with new_files(folder, PARAMETERS) as unfinished:
-            write_roms(unfinished, self.sensor, self.config, self._floor, self._gains)
+            write_roms(unfinished, self.sensor, self.config, self._zero, self._gains)
             description = {
                 "parameters": top_parameters(self.config, self.pixel_pitch_mm),
                 "registers": {"THRESHOLD": self._threshold},
@@ -313,8 +313,8 @@ class Pipeline:
         self._exact_tables = exact.slope_tables(self.sensor, self.config)
 
     def _use_zero(self, frames: np.ndarray) -> None:
-        self._floor = captured_floor(self._chip(frames, Monitor())[1], self.config)
-        self._exact_floor = -exact_zero(np.zeros(self.grid), self._exact(frames)[1], self.config)
+        self._zero = captured_zero(self._chip(frames, Monitor())[1], self.config)
+        self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames)[1], self.config)
 
     # Pictures.
 

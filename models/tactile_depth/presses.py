@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from tactile_depth.calibration.flat_field import captured_gains, deviations, flat_codes, require_light
 from tactile_depth.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.circles import find_circle, require_circle_finder
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import read_picture
+from tactile_depth.gradient.flat_field import captured_gains, deviations, flat_codes, require_light
 from tactile_depth.grid_sampler import GridSampler, grid_sampler
 
 LARGEST_GRID, SMALLEST_GRID = 128, 16

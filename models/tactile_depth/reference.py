@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
-from tactile_depth.calibration.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
 from tactile_depth.configuration import DARKEST_LOG2, Configuration
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
+from tactile_depth.poisson.divergence import divergence
+from tactile_depth.poisson.transform.orders import read_only
 from tactile_depth.sensor import Sensor
-from tactile_depth.transform.orders import read_only
 
 
 def eigenvalues(size: int, neumann: bool = False) -> np.ndarray:

@@ -11,8 +11,8 @@ import numpy as np
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals
 from tactile_depth.poisson.thomas_table import thomas_table
-from tactile_depth.transform.sdf_fft import stages
-from tactile_depth.transform.twiddle_multiply import phase_factors, twiddle_factors
+from tactile_depth.poisson.transform.sdf_fft import stages
+from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors
 
 
 def write_words(path: Path, words: Iterable[int], width: int) -> None:
@@ -78,18 +78,18 @@ def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
 
 
 def write_gains(folder: Path, gains: np.ndarray, width: int) -> None:
-    """Write gains (.., 3) as the memories of gain_map.sv read them: one file per channel, one word per node."""
+    """Write gains (.., 3) as the memories of td_gain_map.sv read them: one file per channel, one word per node."""
     for channel, words in enumerate(np.moveaxis(gains, -1, 0)):
         write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
 
 
-def write_floor(folder: Path, floor: np.ndarray, width: int, side: int = 1) -> None:
-    """Write depth codes (node rows, node columns) as auto_zero.sv reads them: offset binary, one word per node.
+def write_zero(folder: Path, zero: np.ndarray, width: int, side: int = 1) -> None:
+    """Write depth codes (node rows, node columns) as zero_offset.sv reads them: offset binary, one word per node.
 
     With `side` neighbouring nodes in a word of the memory there are as many files, each with every side-th node.
     """
     for file in range(side):
-        write_words(folder / f"floor_{file}.hex", floor.ravel()[file::side] + (1 << width - 1), width)
+        write_words(folder / f"zero_{file}.hex", zero.ravel()[file::side] + (1 << width - 1), width)
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:

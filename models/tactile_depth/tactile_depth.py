@@ -9,9 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_depth.calibration import floor_map
-from tactile_depth.calibration.auto_zero import auto_zero, no_floor
-from tactile_depth.calibration.flat_field import (
+from tactile_depth.common import td_node_map
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.configuration import POLYNOMIAL, Configuration
+from tactile_depth.depth.zero_capture import zero_capture_parameters
+from tactile_depth.depth.zero_offset import no_zero, zero_offset
+from tactile_depth.errors import InputError
+from tactile_depth.gradient.flat_field import (
     PixelGains,
     deviations,
     flat_codes,
@@ -19,12 +23,6 @@ from tactile_depth.calibration.flat_field import (
     pixel_gains,
     reference_gains,
 )
-from tactile_depth.calibration.floor_capture import floor_capture_parameters
-from tactile_depth.calibration.reference_capture import reference_capture_parameters
-from tactile_depth.common.round_saturate import Monitor
-from tactile_depth.configuration import POLYNOMIAL, Configuration
-from tactile_depth.errors import InputError
-from tactile_depth.gradient.divergence import divergence
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.gradient.quadratic_gradient import (
     coefficient_map,
@@ -32,10 +30,12 @@ from tactile_depth.gradient.quadratic_gradient import (
     polynomial_words,
     quadratic_gradient,
 )
+from tactile_depth.gradient.reference_capture import reference_capture_parameters
 from tactile_depth.latency import frame_latency
 from tactile_depth.poisson import spectral_solver, tridiagonal_solver
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.device_description import description_parameters
-from tactile_depth.rom_files import write_floor, write_gains, write_gradient, write_quadratic, write_solver
+from tactile_depth.rom_files import write_gains, write_gradient, write_quadratic, write_solver, write_zero
 from tactile_depth.sensor import COEFFICIENTS, Sensor
 
 
@@ -87,7 +87,7 @@ def tactile_depth(
     monitor: Monitor | None = None,
     gains: np.ndarray | None = None,
     dark_level: int = 0,
-    floor: np.ndarray | None = None,
+    zero: np.ndarray | None = None,
     tables: Tables | None = None,
 ) -> np.ndarray:
     """Return the depth codes of frames, rows in the order of the stream (tridiagonal solver: bottom row first).
@@ -99,8 +99,8 @@ def tactile_depth(
         Gains in use; by default those of the calibration's reference.
     dark_level : int
         Value of the register.
-    floor : int64 array (node rows, node columns)
-        Floor in use, for a configuration with `auto_zero`; by default nothing is subtracted.
+    zero offset : int64 array (node rows, node columns)
+        Zero offset in use, for a configuration with `zero_offset`; by default nothing is subtracted.
     tables : Tables
         `slope_tables` of the same calibration, configuration and gains, for many calls; by default computed here.
 
@@ -109,16 +109,16 @@ def tactile_depth(
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
     slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level, tables)
-    return zeroed(solve(divergence(slopes, config.neumann), config, monitor), config, monitor, floor)
+    return zeroed(solve(divergence(slopes, config.neumann), config, monitor), config, monitor, zero)
 
 
 def zeroed(
-    codes: np.ndarray, config: Configuration, monitor: Monitor | None = None, floor: np.ndarray | None = None
+    codes: np.ndarray, config: Configuration, monitor: Monitor | None = None, zero: np.ndarray | None = None
 ) -> np.ndarray:
-    """Subtract the floor from depth codes (..., rows, columns) if the configuration has `auto_zero`."""
-    if not config.auto_zero:
+    """Subtract the zero offset from depth codes (..., rows, columns) if the configuration has `zero_offset`."""
+    if not config.zero_offset:
         return codes
-    return auto_zero(codes, no_floor(config) if floor is None else floor, config, monitor)
+    return zero_offset(codes, no_zero(config) if zero is None else zero, config, monitor)
 
 
 def slope_codes(
@@ -165,7 +165,7 @@ def top_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[s
         "GradientFraction": config.gradient.fraction,
         "FrameLatency": frame_latency(config),
         **_colour_parameters(config),
-        **_floor_parameters(config),
+        **_zero_parameters(config),
         **description_parameters(config, pixel_pitch_mm),
     }
 
@@ -187,21 +187,21 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     return colour
 
 
-def _floor_parameters(config: Configuration) -> dict[str, int]:
-    if not config.auto_zero:
-        return {"AutoZero": 0}
-    capture = floor_capture_parameters(config)
-    return {"AutoZero": 1, "BlockLog2": capture["BlockLog2"], "FloorLog2": capture["MaxLog2"]}
+def _zero_parameters(config: Configuration) -> dict[str, int]:
+    if not config.zero_offset:
+        return {"ZeroOffset": 0}
+    capture = zero_capture_parameters(config)
+    return {"ZeroOffset": 1, "BlockLog2": capture["BlockLog2"], "ZeroLog2": capture["MaxLog2"]}
 
 
 def write_roms(
     folder: Path,
     calibration: Sensor,
     config: Configuration,
-    floor: np.ndarray | None = None,
+    zero: np.ndarray | None = None,
     gains: np.ndarray | None = None,
 ) -> None:
-    """Write every file that the RTL reads; for `floor` and `gains` see `tactile_depth`.
+    """Write every file that the RTL reads; for `zero` and `gains` see `tactile_depth`.
 
     Raises
     ------
@@ -211,12 +211,12 @@ def write_roms(
     calibration.check(config, gains is not None)
     if gains is not None:
         require_nodes("gains", gains, (*config.reference_nodes, 3))
-    if floor is not None:
-        require_nodes("floor", floor, config.reference_nodes)
+    if zero is not None:
+        require_nodes("zero", zero, config.reference_nodes)
     write_solver(folder, config)
-    if config.auto_zero:
-        side = floor_map.side(config.lanes, config.reference_block_log2)
-        write_floor(folder, no_floor(config) if floor is None else floor, config.depth.width, side)
+    if config.zero_offset:
+        side = td_node_map.side(config.lanes, config.reference_block_log2)
+        write_zero(folder, no_zero(config) if zero is None else zero, config.depth.width, side)
     if config.flat_field:
         write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain_width)
     if config.gradient_model == "quadratic":

@@ -15,7 +15,7 @@ import numpy as np
 from tactile_depth.camera.block_weights import block_weights, pixels_of
 from tactile_depth.camera.camera_front_end import SETTINGS
 from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.frame.frame_guard import Word
+from tactile_depth.video.frame_guard import Word
 from tb.axis import video
 
 Slot = dict[str, int]

@@ -13,8 +13,8 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
-from tactile_depth.frame.frame_guard import Word
 from tactile_depth.latency import CAMERA_WINDOW
+from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, video
 from tb.stream import CLOCK_NS, MANY, REGRESS, parameters
 

@@ -12,7 +12,7 @@ import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.camera.dvp_receive import IDLE, Beat, DvpReceive, Pins, camera_pins
-from tactile_depth.common.async_fifo import AsyncFifo
+from tactile_depth.common.td_async_fifo import AsyncFifo
 from tb.axis import AxisMonitor, AxisSink, profile
 from tb.stream import REGRESS, parameters, sample
 from tb.two_clocks import RATIOS, run_clock, watch

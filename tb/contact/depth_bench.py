@@ -126,7 +126,7 @@ class DepthBench:
                 depth[:: self.rows - 1] = rng.integers(-1, 4, self.columns)
                 depth[:, :: self.columns - 1] += rng.integers(-1, 4, (self.rows, 1))
                 return depth
-        y, x = np.indices(shape)  # caps on a noisy floor, some cut by the edge
+        y, x = np.indices(shape)  # caps on a noisy zero offset, some cut by the edge
         depth = rng.normal(0, 1, shape)
         for _ in range(rng.integers(1, 4)):
             centre = rng.uniform(-1, 1 + np.array(shape))

@@ -12,7 +12,7 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.gradient.quadratic_gradient import coefficients, slope_codes
 from tactile_depth.latency import QUADRATIC_GRADIENT
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart

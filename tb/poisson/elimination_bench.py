@@ -10,7 +10,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.latency import BACK_SUBSTITUTION, FORWARD_ELIMINATION
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination

@@ -6,7 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.latency import SPECTRAL_DIVIDE
 from tactile_depth.poisson.spectral_divide import spectral_divide
 from tb.stream import MANY, check_bursts, configuration, corners, extremes, parameters, sample, uniform

@@ -299,7 +299,7 @@ async def capture(dut: Any, name: str) -> None:
         bank = int(dut.table_bank.value)
         await pulse(dut, **{f"{name}_status": structs.pack("capture_status_t", {"busy": 1, "done": 1})})
         assert await value_of(dut, COMMIT.name) == bit
-        later = Response.SLVERR if name == "floor" else Response.OKAY  # its change-over follows the solver
+        later = Response.SLVERR if name == "zero" else Response.OKAY  # its change-over follows the solver
         assert await write(dut, register.name, start) == later
         await pulse(dut, frame_start=1)
         await ClockCycles(dut.clk, 2)

@@ -14,7 +14,7 @@ from tb import structs
 from tb.registers.register_bench import WHOLE, RegisterBench
 
 PARAMETERS = {"gradient": "GradientWords", "coefficients": "CoefficientWords"}
-PARAMETERS |= {"reference": "ReferenceWords", "floor": "FloorWords"}
+PARAMETERS |= {"reference": "ReferenceWords", "zero": "ZeroWords"}
 
 
 class Bench(RegisterBench):

@@ -26,7 +26,7 @@ class Bench(RegisterBench):
     """Bench of table_banks; the tables follow in the next cycle, unless a test holds them."""
 
     idle: Mapping[str, int] = dict.fromkeys(
-        ("frame_start", "cold_rst", "table_in_use", "reference_status", "floor_status"), 0
+        ("frame_start", "cold_rst", "table_in_use", "reference_status", "zero_status"), 0
     )
 
     def __init__(self, dut: Any) -> None:

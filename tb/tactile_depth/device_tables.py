@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from tactile_depth.calibration.auto_zero import no_floor
-from tactile_depth.calibration.flat_field import pixel_gains, unit_gains
 from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_offset import no_zero
+from tactile_depth.gradient.flat_field import pixel_gains, unit_gains
 from tactile_depth.gradient.gradient_lookup import gradient_codes
 from tactile_depth.gradient.quadratic_gradient import coefficient_map, polynomial_words
 from tactile_depth.registers.axil_port import Response
@@ -25,7 +25,7 @@ from tactile_depth.tactile_depth import Tables
 from tb.axil import RegisterClient
 
 COMMIT = REGISTERS["TABLE_COMMIT"]
-ONE_WORD = ("coefficients", "reference", "floor")  # tables whose entries have no upper word
+ONE_WORD = ("coefficients", "reference", "zero")  # tables whose entries have no upper word
 
 changed: set[str] = set()  # tables of the device that differ from the build; only this state outlives a test
 
@@ -64,8 +64,8 @@ class Content:
             entries["coefficients"] = one_word(polynomial_words(sensor, config, sensor.pixel_pitch_mm))
         if config.flat_field:
             entries["reference"] = reference_entries(unit_gains(config))
-        if config.auto_zero:
-            entries["floor"] = one_word(no_floor(config))
+        if config.zero_offset:
+            entries["zero"] = one_word(no_zero(config))
         return cls(config, entries)
 
     def with_table(self, name: str, entries: np.ndarray) -> Content:
@@ -85,10 +85,10 @@ class Content:
         return Tables(gains, self.entries["gradient"])
 
     @cached_property
-    def floor(self) -> np.ndarray | None:
-        """Return the floor, int64 (node rows, node columns); None in a build without it."""
-        floor = self.entries.get("floor")
-        return None if floor is None else floor[:, 0].reshape(self.config.reference_nodes)
+    def zero(self) -> np.ndarray | None:
+        """Return the zero offset, int64 (node rows, node columns); None in a build without it."""
+        zero = self.entries.get("zero")
+        return None if zero is None else zero[:, 0].reshape(self.config.reference_nodes)
 
 
 class DeviceTables:

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.frame.frame_guard import Frame, frame_guard
-from tactile_depth.gradient.divergence import divergence
 from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import slope_codes, solve, zeroed
+from tactile_depth.video.frame_guard import Frame, frame_guard
 from tb.axil import RegisterClient
 from tb.axis import AxisMonitor
 from tb.pixels import unpack
@@ -80,8 +80,8 @@ class Scoreboard:
         self.sticky: set[str] = set()
         self.latency = self.dark_level = 0
 
-    def before_the_floor(self, words: Any, content: Content, monitor: Monitor | None = None) -> np.ndarray:
-        """Return the depth codes (frames, rows, columns) of pixel words before the floor is subtracted."""
+    def before_the_zero(self, words: Any, content: Content, monitor: Monitor | None = None) -> np.ndarray:
+        """Return the depth codes (frames, rows, columns) of pixel words before the zero offset is subtracted."""
         rgb = unpack(words).reshape(-1, self.rows, self.columns, 3)
         slopes = slope_codes(rgb, self.sensor, self.config, monitor, None, self.dark_level, content.slopes)
         return solve(divergence(slopes, self.config.neumann), self.config, monitor)
@@ -96,7 +96,7 @@ class Scoreboard:
         codes = [np.zeros((0, self.rows, self.columns), np.int64)]
         for _, alike in groupby(zip(words, each, strict=True), key=lambda pair: id(pair[1])):
             some, (content, *_) = zip(*alike, strict=True)
-            codes.append(zeroed(self.before_the_floor(some, content, monitor), self.config, monitor, content.floor))
+            codes.append(zeroed(self.before_the_zero(some, content, monitor), self.config, monitor, content.zero))
         return np.concatenate(codes), monitor.saturations.total()
 
     def frames(self, into: AxisMonitor, timeout: int) -> tuple[list[Frame], list[str]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Captures of tactile_depth: reference and floor measured from frames, and dark pixels."""
+"""Captures of tactile_depth: reference and zero offset measured from frames, and dark pixels."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,8 +7,8 @@ from typing import Any
 import cocotb
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.calibration.flat_field import captured_gains
-from tactile_depth.calibration.floor_capture import captured_floor
+from tactile_depth.depth.zero_capture import captured_zero
+from tactile_depth.gradient.flat_field import captured_gains
 from tactile_depth.latency import first_depth_latency
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS
@@ -18,7 +18,7 @@ from tb.selection import Level, case
 from tb.tactile_depth.bench import HEAD_CLOCKS, Pipeline, Stream, started
 from tb.tactile_depth.device_tables import one_word, reference_entries
 
-CAPTURE, FLOOR_CAPTURE = REGISTERS["CAPTURE"], REGISTERS["FLOOR_CAPTURE"]
+REFERENCE_CAPTURE, ZERO_CAPTURE = REGISTERS["REFERENCE_CAPTURE"], REGISTERS["ZERO_CAPTURE"]
 DARK_LEVEL = 50
 
 
@@ -31,16 +31,16 @@ async def capturing(pipeline: Pipeline, register: str) -> bool:
 async def a_capture_without_a_reference_is_refused(dut: Any) -> None:
     """Start a capture of the reference in a build without a flat field: it is refused."""
     pipeline = await started(dut)
-    assert await pipeline.write("CAPTURE", CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
-    assert not await capturing(pipeline, "CAPTURE")
+    assert await pipeline.write("REFERENCE_CAPTURE", REFERENCE_CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
+    assert not await capturing(pipeline, "REFERENCE_CAPTURE")
 
 
-@case(Level.FORMATS, needs=lambda config: not config.auto_zero)
-async def a_capture_without_a_floor_is_refused(dut: Any) -> None:
-    """Start a capture of the floor in a build without auto-zero: it is refused."""
+@case(Level.FORMATS, needs=lambda config: not config.zero_offset)
+async def a_capture_without_a_zero_is_refused(dut: Any) -> None:
+    """Start a capture of the zero offset in a build without the zero offset: it is refused."""
     pipeline = await started(dut)
-    assert await pipeline.write("FLOOR_CAPTURE", FLOOR_CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
-    assert not await capturing(pipeline, "FLOOR_CAPTURE")
+    assert await pipeline.write("ZERO_CAPTURE", ZERO_CAPTURE.pack(start=1, log2_frames=1)) == Response.SLVERR
+    assert not await capturing(pipeline, "ZERO_CAPTURE")
 
 
 @case(Level.FORMATS, needs=lambda config: config.flat_field)
@@ -50,9 +50,9 @@ async def reference(dut: Any) -> None:
     rng, columns = pipeline.random, pipeline.columns
     shades = [pack([[rng.randint(90, 160) for _ in range(3)] for _ in range(pipeline.pixels)]) for _ in range(2)]
     still = [video(shade, columns) for shade in shades]
-    assert await pipeline.write("CAPTURE", CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
+    assert await pipeline.write("REFERENCE_CAPTURE", REFERENCE_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
     await pipeline.send(broken(pipeline.frame(), "row_short", 1, columns), *still, pipeline.pressed())
-    while await capturing(pipeline, "CAPTURE"):
+    while await capturing(pipeline, "REFERENCE_CAPTURE"):
         await RisingEdge(dut.clk)
     await pipeline.check()
     colours = unpack(shades).reshape(2, pipeline.rows, columns, 3)
@@ -64,16 +64,16 @@ async def reference(dut: Any) -> None:
     await pipeline.check()
 
 
-@case(Level.FORMATS, needs=lambda config: config.auto_zero)
-async def floor(dut: Any) -> None:
-    """Capture the floor from two frames with a broken one between them, while more frames stream.
+@case(Level.FORMATS, needs=lambda config: config.zero_offset)
+async def zero(dut: Any) -> None:
+    """Capture the zero offset from two frames with a broken one between them, while more frames stream.
 
-    Frames that begin before the capture ends keep the old floor from first depth to last. Later frames use the new
-    one. Both kinds are in the pipeline at once.
+    Frames that begin before the capture ends keep the old one from first depth to last. Later frames use the new one.
+    Both kinds are in the pipeline at once.
     """
     pipeline = await started(dut, offers="random")
     tables, into = pipeline.tables, pipeline.into
-    assert await pipeline.write("FLOOR_CAPTURE", FLOOR_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
+    assert await pipeline.write("ZERO_CAPTURE", ZERO_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
     frames = [pipeline.pressed(slope) for slope in (0.25, 0.125, -0.25)]
     late = 3 + first_depth_latency(pipeline.config) // pipeline.pixels
     stream: Sequence[Stream] = frames[0], broken(pipeline.frame(), "row_short", 1, pipeline.columns), *frames[1:]
@@ -82,44 +82,44 @@ async def floor(dut: Any) -> None:
     asked = answered = 0  # cycles of the last read with busy set, and of the first without
     while not answered:
         began = into.clock_count
-        if await capturing(pipeline, "FLOOR_CAPTURE"):
+        if await capturing(pipeline, "ZERO_CAPTURE"):
             asked = began
         else:
             answered = into.clock_count
     await sending
     await pipeline.drain()
-    assert not await capturing(pipeline, "FLOOR_CAPTURE")
+    assert not await capturing(pipeline, "ZERO_CAPTURE")
     assert not await pipeline.read("TABLE_COMMIT")
 
     def measured(*words: Any) -> Any:
-        codes = pipeline.scoreboard.before_the_floor([[word.data for word in some] for some in words], tables.content)
-        return one_word(captured_floor(codes, pipeline.config))
+        codes = pipeline.scoreboard.before_the_zero([[word.data for word in some] for some in words], tables.content)
+        return one_word(captured_zero(codes, pipeline.config))
 
     old = tables.content
-    new = old.with_table("floor", measured(*frames[:2]))
+    new = old.with_table("zero", measured(*frames[:2]))
     sent, _ = pipeline.scoreboard.frames(into, 0)
     starts = [into.taken[frame.first] + HEAD_CLOCKS for frame in sent]
     candidates = [[old] * (start <= answered) + [new] * (start > asked) for start in starts]
     used = pipeline.scoreboard.used(into, pipeline.out, candidates)
     later = [content is new for content in used]
-    assert later == sorted(later), f"a frame had the old floor after one with the new floor: {later}"
-    assert 3 < later.count(False) < len(later), "the test is void: no frame has one of the floors"
+    assert later == sorted(later), f"a frame had the old zero offset after one with the new zero offset: {later}"
+    assert 3 < later.count(False) < len(later), "the test is void: no frame has one of the zero offsets"
     await pipeline.check(contents=used)
-    tables.use("floor", measured(*frames[:2]))
+    tables.use("zero", measured(*frames[:2]))
     await pipeline.send(frames[0], frames[1])
     await pipeline.check()
     # One capture after another, the second as soon as it is accepted.
-    start = FLOOR_CAPTURE.pack(start=1)
+    start = ZERO_CAPTURE.pack(start=1)
     for frame in frames[1:]:
-        while await pipeline.write("FLOOR_CAPTURE", start) != Response.OKAY:
+        while await pipeline.write("ZERO_CAPTURE", start) != Response.OKAY:
             pass
         await pipeline.send(frame)
-        while await capturing(pipeline, "FLOOR_CAPTURE"):
+        while await capturing(pipeline, "ZERO_CAPTURE"):
             pass
-        assert await pipeline.write("FLOOR_CAPTURE", start) == Response.SLVERR, "accepted before the change-over"
+        assert await pipeline.write("ZERO_CAPTURE", start) == Response.SLVERR, "accepted before the change-over"
         await pipeline.check()
         await pipeline.send(frame)
-        tables.use("floor", measured(frame))
+        tables.use("zero", measured(frame))
         await pipeline.check()
     await pipeline.reset(2)
     await pipeline.send(frames[2])

@@ -8,8 +8,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.frame.frame_guard import FAULTS
 from tactile_depth.registers.register_map import WORD
+from tactile_depth.video.frame_guard import FAULTS
 from tb.axis import broken
 from tb.selection import Level, case, named, up_to
 from tb.tactile_depth.bench import CONTROL, Stream, started

@@ -17,14 +17,16 @@ from tb.selection import Level, case, up_to
 from tb.tactile_depth.bench import COMMIT, CONTROL, Pipeline, started
 from tb.tactile_depth.scoreboard import STATUS
 
-CAPTURE, FLOOR_CAPTURE, INTERRUPT = (REGISTERS[name] for name in ("CAPTURE", "FLOOR_CAPTURE", "INTERRUPT_STATUS"))
+REFERENCE_CAPTURE, ZERO_CAPTURE, INTERRUPT = (
+    REGISTERS[name] for name in ("REFERENCE_CAPTURE", "ZERO_CAPTURE", "INTERRUPT_STATUS")
+)
 WRITABLE = [register.name for register in MAP if register.writable]
 TABLE_REGISTERS = ("TABLE_SELECT", "TABLE_INDEX", "TABLE_HIGH", "TABLE_LOW")
 
 
 def as_sent(config: Configuration) -> bool:
-    """Return True if the build has the gradient table only, without a reference and without a floor."""
-    return not config.flat_field and not config.auto_zero
+    """Return True if the build has the gradient table only, without a reference and without a zero offset."""
+    return not config.flat_field and not config.zero_offset
 
 
 async def busy(pipeline: Pipeline) -> bool:
@@ -253,11 +255,11 @@ async def written_in_every_phase(dut: Any, accepts: str) -> None:
         "TIMEOUT": lambda: rng.randint(2, 300),  # no frame pauses
         "CONTROL": lambda: CONTROL.pack(hold_contact=rng.getrandbits(1)),
         "TABLE_SELECT": lambda: TABLES["gradient"],  # TABLE_LOW then writes an entry of the free bank
-        "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1, floor=1),  # the build has none of these
-        "CAPTURE": lambda: CAPTURE.pack(start=1),  # nor a reference to capture
-        "FLOOR_CAPTURE": lambda: FLOOR_CAPTURE.pack(start=1),  # nor a floor
+        "TABLE_COMMIT": lambda: COMMIT.pack(coefficients=1, reference=1, zero=1),  # the build has none of these
+        "REFERENCE_CAPTURE": lambda: REFERENCE_CAPTURE.pack(start=1),  # nor a reference to capture
+        "ZERO_CAPTURE": lambda: ZERO_CAPTURE.pack(start=1),  # nor a zero offset
     }
-    refused = {"GRID", "CAPTURE", "FLOOR_CAPTURE"}
+    refused = {"GRID", "REFERENCE_CAPTURE", "ZERO_CAPTURE"}
     missing = {name: set(range(pipeline.pixels)) for name in values}
 
     async def feed() -> None:

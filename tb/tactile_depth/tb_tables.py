@@ -78,15 +78,15 @@ async def written(dut: Any, name: str) -> None:
         np.testing.assert_array_equal(await tables.read(name), old)  # the bank that was in use until then
 
 
-@case(Level.FORMATS, needs=lambda config: config.auto_zero)
-async def a_floor_at_full_scale(dut: Any) -> None:
-    """Write a floor at full scale: depth beyond its range is clipped, and the floor survives a reset."""
+@case(Level.FORMATS, needs=lambda config: config.zero_offset)
+async def a_zero_at_full_scale(dut: Any) -> None:
+    """Write a zero offset at full scale: depth beyond its range is clipped, and the zero offset survives a reset."""
     pipeline = await started(dut)
     limit = 1 << pipeline.config.data_width - 1
-    count = len(pipeline.tables.content.entries["floor"])
-    floor = one_word(np.random.default_rng(cocotb.RANDOM_SEED).choice([-limit, limit - 1], count))
-    await pipeline.tables.write("floor", floor)
-    await pipeline.tables.commit("floor", floor)
+    count = len(pipeline.tables.content.entries["zero"])
+    zero = one_word(np.random.default_rng(cocotb.RANDOM_SEED).choice([-limit, limit - 1], count))
+    await pipeline.tables.write("zero", zero)
+    await pipeline.tables.commit("zero", zero)
     await pipeline.send(pipeline.pressed(), pipeline.frame())
     await pipeline.check()
     assert "saturation" in pipeline.scoreboard.sticky

@@ -21,7 +21,7 @@ from tb.boards.tb_ulx3s_camera_bench import camera_of, sensor
 CLOCK_MHZ = 100
 CLOCKS_A_BIT = 4
 SMALL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
-REAL_SENSOR: dict[str, Any] = {"neumann": True, "flat_field": True, "gradient_model": "quadratic", "auto_zero": True}
+REAL_SENSOR: dict[str, Any] = {"neumann": True, "flat_field": True, "gradient_model": "quadratic", "zero_offset": True}
 REAL_SENSOR |= {"data_width": 15, "coefficient_width": 18, "gain_width": 16}
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from tactile_depth.camera.camera_window import Settings, Watched, camera_window
-from tactile_depth.frame.frame_guard import Word
+from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, positions, video
 
 PICTURE, WINDOW = Settings(8, 6, 2, 1), (4, 3)

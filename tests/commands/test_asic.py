@@ -21,7 +21,7 @@ from commands.hardware.liberty import Cell, Pin, functions, groups_of, read, tru
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 
-LATENCY = 4  # of dot_product
+LATENCY = 4  # of td_dot_product
 
 # Two cells. Loads in fF, so energies in fJ; 2 V; leakage in nW.
 LIBERTY = """
@@ -324,10 +324,10 @@ def test_small_core_end_to_end(tmp_path: Any) -> None:
     widths = {"AWidth": 6, "BWidth": 5}
     cells = read(asic.DEFAULT_LIB)
     config = Configuration(columns=16)
-    reading = synthesis.read(tmp_path, config, top="dot_product", parameters=widths, options="--keep-hierarchy")
-    netlist, macros, where = asic.synthesise(tmp_path, reading, "dot_product", asic.DEFAULT_LIB, cells, 5.0)
+    reading = synthesis.read(tmp_path, config, top="td_dot_product", parameters=widths, options="--keep-hierarchy")
+    netlist, macros, where = asic.synthesise(tmp_path, reading, "td_dot_product", asic.DEFAULT_LIB, cells, 5.0)
     assert not macros
-    assert where == {"": "dot_product", "u_product0": "multiply", "u_product1": "multiply"}
+    assert where == {"": "td_dot_product", "u_product0": "td_multiply", "u_product1": "td_multiply"}
     stages = 2 * (6 + 5) + 11 + 11 + 11 + 11 + 12  # operands, twice for the second pair; products; the sum
     assert sum(cell.flip_flop is not None for _, _, cell in netlist.gates) == stages
 
@@ -401,7 +401,7 @@ def test_groups_nest() -> None:
         ([f"LIB={__file__}"], "no Liberty file that can be used"),
         (["LIB=two.lib", "NODE_NM=90", "CLOCK_MHZ=fast"], "CLOCK_MHZ=fast: accepted is a number"),
         (["NODE_NM=-1", "LIB=two.lib"], "NODE_NM=-1: accepted is a number"),
-        (["LIB=two.lib", "NODE_NM=90", "TIMED=dot_product"], "TIMED=dot_product: unknown variable"),
+        (["LIB=two.lib", "NODE_NM=90", "TIMED=td_dot_product"], "TIMED=td_dot_product: unknown variable"),
         (["LIB=two.lib", "NODE_NM=90", "SOLVER=fast"], "SOLVER=fast is unknown"),
     ],
 )

@@ -11,7 +11,7 @@ import pytest
 from commands.study import extremes, transform_noise
 from commands.study.extremes import EXTREMES, drift, faults, largest, measure, model_drift, smallest
 from commands.study.transform_noise import compliance, transforms
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, Configuration
 
 SIZE = 16

@@ -11,7 +11,7 @@ from commands.common.repository import cores, sources
 from commands.verify import formal, mutate
 from formal import proofs
 
-QUICK = ("axis_skid", "burst_counter")
+QUICK = ("td_axis_skid", "td_burst_counter")
 CORES = list(cores())
 
 
@@ -41,7 +41,7 @@ def test_every_protocol_belongs_to_a_core() -> None:
     used = {f"protocol_{core.protocol or name}" for name, core in mutate.CORES.items()}
     files = {path.stem for path in formal.BENCHES.rglob("protocol_*.sv")}
     assert files <= used
-    assert used - files == {"protocol_round_saturate"}, "any input is allowed, and the output always counts"
+    assert used - files == {"protocol_td_round_saturate"}, "any input is allowed, and the output always counts"
 
 
 def test_document_is_up_to_date() -> None:
@@ -65,12 +65,12 @@ def test_holds(core: str, mode: Any) -> None:
 
 
 def test_a_wrong_core_is_found_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    wrong = tmp_path / "axis_skid.sv"
-    text = cores()["axis_skid"].hdl.read_text()
+    wrong = tmp_path / "td_axis_skid.sv"
+    text = cores()["td_axis_skid"].hdl.read_text()
     assert "m_data <= s_ready ? s_data : waiting;" in text
     wrong.write_text(text.replace("m_data <= s_ready ? s_data : waiting;", "m_data <= s_data;"))
     files = [wrong if path.name == wrong.name else path for path in sources()]
     monkeypatch.setattr(formal, "sources", lambda: files)
     monkeypatch.setattr(formal, "BUILD", tmp_path / "build")
-    assert formal.run(proof("axis_skid"), "prove").status == "FAIL"
+    assert formal.run(proof("td_axis_skid"), "prove").status == "FAIL"
     assert formal.combined({"prove": formal.Outcome("FAIL", 0.0)}) != "PASS"

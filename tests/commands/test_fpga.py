@@ -21,7 +21,7 @@ from tactile_depth.errors import InputError
 A_WIDTH, B_WIDTH = 27, 18
 
 WRAPPER = """\
-module dot_product #(parameter int AWidth = 27, parameter int BWidth = 18) (
+module td_dot_product #(parameter int AWidth = 27, parameter int BWidth = 18) (
   input logic clk, en, input logic signed [AWidth-1:0] a0, a1, input logic signed [BWidth-1:0] b0, b1,
   output logic signed [AWidth+BWidth:0] sum
 );
@@ -47,10 +47,10 @@ def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
 
 def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
     """Run the testbench of a dot product on its netlist, in which every possible register is packed."""
-    design = netlist_of("dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
-    packed = ecp5.pack(design["modules"]["dot_product"])
+    design = netlist_of("td_dot_product", {"AWidth": A_WIDTH, "BWidth": B_WIDTH}, tmp_path)
+    packed = ecp5.pack(design["modules"]["td_dot_product"])
     assert packed["multipliers"] == packed["operands"] == packed["products"] == 4
-    design["modules"] = {"netlist": design["modules"]["dot_product"]}
+    design["modules"] = {"netlist": design["modules"]["td_dot_product"]}
     folder = tmp_path / "netlist"
     folder.mkdir()
     (folder / "packed.json").write_text(json.dumps(design))
@@ -62,13 +62,13 @@ def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
         "hierarchy -top netlist\nproc\nflatten\nopt_clean\nwrite_verilog -noattr netlist.v\n"
     )
     assert not yosys.run(script, timeout_s=300)
-    (folder / "dot_product.sv").write_text(WRAPPER)
-    files = [folder / "netlist.v", folder / "dot_product.sv"]
+    (folder / "td_dot_product.sv").write_text(WRAPPER)
+    files = [folder / "netlist.v", folder / "td_dot_product.sv"]
     widths = {"AWidth": A_WIDTH, "BWidth": B_WIDTH}
-    simulation.build("icarus", "dot_product", files, widths, folder, log=folder / "build.log")
+    simulation.build("icarus", "td_dot_product", files, widths, folder, log=folder / "build.log")
     ran, failed = simulation.run(
-        "dot_product",
-        repository.testbench("dot_product"),
+        "td_dot_product",
+        repository.testbench("td_dot_product"),
         folder,
         folder,
         simulator="icarus",

@@ -141,7 +141,7 @@ def test_a_variable_of_the_makefile_is_not_replaced(place: Any, name: str) -> No
 
 @pytest.mark.parametrize("target", WITHOUT_COMMAND)
 def test_a_target_without_variables_refuses_them(place: Any, target: str) -> None:
-    result = make(place, target, "CORE=ram", "PYTHON=python3")
+    result = make(place, target, "CORE=td_ram", "PYTHON=python3")
     assert result.returncode == 2
     line = rf"Makefile:\d+: \*\*\* make {target}: CORE: unknown variable: accepted is PYTHON.  Stop\.\n"
     assert re.fullmatch(line, result.stderr)

@@ -14,7 +14,7 @@ from commands.verify.equivalence import HOLDS, Gates, Graph, clocks, confined, g
 from commands.verify.mutants import SELECTOR
 from commands.verify.structures import structure
 
-SMALL = "burst_counter"
+SMALL = "td_burst_counter"
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) ->
     assert any("s_axil_rdata" in name for name in outputs)
 
 
-@pytest.mark.parametrize(("core", "count"), [("camera_setup", 1), ("async_fifo", 2)])
+@pytest.mark.parametrize(("core", "count"), [("camera_setup", 1), ("td_async_fifo", 2)])
 def test_a_clock_that_a_core_puts_out_is_none_of_its_clocks(tmp_path: Path, core: str, count: int) -> None:
     mutants.make(core, structure(core, mutate.CORES[core].structures[0]), 1, 1, tmp_path)
     assert len(clocks(core, tmp_path)) == count

@@ -10,7 +10,7 @@ from commands.verify import netlists
 
 
 @pytest.mark.parametrize(
-    ("core", "dsps"), [("burst_counter", 0), pytest.param("twiddle_multiply", 4, marks=pytest.mark.regress)]
+    ("core", "dsps"), [("td_burst_counter", 0), pytest.param("twiddle_multiply", 4, marks=pytest.mark.regress)]
 )
 def test_a_netlist_is_as_the_rtl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, core: str, dsps: Any) -> None:
     monkeypatch.setattr(netlists, "OUT", tmp_path)
@@ -35,5 +35,5 @@ def test_a_wrong_netlist_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         return cells
 
     monkeypatch.setattr(netlists, "netlist", stuck)
-    (case,) = netlists.cases(["burst_counter"])
+    (case,) = netlists.cases(["td_burst_counter"])
     assert netlists.run(case, seed=1).failed > 0

@@ -207,7 +207,7 @@ def test_an_out_that_cannot_be_used_is_refused(
 
 
 @pytest.mark.parametrize("text", ["a\0b", "\ud800"], ids=["NUL", "half a character"])
-@pytest.mark.parametrize("name", ["OUT", "FRAMES", "REFERENCE", "CALIBRATION", "FLOOR", "SOLVER", "AT"])
+@pytest.mark.parametrize("name", ["OUT", "FRAMES", "REFERENCE", "CALIBRATION", "ZERO", "SOLVER", "AT"])
 def test_a_configuration_file_with_a_character_that_no_path_holds_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, text: str
 ) -> None:

@@ -15,9 +15,9 @@ from commands.common import published, run_request
 from commands.run import sim
 from commands.run.draw import painted
 from commands.run.flags import Flags
-from tactile_depth.calibration.auto_zero import auto_zero
-from tactile_depth.calibration.floor_capture import captured_floor
 from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.depth.zero_capture import captured_zero
+from tactile_depth.depth.zero_offset import zero_offset
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.pipeline import Pipeline
 from tactile_depth.samples import sample
@@ -86,7 +86,7 @@ def test_rows_are_in_the_order_of_the_input(tmp_path: Path) -> None:
             pytest.param(*case, marks=pytest.mark.regress)
             for case in (
                 (64, 64, 8, ["FRAMES=contacts", "GAPS=0.3", "BOUNDARY=neumann"]),
-                (100, 128, 16, ["FRAMES=contacts", "GAPS=0.3", "REFERENCE=flat", "FLOOR=flat", "GRADIENT=quadratic"]),
+                (100, 128, 16, ["FRAMES=contacts", "GAPS=0.3", "REFERENCE=flat", "ZERO=flat", "GRADIENT=quadratic"]),
                 (256, 256, 32, ["FRAMES=ball", "REPEAT=2"]),
                 (21, 64, 8, ["SIM=icarus", "FRAMES=ball", "REPEAT=2", "BOUNDARY=neumann"]),
             )
@@ -248,7 +248,7 @@ def _press(tmp_path: Path, name: str = "ball") -> list[Any]:
 
 def test_the_rtl_computes_what_the_python_interface_returns(tmp_path: Path) -> None:
     """Compare with Python: depth in mm is code times unit, and the codes equal those of the RTL."""
-    report = run(tmp_path, *_press(tmp_path), f"FLOOR={tmp_path / 'background.png'}")
+    report = run(tmp_path, *_press(tmp_path), f"ZERO={tmp_path / 'background.png'}")
     drawn = sample("ball")
     result = Pipeline(drawn.sensor, drawn.reference, grid=(24, 32))(drawn.image)
     codes = np.load(tmp_path / "out" / "depth.npy")[0]
@@ -303,20 +303,20 @@ def test_flagged_pixels_are_painted() -> None:
 
 
 @pytest.mark.parametrize("solver", SPECTRAL_IN_REGRESS)
-def test_a_floor_is_subtracted(tmp_path: Path, solver: str) -> None:
+def test_a_zero_is_subtracted(tmp_path: Path, solver: str) -> None:
     """Subtract the mean depth of two frames without contact, in the RTL and in double precision."""
     no_contact = np.random.default_rng(1).integers(96, 160, (2, 16, 16, 3)).astype(np.uint8)
     every = _npy(tmp_path / "every.npy", np.concatenate((no_contact, no_contact[:1, ::-1])))
     chosen = ["N=16", "BOUNDARY=neumann", f"SOLVER={solver}", f"FRAMES={every}", "SIM=icarus"]
     chosen.append("CALIBRATION=synthetic")
-    report = run(tmp_path, *chosen, f"FLOOR={_npy(tmp_path / 'rest.npy', no_contact)}")
-    assert report["auto_zero"]
+    report = run(tmp_path, *chosen, f"ZERO={_npy(tmp_path / 'rest.npy', no_contact)}")
+    assert report["zero_offset"]
     down = -1 if solver == "tridiagonal" else 1  # blocks are counted as depth leaves
     zeroed = np.load(tmp_path / "out" / "depth.npy")[:, ::down]
     run(tmp_path, *chosen)
     solved = np.load(tmp_path / "out" / "depth.npy")[:, ::down].astype(np.int64)
-    config = Configuration(columns=16, solver=solver, neumann=True, auto_zero=True)
-    assert np.array_equal(zeroed, auto_zero(solved, captured_floor(solved[:2], config), config))
+    config = Configuration(columns=16, solver=solver, neumann=True, zero_offset=True)
+    assert np.array_equal(zeroed, zero_offset(solved, captured_zero(solved[:2], config), config))
 
 
 def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path: Path) -> None:
@@ -378,7 +378,7 @@ BAD_INPUT: dict[str, Any] = {
     "unknown scene": lambda t: "FRAMES=cube",
     "a picture without a calibration": lambda t: f"FRAMES={_picture(t / 'a.png', 48, 64)}",
     "a reference without a calibration": lambda t: f"REFERENCE={_picture(t / 'a.png', 48, 64)}",
-    "a floor without a calibration": lambda t: f"FLOOR={_picture(t / 'a.png', 48, 64)}",
+    "a zero offset without a calibration": lambda t: f"ZERO={_picture(t / 'a.png', 48, 64)}",
     "a real sensor without a reference": lambda t: f"CALIBRATION=gelsight-mini FRAMES={_picture(t / 'a.png', 48, 64)}",
     "a real sensor and a scene": lambda t: "CALIBRATION=gelsight-mini REFERENCE=flat",
     "a picture of another aspect ratio": lambda t: (
@@ -433,9 +433,9 @@ BAD_INPUT: dict[str, Any] = {
     "configuration in a configuration": lambda t: _config(t / "c.json", '{"CONFIG": "c.json"}'),
     "a list in a configuration": lambda t: _config(t / "c.json", '{"DATA_WIDTH": [24]}'),
     "reference with a scene": lambda t: "REFERENCE=background.png CALIBRATION=synthetic",
-    "no floor": lambda t: f"FLOOR={t / 'rest.png'} CALIBRATION=synthetic",
-    "floor of another camera": lambda t: (
-        f"FLOOR={_npy(t / 'rest.npy', np.zeros((1, 32, 32, 3), np.uint8))} CALIBRATION=synthetic"
+    "no zero": lambda t: f"ZERO={t / 'rest.png'} CALIBRATION=synthetic",
+    "zero of another camera": lambda t: (
+        f"ZERO={_npy(t / 'rest.npy', np.zeros((1, 32, 32, 3), np.uint8))} CALIBRATION=synthetic"
     ),
 }
 

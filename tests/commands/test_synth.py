@@ -52,11 +52,11 @@ def test_the_front_end_of_a_camera_is_a_row_of_its_own(tmp_path: Path) -> None:
 
 
 def test_a_multiplication_of_27_by_18_bits_is_one_dsp_with_its_registers(tmp_path: Any) -> None:
-    """Map dot_product alone to logic: the result is two DSPs and nothing else."""
-    for source in repository.sources("dot_product"):
-        (tmp_path / source.name).write_text(source.read_text().replace("module dot_product", f"module {synth.TOP}"))
+    """Map td_dot_product alone to logic: the result is two DSPs and nothing else."""
+    for source in repository.sources("td_dot_product"):
+        (tmp_path / source.name).write_text(source.read_text().replace("module td_dot_product", f"module {synth.TOP}"))
     lines = [
-        f"read_slang --threads 1 --top {synth.TOP} dot_product.sv multiply.sv",
+        f"read_slang --threads 1 --top {synth.TOP} td_dot_product.sv td_multiply.sv",
         f"hierarchy -top {synth.TOP}",
         "proc",
     ]

@@ -34,8 +34,8 @@ def test_a_number_is_finite_even_where_the_range_is_not(word: Any) -> None:
 
 
 def test_a_command_without_variables_refuses_all() -> None:
-    with pytest.raises(InputError, match=r"^CORE=ram: unknown variable: accepted is none$"):
-        variables.given(["CORE=ram"], ())
+    with pytest.raises(InputError, match=r"^CORE=td_ram: unknown variable: accepted is none$"):
+        variables.given(["CORE=td_ram"], ())
 
 
 FULL = "free disk space, or give a folder on another disk"

@@ -42,9 +42,8 @@ def test_words_are_read_as_they_were_written(
 
 
 @pytest.mark.parametrize("solver", COLUMNS)
-def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver: str) -> None:
-    """Compute the floor under Neumann, where the mean of a frame is zero: depths that are not above have -volume /
-    rest."""
+def test_a_record_tells_the_zero_of_a_frame_whose_mean_is_zero(solver: str) -> None:
+    """Compute the depth at rest under Neumann, where a mean is zero: depths not above have -volume / rest."""
     config = Configuration(columns=32, solver=solver, neumann=True)
     frames = load_frames("bench", (32, 32))
     depths = tactile_depth(frames.pixels, load("synthetic").on_grid(frames), config)
@@ -56,6 +55,6 @@ def test_a_record_tells_the_floor_of_a_frame_whose_mean_is_zero(solver: str) -> 
         last = [events.beat(*beat, settings, 0) for beat in beats][-1]
         assert last is not None
         assert last.area > 0
-        floor = depth[depth <= threshold].mean()
+        zero = depth[depth <= threshold].mean()
         untouched = -last.volume / (depth.size - last.area)
-        assert abs(untouched - floor) <= np.abs(depth).max() * 1e-5  # measured: 5e-7, 8e-6
+        assert abs(untouched - zero) <= np.abs(depth).max() * 1e-5  # measured: 5e-7, 8e-6

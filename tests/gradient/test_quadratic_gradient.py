@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.quadratic_gradient import coefficients, gradient_parameters, slope_codes
 from tactile_depth.rom_files import write_quadratic

@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth import reference
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
+from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.rom_files import write_solver
-from tactile_depth.transform.orders import bit_reversed
 
 
 @pytest.mark.structures(

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth import reference
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.divergence import divergence
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of

@@ -11,9 +11,9 @@ import pytest
 
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.transform.orders import eigenvalues
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
-from tactile_depth.transform.orders import eigenvalues
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 

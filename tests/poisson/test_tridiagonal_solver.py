@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from tactile_depth import reference
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import ULTRA, Configuration
-from tactile_depth.gradient.divergence import divergence
 from tactile_depth.poisson import spectral_solver
+from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters, tridiagonal_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of

@@ -28,7 +28,7 @@ EXTREMES = {
     "BitsPerChannel": 1,
     "FlatField": 1,
     "Quadratic": 0,
-    "AutoZero": 1,
+    "ZeroOffset": 1,
     "Lanes": 32,
     "BlockLog2": 0,
     "GainWidth": 32,

@@ -13,7 +13,13 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
-TRIDIAGONAL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal", "flat_field": True, "auto_zero": True}
+TRIDIAGONAL: dict[str, Any] = {
+    "columns": 16,
+    "rows": 8,
+    "solver": "tridiagonal",
+    "flat_field": True,
+    "zero_offset": True,
+}
 # Between them both builds have every table.
 BUILDS: dict[str, dict[str, Any]] = {"lut": {"bits_per_channel": 2}, "quadratic": {"gradient_model": "quadratic"}}
 

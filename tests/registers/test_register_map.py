@@ -25,7 +25,7 @@ from tactile_depth.registers.register_map import (
 from tactile_depth.tactile_depth import top_parameters
 
 BUILD = Build(top_parameters(Configuration(columns=32, rows=16, solver="tridiagonal", bits_per_channel=2)))
-RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_PLACE"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
+RECORD_WORDS = tuple(REGISTERS["RECORD_PEAK_POSITION"].pack(row=n + 2, column=n) for n in range(len(RECORD)))
 
 
 MAPS = {registers.PIPELINE: MAP, registers.CAMERA: CAMERA_MAP}
@@ -124,9 +124,9 @@ def test_the_python_layer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert device.STATUS.busy.read() == 1
     device.CONTROL.hold_contact.write(1)
     assert model.values["CONTROL"] == REGISTERS["CONTROL"].pack(hold_contact=1)
-    device.CAPTURE.log2_frames.write(6)
-    assert device.CAPTURE.read() == REGISTERS["CAPTURE"].pack(log2_frames=6)
-    assert device.RECORD_PEAK_PLACE.row.read() == 7
+    device.REFERENCE_CAPTURE.log2_frames.write(6)
+    assert device.REFERENCE_CAPTURE.read() == REGISTERS["REFERENCE_CAPTURE"].pack(log2_frames=6)
+    assert device.RECORD_PEAK_POSITION.row.read() == 7
     device.TABLE_INDEX.value.write(3)
     device.TABLE_HIGH.write(5)
     device.TABLE_LOW.write(6)

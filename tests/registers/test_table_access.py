@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-ALL = {"GradientWords": 8, "CoefficientWords": 36, "ReferenceWords": 5000, "FloorWords": 1250}
-SMALL = {"GradientWords": 0, "CoefficientWords": 6, "ReferenceWords": 0, "FloorWords": 5}
+ALL = {"GradientWords": 8, "CoefficientWords": 36, "ReferenceWords": 5000, "ZeroWords": 1250}
+SMALL = {"GradientWords": 0, "CoefficientWords": 6, "ReferenceWords": 0, "ZeroWords": 5}
 WORDS = {"all": ALL, "small": SMALL, "lookup": {"GradientWords": 4096}}
 
 

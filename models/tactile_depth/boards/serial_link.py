@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_depth.frame.frame_guard import Word
+from tactile_depth.video.frame_guard import Word
 
 END, ESCAPE, ESCAPED_END, ESCAPED_ESCAPE = 0xC0, 0xDB, 0xDC, 0xDD  # RFC 1055
 ESCAPES = {END: (ESCAPE, ESCAPED_END), ESCAPE: (ESCAPE, ESCAPED_ESCAPE)}

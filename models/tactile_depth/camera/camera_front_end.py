@@ -12,7 +12,7 @@ from tactile_depth.camera_configuration import GAIN_WIDTH, CameraConfiguration
 
 SETTINGS = {"columns": 13, "rows": 13, "window_x": 13, "window_y": 13, "black_level": 12}
 SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN_WIDTH)
-"""Members of `camera_settings_t` (hdl/common/stream_pkg.sv) and their bits, the first on top."""
+"""Members of `camera_settings_t` (hdl/td_types_pkg.sv) and their bits, the first on top."""
 
 
 def camera_front_end_parameters(camera: CameraConfiguration) -> dict[str, int]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tactile_depth.frame.frame_guard import Word
+from tactile_depth.video.frame_guard import Word
 
 FAULTS = ("row_short", "row_long", "start_missing", "start_early", "window_outside")
 

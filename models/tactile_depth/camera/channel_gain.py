@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.camera_configuration import GAIN_FRACTION
-from tactile_depth.common.round_saturate import round_saturate
+from tactile_depth.common.td_round_saturate import round_saturate
 
 
 def channel_gain(samples: np.ndarray, black_level: int, gains: np.ndarray, width: int) -> np.ndarray:

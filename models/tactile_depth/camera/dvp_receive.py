@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_depth.common.async_fifo import AsyncFifo
+from tactile_depth.common.td_async_fifo import AsyncFifo
 
 FRONT = 1 << 9  # of a word of the queue: it stands in front of a frame's bytes
 ROW_END = 1 << 8

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.camera_configuration import CHROMA_FRACTION, CameraConfiguration
-from tactile_depth.common.round_saturate import round_half_even
+from tactile_depth.common.td_round_saturate import round_half_even
 
 WORD = 16  # bits that RAW10 and RAW12 are aligned in
 GREY = 8  # bits of a colour of a picture

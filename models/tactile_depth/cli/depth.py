@@ -153,7 +153,7 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
         "arithmetic": pipeline.arithmetic,
         "solver": config.solver,
         "boundary": "neumann" if config.neumann else "dirichlet",
-        "zero_offset": config.auto_zero,
+        "zero_offset": config.zero_offset,
         "grid": {"rows": pipeline.grid[0], "columns": pipeline.grid[1]},
         "pixel_pitch_mm": pipeline.pixel_pitch_mm,
         "depth_lsb_mm": pipeline.depth_lsb_mm,

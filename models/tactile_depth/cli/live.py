@@ -181,7 +181,7 @@ def take(capture: str, collected: Sequence[np.ndarray], pipeline: Pipeline) -> N
         images = np.stack(collected)
         if capture == REFERENCE:
             pipeline.capture_reference(images)
-        if capture == ZERO or pipeline.config.auto_zero:
+        if capture == ZERO or pipeline.config.zero_offset:
             pipeline.capture_zero(images)
     except (InputError, ValueError) as error:  # numpy: sizes differ
         print(f"tactile-depth: nothing captured: {error}", file=sys.stderr)

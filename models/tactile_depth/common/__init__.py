@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models of the cores that every block uses."""
+"""Models of the cores that every unit uses."""

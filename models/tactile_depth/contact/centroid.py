@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.common import divide
-from tactile_depth.common.round_saturate import round_half_even
+from tactile_depth.common import td_divide
+from tactile_depth.common.td_round_saturate import round_half_even
 
 FRACTION = 4  # fraction bits of a mean, in pixels
 
@@ -22,7 +22,7 @@ def _quotient_bits(bits: int) -> int:
 
 def cycles(bits: int) -> int:
     """Return the cycles from `start` to `done`: two divisions, with positions of `bits` bits."""
-    return 2 * divide.cycles(_quotient_bits(bits))
+    return 2 * td_divide.cycles(_quotient_bits(bits))
 
 
 def mean(total: int, area: int, bits: int) -> int:
@@ -33,7 +33,7 @@ def mean(total: int, area: int, bits: int) -> int:
     ValueError
         The total is too large for so many positions.
     """
-    result = divide.divide(total << FRACTION + 1, area, _quotient_bits(bits))
+    result = td_divide.divide(total << FRACTION + 1, area, _quotient_bits(bits))
     if result is None:
         raise ValueError(f"a total of {total} is too large for {area} positions of {bits} bits")
     quotient, remainder = result

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models of the cores from colour to slope and from slope to divergence."""
+"""Models of the cores from colour to slope."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor, round_saturate
+from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import Sensor

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models of the two solvers."""
+"""Models of the divergence and of the two solvers."""

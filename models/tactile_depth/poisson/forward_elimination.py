@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor, round_saturate
+from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.thomas_table import thomas_table
 

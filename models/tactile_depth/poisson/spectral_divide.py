@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor, round_saturate
+from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
-from tactile_depth.transform.orders import eigenvalues
+from tactile_depth.poisson.transform.orders import eigenvalues
 
 
 @dataclass(frozen=True)

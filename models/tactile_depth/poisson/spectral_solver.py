@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.spectral_divide import reciprocals, spectral_divide
-from tactile_depth.transform.dst_forward import dst_forward
-from tactile_depth.transform.dst_inverse import dst_inverse
-from tactile_depth.transform.row_reorder import row_reorder
-from tactile_depth.transform.transpose import transpose
+from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.row_reorder import row_reorder
+from tactile_depth.poisson.transform.transpose import transpose
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:

@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from tactile_depth.configuration import Configuration
-from tactile_depth.transform.orders import eigenvalues
+from tactile_depth.poisson.transform.orders import eigenvalues
 
 
 @dataclass(frozen=True)

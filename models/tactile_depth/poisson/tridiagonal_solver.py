@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from tactile_depth.common.round_saturate import Monitor
+from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination, mean_reciprocal
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.thomas_table import thomas_table
-from tactile_depth.transform.dst_forward import dst_forward
-from tactile_depth.transform.dst_inverse import dst_inverse
-from tactile_depth.transform.row_reorder import row_reorder
+from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.row_reorder import row_reorder
 
 
 def solver_parameters(config: Configuration) -> dict[str, int]:

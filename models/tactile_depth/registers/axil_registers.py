@@ -39,12 +39,14 @@ class Build:
     def table_sizes(self) -> dict[int, int]:
         """Number of entries of each table that TABLE_SELECT can name; 0: the build does not have the table."""
         p = self.parameters
-        nodes = (p["Rows"] >> p["BlockLog2"]) * (p["Size"] >> p["BlockLog2"]) if p["FlatField"] or p["AutoZero"] else 0
+        nodes = (
+            (p["Rows"] >> p["BlockLog2"]) * (p["Size"] >> p["BlockLog2"]) if p["FlatField"] or p["ZeroOffset"] else 0
+        )
         sizes = {
             "gradient": 0 if p["Quadratic"] else 1 << 3 * p["BitsPerChannel"],
             "coefficients": p["PolynomialWords"] if p["Quadratic"] else 0,
             "reference": 4 * nodes if p["FlatField"] else 0,
-            "floor": nodes if p["AutoZero"] else 0,
+            "zero": nodes if p["ZeroOffset"] else 0,
         }
         return {code: sizes[name] for name, code in TABLES.items()}
 
@@ -71,7 +73,7 @@ class Build:
                 boundary=p["Neumann"],
                 gradient_model=p["Quadratic"],
                 flat_field=p["FlatField"],
-                zero_offset=p["AutoZero"],
+                zero_offset=p["ZeroOffset"],
                 lanes=p["Lanes"],
                 gain_width=p["GainWidth"] if p["FlatField"] else 0,
             ),
@@ -95,7 +97,7 @@ class Events:
     frame_start : bool
         True if the first pixel of a frame is at the input of the pipeline.
     captured : frozenset of str
-        Tables whose capture has ended and that request a change-over: `reference`, `floor`.
+        Tables whose capture has ended and that request a change-over: `reference`, `zero`.
     """
 
     flags: frozenset[str] = frozenset()

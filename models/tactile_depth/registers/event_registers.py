@@ -10,7 +10,7 @@ from tactile_depth.registers.register_map import REGISTERS, WORD
 
 STATUS, INTERRUPT_STATUS, CONTROL = REGISTERS["STATUS"], REGISTERS["INTERRUPT_STATUS"], REGISTERS["CONTROL"]
 
-# Events have the names of events_t in hdl/common/stream_pkg.sv.
+# Events have the names of events_t in hdl/td_types_pkg.sv.
 FAULTS = ("row_short", "row_long", "start_missing", "start_early", "timed_out")
 STICKY_EVENTS = {
     **{fault: fault for fault in FAULTS},

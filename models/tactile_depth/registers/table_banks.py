@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from tactile_depth.registers.register_map import REGISTERS
 
 COMMIT = REGISTERS["TABLE_COMMIT"]
-CAPTURES = {"reference": REGISTERS["CAPTURE"], "floor": REGISTERS["FLOOR_CAPTURE"]}
+CAPTURES = {"reference": REGISTERS["REFERENCE_CAPTURE"], "zero": REGISTERS["ZERO_CAPTURE"]}
 """Registers that start a capture, by the table that is captured."""
 
 
@@ -68,7 +68,7 @@ class TableBanks:
             Tables in the last cycle of their capture.
         """
         table = self.started(name, ones)
-        due = table == "floor" and (self.pending(in_use) & bits({table}) or table in ending)
+        due = table == "zero" and (self.pending(in_use) & bits({table}) or table in ending)
         return table is not None and bool(not self.present & bits({table}) or due)
 
     @staticmethod

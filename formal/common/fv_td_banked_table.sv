@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_td_banked_table: a frame reads the bank that was named when it began, from its change on; the free bank reads as it was
+// last written; table_in_use says which is which.
+//
+// An arbitrary address is watched. Assumed: `change` comes one enabled clock or more behind frame_start; nothing is
+// written while a change-over is due, and no word is read in the clock that writes it.
+
+`default_nettype none
+
+module fv_td_banked_table #(
+  parameter int Width = 1,
+  parameter int Depth = 3,
+  localparam int AddressWidth = $clog2(Depth)
+) (
+  input logic                    clk,
+  input logic                    rst,
+  input logic                    en,
+  input logic                    table_bank,
+  input logic                    frame_start,
+  input logic                    change,
+  input logic                    read,
+  input logic [AddressWidth-1:0] read_address,
+  input logic                    free_write,
+  input logic [AddressWidth-1:0] free_write_address,
+  input logic [Width-1:0]        free_write_word,
+  input logic                    free_read,
+  input logic [AddressWidth-1:0] free_read_address,
+  input logic [AddressWidth-1:0] chosen
+);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst && !free_write && !free_read);
+
+  logic table_in_use;
+  logic [Width-1:0] read_word, free_word;
+  td_banked_table #(.Width(Width), .Depth(Depth)) dut (
+    .clk, .rst, .en, .table_bank, .table_in_use, .frame_start, .change, .read, .read_address, .read_word,
+    .free_write, .free_write_address, .free_write_word, .free_read, .free_read_address, .free_word
+  );
+
+  logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
+  logic [1:0] known = '0, word;      // of each bank: what the watched address holds
+  logic bank, named, used, begun, changed;
+  assign used = en && change ? named : bank;
+  logic shown, free_shown, stays;  // the watched word stands on the port; and has through a clock without en
+  logic expected, free_expected;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (!started) watched <= chosen;
+    else if (free_write && free_write_address == watched) begin
+      known[~bank] <= 1'b1;
+      word[~bank] <= free_write_word[0];
+    end
+    bank <= rst ? table_bank : used;
+    if (rst || (en && frame_start)) named <= table_bank;
+    begun <= ~rst & (en ? frame_start | (begun & ~change) : begun);
+    changed <= ~rst & (changed | (en & change & named != bank));
+    stays <= shown & ~en;
+    if (en) begin
+      shown <= read && read_address == watched && known[used];
+      expected <= word[used];
+    end
+    free_shown <= !rst && free_read && free_read_address == watched && known[~used];
+    free_expected <= word[~used];
+    if (rst) shown <= 1'b0;
+  end
+  always_comb begin
+    assume (32'(chosen) < Depth && 32'(read_address) < Depth);
+    assume (32'(free_write_address) < Depth && 32'(free_read_address) < Depth);
+    if (change) assume (begun);
+    if (free_write) assume (!rst && table_bank == table_in_use && (!begun || named == bank));
+    if (free_write && free_read) assume (free_write_address != free_read_address);
+  end
+
+  always_comb begin
+    if (started) begin
+      which: assert (table_in_use == bank);
+      if (shown) of_frame: assert (read_word[0] == expected);
+      if (free_shown) of_free: assert (free_word[0] == free_expected);
+      after_change: cover (shown && stays && changed && known == 2'b11 && word == 2'b01 && expected);
+      read_in_change: cover (en && change && named != bank && free_read && shown);
+      free_read_shown: cover (free_shown && free_expected && shown && !expected);
+    end
+  end
+
+  bind fv_td_banked_table.dut.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+  bind fv_td_banked_table.dut.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
+    .clk, .write_en, .write_address, .read_en, .read_address
+  );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_td_block_sum: a sum is written 5 clocks behind the last word of a block's row, complete behind the last row of a last
+// frame, and at no other time; an arbitrary word, the only one that is not zero since the first frame, is added once to
+// its block and to no other; what does nothing but add does so to all. No sum is read before it was written, or in the
+// clock that writes it.
+//
+// Assumed: frames in raster order, whole but for a reset; after a reset the first begins new sums.
+
+`default_nettype none
+
+module fv_td_block_sum #(
+  parameter int Rows     = 3,
+  parameter int Columns  = 4,
+  parameter int Width    = 2,
+  parameter int SumWidth = 5,
+  parameter int Signed   = 1,
+  parameter int ColumnLog2 = 1,
+  localparam int Wide = 1 << ColumnLog2,
+  localparam int Blocks = (Rows / 2) * (Columns / Wide),
+  localparam int BlockWidth = $clog2(Blocks)
+) (
+  input logic                  clk,
+  input logic                  rst,
+  input logic                  in_valid,
+  input logic                  in_first_frame,
+  input logic                  in_last_frame,
+  input logic [Width-1:0]      in_data,
+  input logic [BlockWidth-1:0] chosen
+);
+
+  localparam int ToSum = 5;
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic read_en, write_en, write_complete, in_frame_start;
+  logic [BlockWidth-1:0] read_block, write_block;
+  logic [SumWidth-1:0] read_sums, write_sums;
+  td_block_sum #(
+    .Rows(Rows), .Columns(Columns), .BlockLog2(1), .ColumnLog2(ColumnLog2), .Width(Width), .Signed(Signed), .SumWidth(SumWidth)
+  ) dut (
+    .clk, .rst, .in_valid, .in_frame_start, .in_first_frame, .in_last_frame, .in_data, .read_en, .read_block, .read_sums,
+    .write_en, .write_block, .write_sums, .write_complete
+  );
+  td_ram #(.Width(SumWidth), .Depth(Blocks)) u_ram (
+    .clk, .write_en, .write_address(write_block), .write_data(write_sums),
+    .read_en, .read_address(read_block), .read_data(read_sums)
+  );
+  ram_check #(.Depth(Blocks)) u_check (
+    .clk, .write_en, .write_address(write_block), .read_en, .read_address(read_block)
+  );
+
+  logic [3:0] row, column;
+  logic row_ends, block_ends, last_q, last, begun, fresh;
+  logic [BlockWidth-1:0] watched, block;
+  assign in_frame_start = row == '0 && column == '0;
+  assign last = in_frame_start ? in_last_frame : last_q;
+  assign fresh = in_valid && in_frame_start && in_first_frame;
+  assign block = BlockWidth'(32'(row) / 2 * (Columns / Wide) + 32'(column) / Wide);
+  assign row_ends = in_valid && 32'(row) < Rows / 2 * 2 && 32'(column) % Wide == Wide - 1;
+  assign block_ends = row_ends && row[0] && last;
+
+  logic [ToSum-1:0] ends_q, completes_q;
+  logic [BlockWidth*ToSum-1:0] block_q;
+  logic seen, in_watched;
+  logic signed [SumWidth-1:0] word, total, held_sum;  // of the watched block: the one word, what the memory holds
+  assign in_watched = 32'(row) < Rows / 2 * 2 && block == watched;
+  assign word = Signed != 0 ? SumWidth'($signed(in_data)) : SumWidth'(in_data);
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (!started) watched <= chosen;
+    if (in_valid) begin
+      column <= column == 4'(Columns - 1) ? '0 : column + 4'd1;
+      if (column == 4'(Columns - 1)) row <= row == 4'(Rows - 1) ? '0 : row + 4'd1;
+      last_q <= last;
+      begun <= 1'b1;
+      seen <= in_data != '0 || (seen && !fresh);
+      if (fresh || (in_watched && in_data != '0)) total <= in_watched ? word : '0;
+    end
+    if (write_en && write_block == watched) held_sum <= write_sums;
+    ends_q <= {ends_q[ToSum-2:0], row_ends};
+    completes_q <= {completes_q[ToSum-2:0], block_ends};
+    block_q <= {block_q[BlockWidth*(ToSum-1)-1:0], block};
+    if (rst) begin
+      row <= '0;
+      column <= '0;
+      ends_q <= '0;
+      completes_q <= '0;
+      begun <= 1'b0;
+    end
+  end
+  always_comb begin
+    if (in_valid && in_frame_start && !begun) assume (in_first_frame);
+    if (in_valid && seen && !fresh) assume (in_data == '0);
+  end
+
+  // The sum of the watched block is in its place, but for words that are under way.
+  logic [ToSum-1:0] under_way;
+  always_ff @(posedge clk) under_way <= rst ? '0 : {under_way[ToSum-2:0], in_valid && in_watched};
+
+  always_comb begin
+    if (started) begin
+      when: assert (write_en == ends_q[ToSum-1] && write_complete == completes_q[ToSum-1]);
+      if (write_en) where: assert (write_block == block_q[BlockWidth*ToSum-1-:BlockWidth]);
+      if (write_complete && write_block == watched && !fresh) begin
+        if (under_way[ToSum-2:0] == '0) added_once: assert ($signed(write_sums) == total);
+        several: cover (total != '0 && under_way == ToSum'(1) << (ToSum - 1));
+        elsewhere: cover (seen && total == '0);
+      end
+      row_follows: cover (write_complete && in_valid);
+    end
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_td_burst_counter: position is the number of enabled clocks since the last start, active while that is less than Size.
+
+`default_nettype none
+
+module fv_td_burst_counter #(
+  parameter int Size = 8,
+  localparam int PositionWidth = $clog2(Size)
+) (
+  input logic clk,
+  input logic rst,
+  input logic en,
+  input logic start
+);
+
+  logic [PositionWidth-1:0] position;
+  logic active;
+  td_burst_counter #(.Size(Size)) dut (.clk, .rst, .en, .start, .position, .active);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic [PositionWidth:0] since, age;  // enabled clocks from the last start to this clock; Size: none, or long ago
+  assign age = start ? '0 : since;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    if (en) since <= age == (PositionWidth + 1)'(Size) ? age : age + (PositionWidth + 1)'(1);
+    if (rst) since <= (PositionWidth + 1)'(Size);
+  end
+
+  always_comb begin
+    if (started) begin
+      whole_burst: assert (active == (age < (PositionWidth + 1)'(Size)));
+      if (active) in_order: assert ((PositionWidth + 1)'(position) == age);
+      last_word: cover (active && age == (PositionWidth + 1)'(Size - 1));
+      after_burst: cover (!active && en);
+      begins_again: cover (start && since != '0 && since < (PositionWidth + 1)'(Size));
+    end
+  end
+
+  logic ended;
+  always_ff @(posedge clk) ended <= en & (age == (PositionWidth + 1)'(Size - 1)) & ~rst;
+  always_comb if (started && ended) back_to_back: cover (start);
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_td_divide: done exactly Latency clocks after the last start; with it the quotient and the remainder, or overflow.
+//
+// Assumed: the divisor is held from start to done.
+
+`default_nettype none
+
+module fv_td_divide #(
+  parameter int DivisorWidth  = 3,
+  parameter int QuotientWidth = 4,
+  parameter int Latency       = 5,  // models/tactile_depth/common/td_divide.py
+  localparam int NumeratorWidth = DivisorWidth + QuotientWidth
+) (
+  input logic                      clk,
+  input logic                      rst,
+  input logic                      start,
+  input logic [NumeratorWidth-1:0] numerator,
+  input logic [DivisorWidth-1:0]   divisor
+);
+
+  logic done, overflow;
+  logic [QuotientWidth-1:0] quotient;
+  logic [DivisorWidth-1:0] remainder;
+  td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) dut (
+    .clk, .rst, .start, .numerator, .divisor, .done, .quotient, .remainder, .overflow
+  );
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic [Latency-1:0] due;  // bit n: done is due in n clocks
+  logic [NumeratorWidth-1:0] numerator_q, product;
+  logic [DivisorWidth-1:0] divisor_q;
+  logic fits;
+  assign fits = numerator_q < {divisor_q, QuotientWidth'(0)};
+  assign product = NumeratorWidth'(quotient) * NumeratorWidth'(divisor_q);
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    due <= start ? Latency'(1) << (Latency - 1) : due >> 1;
+    if (start) begin
+      numerator_q <= numerator;
+      divisor_q <= divisor;
+    end
+    if (rst) due <= '0;
+  end
+  always_comb if (due != '0 && !start) assume (divisor == divisor_q);
+
+  always_comb begin
+    if (started) begin
+      in_time: assert (done == due[0]);
+      if (done) begin
+        too_large: assert (overflow == !fits);
+        if (fits) divided: assert (remainder < divisor_q && numerator_q == product + NumeratorWidth'(remainder));
+      end
+      one_after_another: cover (done && start && fits && quotient == '1 && remainder != '0);
+      overflows: cover (done && overflow && divisor_q != '0);
+      abandoned: cover (start && due[1]);
+    end
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// protocol_td_block_sum: frames in raster order, whole but for a reset, whatever the memory answers.
+
+`default_nettype none
+
+module protocol_td_block_sum #(
+  parameter int Rows    = 128,
+  parameter int Columns = 128
+) (
+  input  logic clk,
+  input  logic rst,
+  input  logic in_valid,
+  input  logic in_frame_start,
+  input  logic read_en,
+  input  logic write_en,
+  output logic given_in_frame_start,
+  output logic counts_read_block,
+  output logic counts_write_block,
+  output logic counts_write_sums,
+  output logic counts
+);
+
+  logic live = 1'b0;
+  logic [3:0] place;
+  always_ff @(posedge clk) live <= live | rst;
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.clk, .reset(rst), .en(1'b1), .in_valid, .place);
+  assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
+  assign counts = live & ~rst;
+  assign counts_read_block = counts & read_en;
+  assign {counts_write_block, counts_write_sums} = {2{counts & write_en}};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_zero_offset: whatever td_gain_map, or td_node_map, has for them, the depths of an arbitrary beat leave less those zero offsets,
+// saturated, with their own marks, Latency enabled clocks after they came; while en is low all of them hold. A clipped
+// depth is counted once, nothing else is. A frame is inside from the clock behind its first beat until its last has
+// left, whatever follows it. The map is told where frames begin; a zero offset that was written, by the bus or the capture,
+// reads back.
+//
+// Assumed: frames in raster order, whole but for a reset; nothing is written or read while a change-over is due (what
+// is then read: fv_td_gain_map); bus and capture one at a time.
+
+`default_nettype none
+
+module fv_zero_offset #(
+  parameter int Rows    = 3,
+  parameter int Columns = 4,
+  parameter int Width   = 2,
+  parameter int Lanes   = 1,
+  parameter int Latency = 11,
+  localparam int Nodes = (Rows / 2) * (Columns / 2),
+  localparam int NodeWidth = $clog2(Nodes)
+) (
+  input logic                    clk,
+  input logic                    rst,
+  input logic                    en,
+  input logic                    table_bank,
+  input logic                    table_write,
+  input logic                    table_read,
+  input logic [NodeWidth-1:0]    table_index,
+  input logic signed [Width-1:0] table_zero,
+  input logic                    capture_write,
+  input logic [NodeWidth-1:0]    capture_write_node,
+  input logic [Width-1:0]        capture_zero,
+  input logic                    in_valid,
+  input logic [2:0]              in_position,
+  input logic [Lanes*Width-1:0]  in_data,
+  input logic                    choose  // the beat that is followed
+);
+
+  localparam int ToZero = Latency - 1;
+  localparam int ToOut = Latency;
+  localparam int Highest = (1 << (Width - 1)) - 1;
+  localparam int Lowest = -Highest - 1;
+
+  logic table_in_use, out_valid, active;
+  logic [$clog2(Lanes):0] saturations;
+  logic [2:0] out_position;  // frame_start, row_end, frame_end
+  logic signed [Width-1:0] table_read_zero;
+  logic [Lanes*Width-1:0] out_data;
+  zero_offset #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .Lanes(Lanes)) dut (
+    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_zero,
+    .table_read_zero, .capture_write, .capture_write_node, .capture_zero,
+    .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturations
+  );
+
+  logic [3:0] row, column, position;
+  raster_counter #(.Rows(Rows), .Columns(Columns / Lanes)) u_raster (
+    .clk, .rst, .en, .in_valid, .row, .column, .position
+  );
+  logic started = 1'b0;
+  logic [1:0] read_left;  // clocks until what was read stands
+  logic named;            // bank of the frame that came last
+  always_ff @(posedge clk) if (rst || (en && in_valid && in_position[2])) named <= table_bank;
+  always_comb begin
+    if (!started) assume (rst);
+    if (in_valid) assume (in_position == {&position[1:0], position[3], &position[3:2]});
+    assume (32'(table_index) < Nodes && 32'(capture_write_node) < Nodes);
+    if (rst || table_bank != table_in_use || named != table_in_use || read_left != 0) begin
+      assume (!table_write && !capture_write && !table_read);
+    end
+    assume (2'(table_write) + 2'(capture_write) + 2'(table_read) < 2'd2);
+  end
+
+  // The beat that is followed, and the words on their way.
+  logic [ToOut-1:0] valid;
+  logic [3:0] age;  // enabled clocks since it came
+  logic follows, subtracts, counted, moved, held, left;
+  logic [$clog2(Lanes):0] clips, clips_q;  // of the beat
+  logic [2:0] position_followed;
+  logic [Lanes*Width-1:0] depths, limited, expected;
+  logic [Lanes*Width+3:0] out_q;
+  assign subtracts = en && follows && age == 4'(ToZero);
+  always_comb begin
+    clips = '0;
+    for (int lane = 0; lane < Lanes; lane++) begin
+      int difference;
+      difference = 32'($signed(depths[lane*Width+:Width])) - (32'(dut.zero_words[lane*Width+:Width]) + Lowest);
+      clips += ($clog2(Lanes) + 1)'(difference < Lowest || difference > Highest);
+      limited[lane*Width+:Width] = Width'(difference < Lowest ? Lowest : difference > Highest ? Highest : difference);
+    end
+  end
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_valid, out_position, out_data};
+    moved <= en && !rst && valid[ToZero-1];
+    counted <= subtracts;
+    left <= en && !rst && out_valid && out_position[0];
+    clips_q <= clips;
+    if (en) begin
+      valid <= {valid[ToOut-2:0], in_valid};
+      age <= age + 4'd1;
+      if (age == 4'(ToOut)) follows <= 1'b0;
+      if (choose && !follows && in_valid) begin
+        follows <= 1'b1;
+        age <= 4'd1;
+        position_followed <= in_position;
+        depths <= in_data;
+      end
+    end
+    if (subtracts) expected <= limited;
+    if (rst) begin
+      valid <= '0;
+      follows <= 1'b0;
+      counted <= 1'b0;
+    end
+  end
+
+  // The banks as they should be, in offset binary.
+  logic [Width-1:0] words_0[Nodes], words_1[Nodes];
+  initial begin
+    $readmemh("zero_0.hex", words_0);
+    $readmemh("zero_0.hex", words_1);
+  end
+  logic read_known;
+  logic [Width-1:0] written, read_word;
+  logic [NodeWidth-1:0] node_written;
+  assign written = Width'(32'(capture_write ? $signed(capture_zero) : table_zero) - Lowest);
+  assign node_written = capture_write ? capture_write_node : table_index;
+  always_ff @(posedge clk) begin
+    if (started && (capture_write || table_write)) begin
+      if (table_in_use) words_0[node_written] <= written;
+      else words_1[node_written] <= written;
+    end
+    read_left <= table_read ? 2'd1 : read_left - 2'(read_left != 0);
+    if (table_read) begin
+      read_known <= 1'b1;
+      read_word <= table_in_use ? words_0[table_index] : words_1[table_index];
+    end
+    if (rst) begin
+      read_left <= '0;
+      read_known <= 1'b0;
+    end
+  end
+
+  always_comb begin
+    if (started) begin
+      valid_travels: assert (out_valid == valid[ToOut-1]);
+      if (follows && age == 4'(ToOut)) begin
+        there: assert (out_valid);
+        position_travels: assert (out_position == position_followed);
+        subtracted: assert (out_data == expected);
+      end
+      if (held) holds: assert ({out_valid, out_position, out_data} == out_q);
+      if (counted) clipped_counted: assert (saturations == clips_q);
+      if (!moved) once: assert (saturations == '0);
+      frame_inside: assert (active == (row != '0 || column != '0 || valid != '0));
+      if (read_known && read_left == 0) entry: assert (32'(table_read_zero) == 32'(read_word) + Lowest);
+
+      clipped_below: cover (counted && saturations != '0 && out_data[Width-1] && out_position[1]);
+      clipped_above: cover (counted && saturations != '0 && !out_data[Width-1] && out_position[2]);
+      unclipped: cover (follows && age == 4'(ToOut) && held && &depths && 32'(out_data[Width-1:0]) == 1);
+      next_inside: cover (out_valid && out_position[0] && valid[ToOut-2:0] == '1 && en);
+      empties: cover (left && !active);
+      negative_read: cover (read_known && read_left == 0 && table_read_zero < 0 && table_in_use);
+    end
+  end
+
+  // The map is told where frames begin, as it assumes.
+  logic map_start;
+  always_comb if (started && in_valid) frame_begins: assert (map_start == (row == '0 && column == '0));
+  if (Lanes > 1) begin : g_lanes
+    assign map_start = dut.g_lanes.u_map.in_frame_start;
+  end else begin : g_lane
+    assign map_start = dut.g_one.u_map.in_frame_start;
+    bind fv_zero_offset.dut.g_one.u_map.g_table[0].u_gains.g_bank[0].u_ram ram_check #(
+      .Depth(Depth), .Defined(0)
+    ) u_check_0 (.clk, .write_en, .write_address, .read_en, .read_address);
+    bind fv_zero_offset.dut.g_one.u_map.g_table[0].u_gains.g_bank[1].u_ram ram_check #(
+      .Depth(Depth), .Defined(0)
+    ) u_check_1 (.clk, .write_en, .write_address, .read_en, .read_address);
+  end
+
+endmodule
+
+`default_nettype wire

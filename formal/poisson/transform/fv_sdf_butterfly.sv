@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// fv_sdf_butterfly: of an arbitrary pair a, b of a block the sum leaves at the place of a and the difference at that of
+// b, Delay + 2 enabled clocks behind them, turned, halved and saturated as the header says; start, frame_start and the
+// count of clipped values with it. Rounding itself is proven of td_round_saturate.
+
+`default_nettype none
+
+module fv_sdf_butterfly #(
+  parameter int Width       = 2,
+  parameter int Size        = 8,
+  parameter int Delay       = 4,
+  parameter int RotateBlock = 0,
+  parameter int Inverse     = 0,
+  parameter int Halve       = 0,
+  localparam int PositionWidth = $clog2(Size)
+) (
+  input logic                    clk,
+  input logic                    rst,
+  input logic                    en,
+  input logic                    go,
+  input logic                    restart,
+  input logic signed [Width-1:0] in_re,
+  input logic signed [Width-1:0] in_im,
+  input logic                    pick
+);
+
+  localparam int AgeWidth = $clog2(2 * Delay + 3);
+
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst);
+
+  logic in_start, in_frame_start, active, last_row;
+  logic [PositionWidth-1:0] position;
+  logic [1:0] row;
+  burst_source #(.Size(Size), .Rows(2)) u_source (
+    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
+  );
+
+  logic out_start, out_frame_start;
+  logic signed [Width-1:0] out_re, out_im;
+  logic [1:0] saturations;
+  sdf_butterfly #(
+    .Width(Width), .Size(Size), .Delay(Delay), .RotateBlock(RotateBlock), .Inverse(Inverse), .Halve(Halve)
+  ) dut (
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_re, .in_im,
+    .out_start, .out_frame_start, .out_re, .out_im, .saturations
+  );
+
+  // A word as it enters the sum: turned by -j or +j in the last quarter of its block.
+  logic turned;
+  logic signed [Width:0] re, im;
+  assign turned = RotateBlock > 0 && 4 * (32'(position) % (RotateBlock > 0 ? RotateBlock : 1)) >= 3 * RotateBlock;
+  always_comb begin
+    re = (Width + 1)'(in_re);
+    im = (Width + 1)'(in_im);
+    if (turned) begin
+      re = Inverse != 0 ? (Width + 1)'(-(Width + 1)'(in_im)) : (Width + 1)'(in_im);
+      im = Inverse != 0 ? (Width + 1)'(in_re) : (Width + 1)'(-(Width + 1)'(in_re));
+    end
+  end
+
+  logic following;
+  logic [AgeWidth-1:0] age;  // enabled clocks since a was present
+  logic signed [Width:0] a_re, a_im;
+  logic signed [Width-1:0] sum_re, sum_im, difference_re, difference_im;
+  logic signed [Width-1:0] sum_re_q, sum_im_q, difference_re_q, difference_im_q;
+  logic [3:0] clipped;
+  td_round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_sum_re (
+    .in((Width + 2)'(a_re) + (Width + 2)'(re)), .out(sum_re), .clipped(clipped[0])
+  );
+  td_round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_sum_im (
+    .in((Width + 2)'(a_im) + (Width + 2)'(im)), .out(sum_im), .clipped(clipped[1])
+  );
+  td_round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_difference_re (
+    .in((Width + 2)'(a_re) - (Width + 2)'(re)), .out(difference_re), .clipped(clipped[2])
+  );
+  td_round_saturate #(.InWidth(Width + 2), .Drop(Halve), .OutWidth(Width)) u_difference_im (
+    .in((Width + 2)'(a_im) - (Width + 2)'(im)), .out(difference_im), .clipped(clipped[3])
+  );
+
+  logic is_a, was_enabled, held;
+  assign is_a = active & (32'(position) % (2 * Delay) < Delay);
+  logic [3:0] clipped_q;
+  logic [Delay:0] active_q;
+  logic [2*Width+1:0] out_q;
+  always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
+    out_q <= {out_start, out_frame_start, out_re, out_im};
+    was_enabled <= en & ~rst;
+    if (en) begin
+      active_q <= (Delay + 1)'({active_q, active});
+      if (!following || age == AgeWidth'(2 * Delay + 2)) begin
+        following <= pick & is_a;
+        age <= AgeWidth'(1);
+        a_re <= re;
+        a_im <= im;
+      end else begin
+        age <= age + AgeWidth'(1);
+      end
+      if (age == AgeWidth'(Delay)) begin
+        sum_re_q <= sum_re;
+        sum_im_q <= sum_im;
+        difference_re_q <= difference_re;
+        difference_im_q <= difference_im;
+        clipped_q <= clipped;
+      end
+    end
+    if (rst) begin
+      active_q <= '0;
+      following <= 1'b0;
+    end
+  end
+  logic none_leaves;  // nothing was rounded in the clock before
+  always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
+
+  burst_timing #(.Size(Size), .Latency(Delay + 2)) u_timing (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
+  );
+  always_comb begin
+    if (started) begin
+      if (following && age == AgeWidth'(Delay + 2)) begin
+        sum: assert (out_re == sum_re_q && out_im == sum_im_q);
+        if (was_enabled) sum_counted: assert (32'(saturations) == 32'(clipped_q[0]) + 32'(clipped_q[1]));
+      end
+      if (following && age == AgeWidth'(2 * Delay + 2)) begin
+        difference: assert (out_re == difference_re_q && out_im == difference_im_q);
+        if (was_enabled) difference_counted: assert (32'(saturations) == 32'(clipped_q[2]) + 32'(clipped_q[3]));
+      end
+      if (none_leaves) not_counted: assert (saturations == '0);
+      if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
+      // A halved sum stays in range; a difference, or a turned word, need not.
+      if (following && (age == AgeWidth'(Delay + 2) || age == AgeWidth'(2 * Delay + 2))) begin
+        clips: cover (saturations == 2'd2);
+      end
+      last_difference: cover (following && age == AgeWidth'(2 * Delay + 2) && out_re == '1 && held);
+    end
+  end
+
+endmodule
+
+`default_nettype wire

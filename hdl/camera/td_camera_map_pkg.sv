@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_camera_map_pkg: offsets, reset values and bits of the AXI4-Lite registers of the camera front end.
+//
+// Written by `make registers` from registers/camera.rdl: change it there.
+
+`default_nettype none
+
+package td_camera_map_pkg;
+
+  // Byte offsets.
+  localparam int CameraAddressWidth = 10;
+  localparam int CameraPictureOffset = 32'h100;
+  localparam int CameraWindowOffset = 32'h104;
+  localparam int CameraWindowSizeOffset = 32'h108;
+  localparam int CameraFormatOffset = 32'h10c;
+  localparam int CameraBlackLevelOffset = 32'h110;
+  localparam int CameraRedGainOffset = 32'h114;
+  localparam int CameraGreenGainOffset = 32'h118;
+  localparam int CameraBlueGainOffset = 32'h11c;
+  localparam int CameraStatusOffset = 32'h120;
+  localparam int CameraControlOffset = 32'h124;
+  localparam int CameraDroppedOffset = 32'h128;
+  localparam int CameraLostOffset = 32'h12c;
+  localparam int CameraSetupOffset = 32'h130;
+
+  // Bits: number of a flag, lowest of a wider field.
+  localparam int CameraPictureColumnsLsb = 0;
+  localparam int CameraPictureRowsLsb = 16;
+  localparam int CameraWindowXLsb = 0;
+  localparam int CameraWindowYLsb = 16;
+  localparam int CameraWindowSizeColumnsLsb = 0;
+  localparam int CameraWindowSizeRowsLsb = 16;
+  localparam int CameraFormatPixelFormatLsb = 0;
+  localparam int CameraFormatPixelFormatWidth = 2;
+  localparam int CameraFormatPhaseLsb = 4;
+  localparam int CameraFormatPhaseWidth = 2;
+  localparam int CameraFormatBitsLsb = 8;
+  localparam int CameraStatusRowShortBit = 0;
+  localparam int CameraStatusRowLongBit = 1;
+  localparam int CameraStatusStartMissingBit = 2;
+  localparam int CameraStatusStartEarlyBit = 3;
+  localparam int CameraStatusWindowOutsideBit = 4;
+  localparam int CameraStatusLostBit = 5;
+  localparam int CameraStatusSetupDoneBit = 8;
+  localparam int CameraStatusSetupFailedBit = 9;
+  localparam int CameraControlClearCountersBit = 0;
+  localparam int CameraControlRestartSetupBit = 1;
+  localparam int CameraSetupEntryLsb = 0;
+  localparam int CameraSetupFoundLsb = 8;
+
+  // Values of a field.
+  localparam int CameraFormatPixelFormatCount = 4;
+  localparam int CameraFormatRaw = 0;
+  localparam int CameraFormatRgb888 = 1;
+  localparam int CameraFormatRgb565 = 2;
+  localparam int CameraFormatYuyv = 3;
+  localparam int CameraFormatPhaseCount = 4;
+  localparam int CameraFormatRggb = 0;
+  localparam int CameraFormatGrbg = 1;
+  localparam int CameraFormatGbrg = 2;
+  localparam int CameraFormatBggr = 3;
+
+  // Registers that software alone writes, by number, in words of 32 bits, the lowest first.
+  localparam int CameraSettings = 6;
+  localparam int CameraPictureSetting = 0;
+  localparam int CameraWindowSetting = 1;
+  localparam int CameraBlackLevelSetting = 2;
+  localparam int CameraRedGainSetting = 3;
+  localparam int CameraGreenGainSetting = 4;
+  localparam int CameraBlueGainSetting = 5;
+  localparam logic [32*CameraSettings-1:0] CameraSettingOffsets = {
+    CameraBlueGainOffset, CameraGreenGainOffset, CameraRedGainOffset, CameraBlackLevelOffset, CameraWindowOffset,
+    CameraPictureOffset
+  };
+  localparam logic [32*CameraSettings-1:0] CameraSettingMasks = {
+    32'h0000ffff, 32'h0000ffff, 32'h0000ffff, 32'h00000fff, 32'h1fff1fff, 32'h1fff1fff
+  };
+  localparam logic [32*CameraSettings-1:0] CameraSettingResets = {
+    32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000
+  };
+
+  // Offsets that can be read, and those that can be written.
+  function automatic logic is_camera_register(input logic [31:0] offset);
+    case (offset)
+      CameraPictureOffset, CameraWindowOffset, CameraWindowSizeOffset, CameraFormatOffset,
+      CameraBlackLevelOffset, CameraRedGainOffset, CameraGreenGainOffset, CameraBlueGainOffset,
+      CameraStatusOffset, CameraControlOffset, CameraDroppedOffset, CameraLostOffset,
+      CameraSetupOffset: is_camera_register = 1'b1;
+      default: is_camera_register = 1'b0;
+    endcase
+  endfunction
+  function automatic logic is_camera_writable(input logic [31:0] offset);
+    case (offset)
+      CameraPictureOffset, CameraWindowOffset, CameraBlackLevelOffset, CameraRedGainOffset,
+      CameraGreenGainOffset, CameraBlueGainOffset, CameraStatusOffset, CameraControlOffset: is_camera_writable = 1'b1;
+      default: is_camera_writable = 1'b0;
+    endcase
+  endfunction
+
+endpackage
+
+`default_nettype wire

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_banked_table: a table held twice: frames read one bank; the other, the free bank, is written and read by others.
+//
+// The bank of a frame is the one that table_bank names with frame_start. It is in use from `change` on, which comes
+// with the first read of the frame, one enabled cycle or more after frame_start; both count with en. In reset
+// table_bank counts at once. table_in_use says which bank is in use. Nothing is written while a change-over is due:
+// while table_bank, or the bank named last, is not table_in_use. No word is read in the cycle that writes it.
+// Latency: read_word is valid from 1 cycle after a read with en to the end of the next cycle with en. free_word is
+// valid 1 cycle after a free_read outside a reset, in that cycle alone; after a read in the cycle of a change it is of
+// the bank that was left. File gives both banks at power-up. Bit-accurate model:
+// models/tactile_depth/common/td_banked_table.py.
+
+`default_nettype none
+
+module td_banked_table #(
+  parameter int Width = 24,
+  parameter int Depth = 256,
+  parameter int Style = 1,  // of both memories, see td_ram.sv
+  parameter     File  = "",
+  localparam int AddressWidth = $clog2(Depth)
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     en,
+  input  wire                     table_bank,
+  output logic                    table_in_use,
+  input  wire                     frame_start,
+  input  wire                     change,
+  input  wire                     read,
+  input  wire  [AddressWidth-1:0] read_address,
+  output logic [Width-1:0]        read_word,
+  input  wire                     free_write,
+  input  wire  [AddressWidth-1:0] free_write_address,
+  input  wire  [Width-1:0]        free_write_word,
+  input  wire                     free_read,
+  input  wire  [AddressWidth-1:0] free_read_address,
+  output logic [Width-1:0]        free_word
+);
+
+  logic bank, named, used;  // in use; named for the frame that comes; in use in this cycle
+  logic [1:0][Width-1:0] words;
+  assign used = (en & change) ? named : bank;
+  assign table_in_use = bank;
+  assign read_word = words[bank];
+  assign free_word = words[~bank];
+  always_ff @(posedge clk) begin
+    if (rst || (en && frame_start)) named <= table_bank;
+    bank <= rst ? table_bank : used;
+  end
+
+  for (genvar b = 0; b < 2; b++) begin : g_bank
+    logic in_use;
+    assign in_use = used == 1'(b);
+    td_ram #(.Width(Width), .Depth(Depth), .Style(Style), .File(File)) u_ram (
+      .clk,
+      .write_en     (free_write & bank != 1'(b)),
+      .write_address(free_write_address),
+      .write_data   (free_write_word),
+      .read_en      (in_use ? en & read : free_read),
+      .read_address (in_use ? read_address : free_read_address),
+      .read_data    (words[b])
+    );
+  end
+
+endmodule
+
+`default_nettype wire

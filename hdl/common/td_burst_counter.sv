@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_burst_counter: position of the word now present in a burst of Size words.
+//
+// A burst is Size words in successive enabled cycles; start comes with the first. position and active are combinational
+// with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
+// Bit-accurate model: models/tactile_depth/common/td_burst_counter.py.
+
+`default_nettype none
+
+module td_burst_counter #(
+  parameter int Size = 128,
+  localparam int PositionWidth = $clog2(Size)
+) (
+  input  wire                      clk,
+  input  wire                      rst,
+  input  wire                      en,
+  input  wire                      start,
+  output logic [PositionWidth-1:0] position,
+  output logic                     active    // a word of a burst is present
+);
+
+  logic [PositionWidth-1:0] count;
+  logic running;
+
+  assign position = start ? '0 : count;
+  assign active = start | running;
+
+  always_ff @(posedge clk) begin
+    if (en && active) begin
+      count <= position + PositionWidth'(1);
+      running <= position != PositionWidth'(Size - 1);
+    end
+    if (rst) begin
+      count <= '0;
+      running <= 1'b0;
+    end
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size < 2) begin : g_refused
+    Size_must_be_at_least_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_delay_line: out is in, Delay enabled cycles later.
+//
+// Time moves with en alone, not with the data: what is inside drains by itself. Short lines are registers, long ones a
+// memory whose pointer runs round. Bit-accurate model: models/tactile_depth/common/td_delay_line.py.
+
+`default_nettype none
+
+module td_delay_line #(
+  parameter int Width = 54,
+  parameter int Delay = 64
+) (
+  input  wire              clk,
+  input  wire              rst,
+  input  wire              en,
+  input  wire  [Width-1:0] in,  // a word of any format
+  output logic [Width-1:0] out
+);
+
+  localparam int LongestShift = 4;
+  localparam int BlockBits = 4096;
+
+  if (Delay <= LongestShift) begin : g_shift
+    logic [Delay*Width-1:0] taps;  // the oldest word on top
+    if (Delay == 1) begin : g_one
+      always_ff @(posedge clk) if (en) taps <= in;
+    end else begin : g_many
+      always_ff @(posedge clk) if (en) taps <= {taps[(Delay-1)*Width-1:0], in};
+    end
+    assign out = taps[Delay*Width-1-:Width];
+    logic unused_rst;
+    assign unused_rst = rst;
+  end else begin : g_memory
+    // The word read now leaves the read register one cycle later: it is the one written Delay - 1 cycles ago.
+    localparam int AddressWidth = $clog2(Delay);
+    logic [AddressWidth-1:0] pointer;
+    logic [AddressWidth-1:0] pointer_next;
+    assign pointer_next = (pointer == AddressWidth'(Delay - 1)) ? '0 : pointer + AddressWidth'(1);
+    td_ram #(
+      .Width(Width),
+      .Depth(Delay),
+      .Style((Width * Delay > BlockBits) ? 1 : 0)
+    ) u_ram (
+      .clk          (clk),
+      .write_en     (en),
+      .write_address(pointer),
+      .write_data   (in),
+      .read_en      (en),
+      .read_address (pointer_next),
+      .read_data    (out)
+    );
+    always_ff @(posedge clk) begin
+      if (en) pointer <= pointer_next;
+      if (rst) pointer <= '0;
+    end
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Delay < 1) begin : g_refused
+    Delay_must_be_at_least_1 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

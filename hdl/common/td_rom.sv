@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_rom: read-only memory. Read latency: 1 cycle.
+//
+// Contents come from File (one line per word, $readmemh), written by models/tactile_depth/rom_files.py.
+// Bit-accurate model: models/tactile_depth/common/td_rom.py.
+
+`default_nettype none
+
+module td_rom #(
+  parameter int Width = 54,
+  parameter int Depth = 128,
+  parameter     File  = "rom.hex",
+  localparam int AddressWidth = $clog2(Depth)
+) (
+  input  wire                     clk,
+  input  wire                     en,
+  input  wire  [AddressWidth-1:0] address,
+  output logic [Width-1:0]        data
+);
+
+  localparam int SmallBits = 4096;  // below this LUTs are cheaper than a block RAM
+
+  if (Width * Depth <= SmallBits) begin : g_distributed
+    (* rom_style = "distributed" *) logic [Width-1:0] words[Depth];
+    initial $readmemh(File, words);
+    always_ff @(posedge clk) if (en) data <= words[address];
+  end else begin : g_block
+    (* rom_style = "block" *) logic [Width-1:0] words[Depth];
+    initial $readmemh(File, words);
+    always_ff @(posedge clk) if (en) data <= words[address];
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Depth < 2) begin : g_refused
+    Depth_must_be_at_least_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

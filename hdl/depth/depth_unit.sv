@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// depth_unit: whole frames of depth from what the solver puts out, less the zero offset if there is one.
+//
+//   solved --> frame_output --> [zero_offset] --> depth
+//                  ^       \-> [zero_capture]
+//   frame end --> frame_tags
+//
+// In brackets: with ZeroOffset. A tag waits for each frame that is in the solver: whether the frame was malformed,
+// its bank of the zero offset, and its time. A malformed frame does not leave. Stream in: bursts of the solver, Lanes
+// depth codes in a beat. Stream out: those of whole frames under `en`, in the same order. Latency: 0 cycles; with
+// ZeroOffset that of zero_offset. Models: models/tactile_depth/depth/.
+
+`default_nettype none
+
+module depth_unit
+  import td_config_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
+  parameter int Rows         = DefaultRows,
+  parameter int Columns      = DefaultSize,
+  parameter int DataWidth    = DefaultDataWidth,
+  parameter int Lanes        = DefaultLanes,         // depths in a beat
+  parameter int FrameLatency = DefaultFrameLatency,  // from pixel_frame_end to the frame's first word out of the solver
+  parameter int ZeroOffset     = DefaultZeroOffset,
+  parameter int BlockLog2    = DefaultBlockLog2,      // ZeroOffset
+  parameter int ZeroLog2    = DefaultZeroLog2       // ZeroOffset
+) (
+  input  wire                         clk,
+  input  wire                         rst,
+  input  wire                         en,
+
+  input  wire table_command_t         table_command,
+  output table_answer_t               table_answer,
+  input  wire  [3:0]                  table_bank,
+  output logic [3:0]                  table_in_use,
+  input  wire capture_command_t       capture_command,
+  output capture_status_t             capture_status,
+  output logic [$clog2(Lanes):0]      saturations,  // depths clipped in a cycle
+  output logic                        out_of_step,  // a frame does not leave the solver when it is due
+  output logic                        busy,         // a frame is in the solver, or here
+
+  input  wire                         pixel_frame_end,
+  input  wire                         pixel_bad,
+  input  wire  [31:0]                 frame_time,  // of the frame that pixel_frame_end ends
+
+  input  wire                         burst_start,
+  input  wire                         solved_frame_start,
+  input  wire  [Lanes*DataWidth-1:0]  solved_data,  // depth codes, signed
+
+  output logic                        depth_valid,
+  output depth_position_t             depth_position,
+  output logic [Lanes*DataWidth-1:0]  depth_data,  // depth codes, signed
+  output logic [31:0]                 depth_time   // of the frame to which depth_data belongs
+);
+
+  logic bank, tag_due, tag_bad, tag_bank, tags_held;
+  logic [31:0] tag_time;
+  assign bank = table_bank[TableSelectZero];
+  frame_tags #(.Width(34), .Latency(FrameLatency), .Pixels(Rows * Columns)) u_tags (
+    .clk, .rst, .en, .push(pixel_frame_end), .tag({pixel_bad, bank, frame_time}),
+    .due(tag_due), .due_tag({tag_bad, tag_bank, tag_time}), .held(tags_held)
+  );
+
+  logic active, whole_valid;
+  depth_position_t whole_position;
+  logic [Lanes*DataWidth-1:0] whole_data;
+  frame_output #(.Width(Lanes * DataWidth), .Rows(Rows), .Columns(Columns / Lanes)) u_output (
+    .clk, .rst, .en, .in_start(burst_start), .in_frame_start(solved_frame_start), .in_data(solved_data),
+    .in_due(tag_due), .in_bad(tag_bad), .active, .out_of_step,
+    .out_valid(whole_valid), .out_position(whole_position), .out_data(whole_data)
+  );
+
+  // The zero offset. Its bank goes with the frame: while the frame was in the solver others have begun.
+
+  if (ZeroOffset != 0) begin : g_zero_offset
+    localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)));
+    logic selected, in_use, zero_active, zero_write, capture_busy, capture_done;
+    localparam int Side = Lanes >> BlockLog2 > 1 ? Lanes >> BlockLog2 : 1;  // nodes that are captured at once
+    logic [NodeWidth-$clog2(Side)-1:0] zero_write_node;
+    logic [Side*DataWidth-1:0] zero_written;
+    logic signed [DataWidth-1:0] zero_word;
+    table_command_t command = '0;  // the bus comes from afar: table_access waits a cycle longer than a table
+    always_ff @(posedge clk) begin
+      command <= table_command;
+      if (rst) {command.write, command.read} <= '0;
+    end
+    logic unused_command;  // a table has fewer words, and narrower ones, than the bus carries
+    assign unused_command = ^command;
+    assign selected = command.select == 2'(TableSelectZero);
+    zero_offset #(
+      .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth),
+      .Lanes(Lanes)
+    ) u_zero_offset (
+      .clk, .rst, .en, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
+      .table_write(command.write & selected), .table_read(command.read & selected),
+      .table_index(command.index[NodeWidth-1:0]), .table_zero(command.low[DataWidth-1:0]),
+      .table_read_zero(zero_word),
+      .capture_write(zero_write), .capture_write_node(zero_write_node), .capture_zero(zero_written),
+      .in_valid(whole_valid), .in_position(whole_position), .in_data(whole_data),
+      .out_valid(depth_valid), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations
+    );
+    zero_capture #(
+      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth), .MaxLog2(ZeroLog2),
+      .Lanes(Lanes)
+    ) u_capture (
+      .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
+      .busy(capture_busy), .done(capture_done),
+      .in_valid(whole_valid), .in_frame_start(whole_position.frame_start),
+      .in_frame_end(whole_position.frame_end), .in_data(whole_data),
+      .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written)
+    );
+    assign capture_status = {capture_busy, capture_done};
+    assign table_answer = {32'd0, selected ? 32'(zero_word) : 32'd0};
+    assign table_in_use = 4'(in_use) << TableSelectZero;
+    assign busy = tags_held | active | zero_active;
+    always_ff @(posedge clk) if (en && whole_valid && whole_position.frame_start) depth_time <= tag_time;
+  end else begin : g_as_solved
+    assign depth_valid = whole_valid;
+    assign depth_position = whole_position;
+    assign depth_data = whole_data;
+    assign depth_time = tag_time;
+    assign {capture_status, table_answer, table_in_use, saturations} = '0;
+    assign busy = tags_held | active;
+    logic unused_capture;
+    assign unused_capture = ^{capture_command, tag_bank};
+  end
+
+  logic unused_command;  // banks of other tables, bits of wider entries
+  assign unused_command = ^{table_command, table_bank};
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (ZeroOffset < 0 || ZeroOffset > 1) begin : g_refused_0
+    ZeroOffset_is_0_or_1 u_refused ();
+  end
+  if (FrameLatency < 1) begin : g_refused_1
+    FrameLatency_must_be_at_least_1 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// flat_field: colours relative to the reference frame, by the gains of td_gain_map; dark pixels held from their
+// neighbour.
+//
+//   out = sat( round( I gain / 2^Drop ) - Offset )       of red, green and blue
+//
+// With Offset 0 these are codes, unsigned (128 I / ref); else deviations, signed (I / ref - 1). A pixel is dark if all
+// its colours are under dark_level, as it stood when the frame's first pixel came, or if the gain of one of them has
+// its top bit set. It takes over what left for the pixel before it in its row, the first of a row Flat; `dark` is high
+// one cycle for each. Nothing that a dark pixel would clip counts as saturation.
+// Stream in: pixels R in 23:16, B in 15:8, G in 7:0. Stream out: colours relative to the reference.
+// Latency: 13 cycles. Banks, bus and capture: see td_gain_map. Bit-accurate model:
+// models/tactile_depth/gradient/flat_field.py.
+
+`default_nettype none
+
+module flat_field
+  import td_types_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
+  parameter int Rows      = 128,
+  parameter int Columns   = 128,
+  parameter int BlockLog2 = 3,
+  parameter int GainWidth = 24,
+  parameter int Drop      = 20,
+  parameter int Offset    = 0,
+  parameter int OutWidth  = 8,
+  parameter int Flat      = 128,
+  localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)))
+) (
+  input  wire                    clk,
+  input  wire                    rst,
+  input  wire                    en,
+  input  wire  [7:0]             dark_level,
+
+  input  wire                    table_bank,
+  output logic                   table_in_use,
+  input  wire                    table_write,
+  input  wire                    table_read,
+  input  wire  [NodeWidth+1:0]   table_index,
+  input  wire  [GainWidth-1:0]   table_gain,
+  output logic [GainWidth-1:0]   table_read_gain,
+
+  input  wire                    capture_write,
+  input  wire  [NodeWidth-1:0]   capture_write_node,
+  input  wire  [3*GainWidth-1:0] capture_gains,
+  input  wire                    capture_read,
+  input  wire  [NodeWidth-1:0]   capture_read_node,
+  output logic [3*GainWidth-1:0] capture_read_gains,
+
+  input  wire                    in_valid,
+  input  wire  [23:0]            in_pixel,    // three codes of 8 bits
+  input  wire position_t         in_position,
+  output logic                   out_valid,
+  output position_t              out_position,
+  output logic [OutWidth-1:0]    out_red,     // code, or deviation, signed, where Offset is not 0
+  output logic [OutWidth-1:0]    out_green,
+  output logic [OutWidth-1:0]    out_blue,
+  output logic                   dark,
+  output logic [1:0]             saturations  // values clipped in this cycle
+);
+
+  localparam int ToOut = 2;  // stages between the gain and the output
+  localparam int ProductWidth = 8 + GainWidth + 2;  // of two signs more
+  localparam int RoundedWidth = OutWidth + (Offset == 0 ? 1 : 0);  // td_round_saturate is signed
+
+  // Colours in the order of the gains: red, green, blue from the lowest.
+
+  logic frame_start, dim_in, dim, gain_valid, unused_active;
+  logic [7:0] red, green, blue, level, level_q;
+  logic [23:0] colours;
+  position_t gain_position;
+  logic [3*GainWidth-1:0] gains;
+  assign {red, blue, green} = in_pixel;
+  assign frame_start = in_position.first_row & in_position.first_column;
+  assign level = frame_start ? dark_level : level_q;
+  assign dim_in = red < level & green < level & blue < level;
+  td_gain_map #(
+    .Name({TableFolder, "gain"}), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
+    .DataWidth(29)
+  ) u_map (
+    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
+    .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,
+    .capture_read_gains, .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
+    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_gains(gains), .active(unused_active)
+  );
+
+  logic dead;
+  logic [ToOut-1:0] valid_q, dark_q;
+  position_t [ToOut-1:0] position_q;
+  logic [2:0] clipped;
+  assign dead = gains[GainWidth-1] | gains[2*GainWidth-1] | gains[3*GainWidth-1];
+
+  logic [3*OutWidth-1:0] out;
+  assign {out_blue, out_green, out_red} = out;
+  for (genvar c = 0; c < 3; c++) begin : g_channel
+    logic signed [ProductWidth-1:0] product, sum;
+    td_multiply #(.AWidth(GainWidth + 1), .BWidth(9)) u_product (
+      .clk, .en, .a({1'b0, gains[c*GainWidth+:GainWidth]}), .b({1'b0, colours[8*c+:8]}), .product
+    );
+    logic signed [RoundedWidth-1:0] rounded;
+    td_round_saturate #(.InWidth(ProductWidth), .Drop(Drop), .OutWidth(RoundedWidth)) u_round (
+      .in(sum), .out(rounded), .clipped(clipped[c])
+    );
+    if (Offset == 0) begin : g_unsigned
+      logic unused_sign;
+      assign unused_sign = rounded[OutWidth];
+    end
+    always_ff @(posedge clk) begin
+      if (en) begin
+        sum <= product - (ProductWidth'(Offset) <<< Drop);
+        if (valid_q[1] & ~dark_q[1]) out[c*OutWidth+:OutWidth] <= rounded[OutWidth-1:0];
+        else if (valid_q[1] & position_q[1].first_column) out[c*OutWidth+:OutWidth] <= OutWidth'(Flat);
+      end
+    end
+  end
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_valid) level_q <= level;
+      valid_q <= {valid_q[0], gain_valid};
+      position_q[0] <= gain_position;
+      position_q[1] <= position_q[0];
+      dark_q <= {dark_q[0], dim | dead};
+      out_valid <= valid_q[1];
+      out_position <= position_q[1];
+    end
+    dark <= en & valid_q[1] & dark_q[1];
+    saturations <= en & valid_q[1] & ~dark_q[1] ? 2'(clipped[0]) + 2'(clipped[1]) + 2'(clipped[2]) : '0;
+    if (rst) begin
+      valid_q <= '0;
+      out_valid <= 1'b0;
+      dark <= 1'b0;
+      saturations <= '0;
+    end
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Offset % 2 != 0) begin : g_refused
+    Offset_must_be_even_it_is_subtracted_before_rounding_to_even u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

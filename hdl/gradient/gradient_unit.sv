@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// gradient_unit: the slopes of the gel from the colours of its pixels.
+//
+//   pixel --> [flat_field] --> gradient_lookup or quadratic_gradient --> slope
+//         \-> [reference_capture]
+//
+// In brackets: with FlatField, which makes colours relative to a frame without contact. Without it colours are as the
+// camera sent them. Stream in: pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the
+// row and gy down the column, signed codes of GradientWidth bits; the tables say how many are fraction bits. Latency:
+// models/tactile_depth/latency.py; a gap in, a gap out. Model: slope_codes in models/tactile_depth/tactile_depth.py.
+
+`default_nettype none
+
+module gradient_unit
+  import td_config_pkg::*;
+  import td_register_map_pkg::*;
+  import td_types_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
+  parameter int Rows             = DefaultRows,
+  parameter int Columns          = DefaultSize,
+  parameter int GradientWidth    = DefaultGradientWidth,
+  parameter int BitsPerChannel   = DefaultBitsPerChannel,   // of a colour that index the table
+  parameter int FlatField        = DefaultFlatField,
+  parameter int Quadratic        = DefaultQuadratic,   // 1 needs FlatField
+  parameter int BlockLog2        = DefaultBlockLog2,   // from here: FlatField
+  parameter int GainWidth        = DefaultGainWidth,
+  parameter int GainFraction     = DefaultGainFraction,
+  parameter int CaptureLog2      = DefaultCaptureLog2,
+  parameter int ColourWidth      = DefaultColourWidth,
+  parameter int ColourDrop       = DefaultColourDrop,
+  parameter int ColourOffset     = DefaultColourOffset,
+  parameter int ColourFlat       = DefaultColourFlat,
+  parameter int PolynomialWords  = DefaultPolynomialWords,  // from here: Quadratic
+  parameter int PolynomialWidth  = DefaultPolynomialWidth,
+  parameter int ColourCoeffWidth = DefaultColourCoeffWidth,
+  parameter int SlopeDrop        = DefaultSlopeDrop
+) (
+  input  wire                             clk,
+  input  wire                             rst,
+  input  wire                             en,
+
+  input  wire table_command_t             table_command,
+  output table_answer_t                   table_answer,
+  input  wire  [3:0]                      table_bank,
+  output logic [3:0]                      table_in_use,
+  input  wire  [7:0]                      dark_level,
+  input  wire capture_command_t           capture_command,
+  output capture_status_t                 capture_status,
+  output logic                            dark,         // a pixel was held from its neighbour
+  output logic [2:0]                      saturations,  // values clipped in this clock
+
+  input  wire                             pixel_valid,
+  input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0
+  input  wire position_t                  pixel_position,
+  input  wire                             pixel_bad,
+
+  output logic                            slope_valid,
+  output position_t                       slope_position,
+  output logic signed [GradientWidth-1:0] slope_gx,  // slope code
+  output logic signed [GradientWidth-1:0] slope_gy   // slope code
+);
+
+  // The bus of the tables comes from afar, so it has a register here: table_access waits a cycle longer than a table.
+  table_command_t command = '0;
+  always_ff @(posedge clk) begin
+    command <= table_command;
+    if (rst) {command.write, command.read} <= '0;
+  end
+
+  // Constants of a package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.
+  localparam int SlopeTable = Quadratic != 0 ? TableSelectCoefficients : TableSelectGradient;
+  logic slope_selected, slope_bank, slope_in_use, reference_in_use;
+  logic [31:0] slope_high, slope_low, reference_low;
+  assign slope_selected = command.select == 2'(SlopeTable);
+  assign slope_bank = table_bank[SlopeTable];
+  assign table_answer = {
+    slope_selected ? slope_high : 32'd0, (slope_selected ? slope_low : 32'd0) | reference_low
+  };
+  assign table_in_use = (4'(slope_in_use) << SlopeTable) | (4'(reference_in_use) << TableSelectReference);
+
+  // Colours, relative to the reference if there is one.
+
+  logic colour_valid;
+  position_t colour_position;
+  logic [ColourWidth-1:0] red, green, blue;
+  logic [1:0] colour_saturations, slope_saturations;
+  assign saturations = 3'(colour_saturations) + 3'(slope_saturations);
+  if (FlatField != 0) begin : g_flat_field
+    localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)));
+    logic selected, bank, capture_write, capture_read, capture_busy, capture_done;
+    logic [NodeWidth-1:0] capture_write_node, capture_read_node;
+    logic [3*GainWidth-1:0] capture_gains, capture_read_gains;
+    logic [GainWidth-1:0] gain;
+    assign selected = command.select == 2'(TableSelectReference);
+    assign bank = table_bank[TableSelectReference];
+    flat_field #(
+      .TableFolder(TableFolder),
+      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
+      .Offset(ColourOffset), .OutWidth(ColourWidth), .Flat(ColourFlat)
+    ) u_flat_field (
+      .clk, .rst, .en, .dark_level, .table_bank(bank), .table_in_use(reference_in_use),
+      .table_write(command.write & selected), .table_read(command.read & selected),
+      .table_index(command.index[NodeWidth+1:0]), .table_gain(command.low[GainWidth-1:0]),
+      .table_read_gain(gain), .capture_write, .capture_write_node, .capture_gains,
+      .capture_read, .capture_read_node, .capture_read_gains,
+      .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position),
+      .out_valid(colour_valid), .out_position(colour_position), .out_red(red), .out_green(green), .out_blue(blue),
+      .dark, .saturations(colour_saturations)
+    );
+    reference_capture #(
+      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth), .GainFraction(GainFraction),
+      .MaxLog2(CaptureLog2)
+    ) u_capture (
+      .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
+      .busy(capture_busy), .done(capture_done),
+      .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position), .in_bad(pixel_bad),
+      .map_write(capture_write), .map_write_node(capture_write_node), .map_write_gains(capture_gains),
+      .map_read(capture_read), .map_read_node(capture_read_node), .map_read_gains(capture_read_gains)
+    );
+    assign capture_status = {capture_busy, capture_done};
+    assign reference_low = selected ? 32'(gain) : 32'd0;
+  end else begin : g_as_sent
+    assign {red, blue, green} = pixel_data;
+    assign colour_valid = pixel_valid;
+    assign colour_position = pixel_position;
+    assign {dark, colour_saturations, capture_status, reference_in_use, reference_low} = '0;
+    logic unused_reference;
+    assign unused_reference = ^{dark_level, capture_command, pixel_bad};
+  end
+
+  // Their slopes.
+
+  if (Quadratic != 0) begin : g_quadratic
+    logic signed [PolynomialWidth-1:0] word;
+    quadratic_gradient #(
+      .TableFolder(TableFolder), .Width(GradientWidth), .DeviationWidth(ColourWidth), .CoeffWidth(ColourCoeffWidth),
+      .WordWidth(PolynomialWidth), .Drop(SlopeDrop)
+    ) u_quadratic (
+      .clk, .rst, .en, .table_bank(slope_bank), .table_in_use(slope_in_use),
+      .table_write(command.write & slope_selected), .table_read(command.read & slope_selected),
+      .table_index(command.index[$clog2(PolynomialWords)-1:0]),
+      .table_word(command.low[PolynomialWidth-1:0]), .table_read_word(word),
+      .in_valid(colour_valid), .in_position(colour_position), .in_red(red), .in_green(green), .in_blue(blue),
+      .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy),
+      .saturations(slope_saturations)
+    );
+    assign slope_high = '0;
+    assign slope_low = 32'(word);
+  end else begin : g_lookup
+    logic signed [GradientWidth-1:0] table_gx, table_gy;
+    gradient_lookup #(
+      .File({TableFolder, "gradient.hex"}), .Width(GradientWidth), .BitsPerChannel(BitsPerChannel)
+    ) u_lookup (
+      .clk, .rst, .en, .table_bank(slope_bank), .table_in_use(slope_in_use),
+      .table_write(command.write & slope_selected), .table_read(command.read & slope_selected),
+      .table_index(command.index[3*BitsPerChannel-1:0]),
+      .table_gx(command.low[GradientWidth-1:0]), .table_gy(command.high[GradientWidth-1:0]),
+      .table_read_gx(table_gx), .table_read_gy(table_gy),
+      .in_valid(colour_valid), .in_pixel({red, blue, green}), .in_position(colour_position),
+      .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy)
+    );
+    assign slope_high = 32'(table_gy);
+    assign slope_low = 32'(table_gx);
+    assign slope_saturations = '0;
+  end
+
+  logic unused_command;  // banks of other tables, bits of wider entries
+  assign unused_command = ^{command, table_bank};
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Quadratic != 0 && FlatField == 0) begin : g_refused_0
+    Quadratic_needs_FlatField u_refused ();
+  end
+  if (Quadratic == 0 && ColourWidth != 8) begin : g_refused_1
+    the_gradient_table_takes_colours_of_8_bits u_refused ();
+  end
+  if ((FlatField | Quadratic) > 1 || (FlatField | Quadratic) < 0) begin : g_refused_2
+    FlatField_and_Quadratic_are_0_or_1 u_refused ();
+  end
+  if (FlatField != 0
+      && (GainWidth < 2 || GainWidth > 32 || ColourWidth < 2 || ColourFlat < 0 || ColourFlat >= 1 << ColourWidth))
+  begin : g_refused_3
+    GainWidth_must_be_2_to_32_and_ColourFlat_must_fit_ColourWidth u_refused ();
+  end
+  if (Quadratic != 0 && (PolynomialWidth > 32 || ColourCoeffWidth < 2 || PolynomialWords != 36)) begin : g_refused_4
+    PolynomialWidth_must_be_at_most_32_ColourCoeffWidth_at_least_2_PolynomialWords_36 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

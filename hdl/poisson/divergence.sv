@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// divergence: backward differences of the gradient, exact (no bit dropped).
+//
+//   f[i,j] = gx[i,j] - gx[i,j-1] + gy[i,j] - gy[i-1,j],  gx[i,-1] = gy[-1,j] = 0
+//
+// The depth map is shifted by half a pixel up and to the left, because slopes are differenced backwards.
+// Stream in: slopes of pixels in raster order. Stream out: the divergence at the same pixels. Latency: 2 cycles; a gap
+// in, a gap out. One line of gy is stored. Bit-accurate model: models/tactile_depth/poisson/divergence.py.
+
+`default_nettype none
+
+module divergence
+  import td_types_pkg::*;
+#(
+  parameter int Width   = 21,   // of a slope
+  parameter int Columns = 128,
+  parameter int Neumann = 0,  // 1: gx of the last column and gy of the last row count as 0
+  localparam int OutWidth = Width + 2
+) (
+  input  wire                        clk,
+  input  wire                        rst,
+  input  wire                        en,
+  input  wire                        in_valid,
+  input  wire position_t             in_position,
+  input  wire  signed [Width-1:0]    in_gx,            // slope code
+  input  wire  signed [Width-1:0]    in_gy,            // slope code
+  output logic                       out_valid,
+  output logic                       out_frame_start,  // the first pixel of a frame
+  output logic signed [OutWidth-1:0] out_data          // with the fraction bits of a slope
+);
+
+  localparam int ColumnWidth = $clog2(Columns);
+
+  logic [ColumnWidth-1:0] column, column_next, column_q;
+  assign column = in_position.first_column ? '0 : column_next;
+
+  logic valid_q, first_row_q, first_column_q;
+  logic signed [Width-1:0] gx_q, gy_q, gx_left, gy_above, gx_stored, gy_stored;
+
+  // Read while the pixel is taken, written one cycle later, so never the same word at once.
+  td_ram #(
+    .Width(Width),
+    .Depth(Columns),
+    .Style((Width * Columns > 4096) ? 1 : 0)
+  ) u_line (
+    .clk,
+    .write_en     (en & valid_q),
+    .write_address(column_q),
+    .write_data   (gy_q),
+    .read_en      (en & in_valid),
+    .read_address (column),
+    .read_data    (gy_stored)
+  );
+  assign gy_above = first_row_q ? '0 : gy_stored;
+  assign gx_left = first_column_q ? '0 : gx_stored;
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_valid) begin
+        gx_q <= Neumann != 0 && in_position.last_column ? '0 : in_gx;
+        gy_q <= Neumann != 0 && in_position.last_row ? '0 : in_gy;
+        column_q <= column;
+        column_next <= column + ColumnWidth'(1);
+        first_row_q <= in_position.first_row;
+        first_column_q <= in_position.first_column;
+      end
+      if (valid_q) gx_stored <= gx_q;
+      valid_q <= in_valid;
+      out_valid <= valid_q;
+      out_frame_start <= valid_q & first_row_q & first_column_q;
+      out_data <= (OutWidth'(gx_q) - OutWidth'(gx_left)) + (OutWidth'(gy_q) - OutWidth'(gy_above));
+    end
+    if (rst) begin
+      valid_q <= 1'b0;
+      out_valid <= 1'b0;
+      out_frame_start <= 1'b0;
+    end
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Columns < 2) begin : g_refused
+    Columns_must_be_at_least_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// poisson_unit: depth from slopes: the divergence, then one of the two solvers of the Poisson equation.
+//
+//   slope -> divergence -> spectral_solver or tridiagonal_solver -> depth
+//
+// Stream in: slopes in raster order. Stream out: a burst of Columns / Lanes beats for each row, Lanes depth codes in a
+// beat, the first in the lowest bits; `burst_start` with the first beat of a row and depth_frame_start with the first
+// of a frame; rows in raster order (tridiagonal: the bottom row first). Latency from the last slope to the first depth:
+// models/tactile_depth/latency.py; gaps in the input do not change it.
+// Models: models/tactile_depth/poisson/divergence.py, models/tactile_depth/poisson/.
+
+`default_nettype none
+
+module poisson_unit
+  import td_config_pkg::*;
+  import td_types_pkg::*;
+#(
+  parameter TableFolder = "./",  // of the .hex files, with a / at its end
+  parameter int Tridiagonal      = DefaultTridiagonal,   // solver: 0 spectral, 1 tridiagonal
+  parameter int Neumann          = DefaultNeumann,
+  parameter int Rows             = DefaultRows,
+  parameter int Columns          = DefaultSize,
+  parameter int GradientWidth    = DefaultGradientWidth,
+  parameter int DataWidth        = DefaultDataWidth,
+  parameter int Width            = DefaultWidth,
+  parameter int CoeffWidth       = DefaultCoeffWidth,
+  parameter int RowForwardOut    = DefaultRowForwardOut,
+  parameter int ColumnForwardIn  = DefaultColumnForwardIn,
+  parameter int ColumnInverseOut = DefaultColumnInverseOut,
+  parameter int RowInverseIn     = DefaultRowInverseIn,
+  parameter int RowInverseOut    = DefaultRowInverseOut,
+  parameter int DivideShiftWidth = DefaultDivideShiftWidth,
+  parameter int DivideDrop       = DefaultDivideDrop,
+  parameter int StoreStyle       = DefaultStoreStyle,
+  parameter int StoreDrop        = DefaultStoreDrop,   // from here: tridiagonal
+  parameter int TableWords       = DefaultTableWords,
+  parameter int SettledWidth     = DefaultSettledWidth,
+  parameter int LastShiftWidth   = DefaultLastShiftWidth,
+  parameter int MomentDrop       = DefaultMomentDrop,
+  parameter int MeanReciprocal   = DefaultMeanReciprocal,
+  parameter int MeanDrop         = DefaultMeanDrop,
+  parameter int WordsPerRow      = DefaultWordsPerRow,
+  parameter int Lanes            = DefaultLanes,
+  localparam int ClippedWidth = 8 + $clog2(Lanes)
+) (
+  input  wire                             clk,
+  input  wire                             rst,
+  input  wire                             en,
+  input  wire                             slope_valid,
+  input  wire position_t                  slope_position,
+  input  wire  signed [GradientWidth-1:0] slope_gx,    // slope code
+  input  wire  signed [GradientWidth-1:0] slope_gy,    // slope code
+  output logic                            burst_start,
+  output logic                            depth_frame_start,
+  output logic [Lanes*DataWidth-1:0]      depth_data,  // depth codes, signed
+  output logic [ClippedWidth-1:0]         saturations  // values clipped in this clock
+);
+
+  localparam int InWidth = GradientWidth + 2;  // of a divergence
+
+  logic divergence_valid, divergence_frame_start;
+  logic signed [InWidth-1:0] divergence_data;
+  divergence #(.Width(GradientWidth), .Columns(Columns), .Neumann(Neumann)) u_divergence (
+    .clk, .rst, .en, .in_valid(slope_valid), .in_position(slope_position), .in_gx(slope_gx), .in_gy(slope_gy),
+    .out_valid(divergence_valid), .out_frame_start(divergence_frame_start), .out_data(divergence_data)
+  );
+
+  if (Tridiagonal != 0) begin : g_tridiagonal
+    tridiagonal_solver #(
+      .TableFolder(TableFolder), .Rows(Rows), .Size(Columns), .Lanes(Lanes), .InWidth(InWidth), .DataWidth(DataWidth),
+      .Width(Width), .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut), .StoreDrop(StoreDrop),
+      .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
+      .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
+      .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .StoreStyle(StoreStyle), .WordsPerRow(WordsPerRow)
+    ) u_solver (
+      .clk, .rst, .en,
+      .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
+      .out_start(burst_start), .out_frame_start(depth_frame_start), .out_data(depth_data), .saturations
+    );
+  end else begin : g_spectral
+    spectral_solver #(
+      .TableFolder(TableFolder),
+      .Size(Columns), .InWidth(InWidth), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
+      .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
+      .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
+      .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann), .StoreStyle(StoreStyle)
+    ) u_solver (
+      .clk, .rst, .en,
+      .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
+      .out_start(burst_start), .out_frame_start(depth_frame_start), .out_data(depth_data), .saturations
+    );
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Tridiagonal == 0 && Rows != Columns) begin : g_refused_0
+    the_spectral_solver_takes_square_grids_Rows_must_be_Columns u_refused ();
+  end
+  if (DataWidth < 2 || DataWidth > 32 || DataWidth > Width) begin : g_refused_1
+    DataWidth_must_be_2_to_32_and_at_most_Width u_refused ();
+  end
+  if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused_2
+    Tridiagonal_and_Neumann_are_0_or_1 u_refused ();
+  end
+  if (Width > 48 || GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_3
+    Width_must_be_at_most_48_GradientWidth_and_CoeffWidth_2_to_32 u_refused ();
+  end
+  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_4
+    StoreStyle_must_be_0_to_2 u_refused ();
+  end
+  if (Tridiagonal == 0 && (DivideShiftWidth < 1 || DivideShiftWidth > 6)) begin : g_refused_5
+    DivideShiftWidth_must_be_1_to_6 u_refused ();
+  end
+  if (Tridiagonal != 0
+      && (SettledWidth < 1 || SettledWidth > 16 || LastShiftWidth < 1 || LastShiftWidth > 6)) begin : g_refused_6
+    SettledWidth_must_be_1_to_16_and_LastShiftWidth_1_to_6 u_refused ();
+  end
+  if (Tridiagonal != 0 && Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1)))
+  begin : g_refused_7
+    MeanReciprocal_must_fit_CoeffWidth u_refused ();
+  end
+  if (Tridiagonal == 0 && Lanes != 1) begin : g_refused_8
+    the_spectral_solver_has_one_lane u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

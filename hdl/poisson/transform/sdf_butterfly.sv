@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// sdf_butterfly: one radix-2 stage of a single-path delay feedback FFT.
+//
+//   words a, b of a block of 2 Delay, Delay apart:   a + b, then a - b        Halve: halved
+//   RotateBlock > 0: the last quarter of each block of that size is first multiplied by -j (Inverse: +j)
+//
+// Stream in: bursts of Size complex words. Stream out: the same, sums of a block before its differences.
+// Latency: Delay + 2 cycles. The delay line moves with en alone, so a burst leaves without one behind it.
+// Bit-accurate model: models/tactile_depth/poisson/transform/sdf_butterfly.py.
+
+`default_nettype none
+
+module sdf_butterfly #(
+  parameter int Width       = 27,
+  parameter int Size        = 128,
+  parameter int Delay       = 64,
+  parameter int RotateBlock = 0,
+  parameter int Inverse     = 0,
+  parameter int Halve       = 0
+) (
+  input  wire                     clk,
+  input  wire                     rst,
+  input  wire                     en,
+  input  wire                     in_start,
+  input  wire                     in_frame_start,  // with in_start: the first burst of a frame
+  input  wire  signed [Width-1:0] in_re,           // F fraction bits, as in_im, out_re and out_im
+  input  wire  signed [Width-1:0] in_im,
+  output logic                    out_start,
+  output logic                    out_frame_start,
+  output logic signed [Width-1:0] out_re,
+  output logic signed [Width-1:0] out_im,
+  output logic [1:0]              saturations      // values clipped in this cycle
+);
+
+  localparam int PositionWidth = $clog2(Size);
+  localparam int DelayBit = $clog2(Delay);
+
+  logic [PositionWidth-1:0] position;
+  logic active;
+  td_burst_counter #(.Size(Size)) u_counter (
+    .clk, .rst, .en, .start(in_start), .position, .active
+  );
+
+  logic second;  // b is present, a leaves the delay line
+  assign second = active & position[DelayBit];
+
+  // b, or its complement where the rotation makes it negative: that lacks 1.
+  logic [Width-1:0] b_re, b_im;
+  logic minus_re, minus_im;
+  if (RotateBlock > 0) begin : g_rotate
+    localparam int QuarterBit = $clog2(RotateBlock) - 2;
+    logic rotate, rotate_q;  // rotate_q: the word after this one, unless it begins a burst
+    logic [PositionWidth-1:0] next;
+    logic unused_next;
+    assign next = position + PositionWidth'(1);
+    assign unused_next = ^next;
+    assign rotate = rotate_q & ~in_start;
+    always_ff @(posedge clk) if (en && active) rotate_q <= &next[QuarterBit+:2];
+    assign minus_re = rotate & (Inverse != 0);
+    assign minus_im = rotate & (Inverse == 0);
+    assign b_re = $unsigned(rotate ? in_im : in_re) ^ {Width{minus_re}};
+    assign b_im = $unsigned(rotate ? in_re : in_im) ^ {Width{minus_im}};
+  end else begin : g_straight
+    assign minus_re = 1'b0;
+    assign minus_im = 1'b0;
+    assign b_re = in_re;
+    assign b_im = in_im;
+  end
+
+  // Sum and difference are exact in the line; they are rounded on their way out, one a cycle.
+  logic signed [Width:0] a_re, a_im, sum_re, sum_im, difference_re, difference_im;
+  logic [3:0] unused_carry;
+  assign {sum_re, unused_carry[0]} = {a_re, 1'b1} + {b_re[Width-1], b_re, minus_re};
+  assign {sum_im, unused_carry[1]} = {a_im, 1'b1} + {b_im[Width-1], b_im, minus_im};
+  assign {difference_re, unused_carry[2]} = {a_re, 1'b1} + {~b_re[Width-1], ~b_re, ~minus_re};
+  assign {difference_im, unused_carry[3]} = {a_im, 1'b1} + {~b_im[Width-1], ~b_im, ~minus_im};
+  td_delay_line #(
+    .Width(2 * (Width + 1)),
+    .Delay(Delay)
+  ) u_delay (
+    .clk, .rst, .en,
+    .in(second ? {difference_re, difference_im} : {(Width + 1)'(in_re), (Width + 1)'(in_im)}), .out({a_re, a_im})
+  );
+
+  logic leaves_first, leaves_first_q, frame_start_q, frame_start_q2;  // the first sum of a burst
+  assign leaves_first = active & (position == PositionWidth'(Delay));
+  logic signed [Width:0] leaving_re, leaving_im;
+  always_ff @(posedge clk) begin
+    if (en) begin
+      if (in_start) frame_start_q <= in_frame_start;
+      leaves_first_q <= leaves_first;
+      frame_start_q2 <= leaves_first & frame_start_q;
+      leaving_re <= second ? sum_re : a_re;
+      leaving_im <= second ? sum_im : a_im;
+    end
+    if (rst) begin
+      leaves_first_q <= 1'b0;
+      frame_start_q2 <= 1'b0;
+    end
+  end
+
+  logic leaving;
+  logic [PositionWidth-1:0] unused_position;
+  td_burst_counter #(.Size(Size)) u_leaving (
+    .clk, .rst, .en, .start(leaves_first_q), .position(unused_position), .active(leaving)
+  );
+  logic signed [Width-1:0] rounded_re, rounded_im;
+  logic [1:0] clipped, clipped_q;
+  td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round_re (
+    .in(leaving_re), .out(rounded_re), .clipped(clipped[0])
+  );
+  td_round_saturate #(.InWidth(Width + 1), .Drop(Halve), .OutWidth(Width)) u_round_im (
+    .in(leaving_im), .out(rounded_im), .clipped(clipped[1])
+  );
+  always_ff @(posedge clk) begin
+    if (en) begin
+      out_start <= leaves_first_q;
+      out_frame_start <= frame_start_q2;
+      out_re <= rounded_re;
+      out_im <= rounded_im;
+    end
+    clipped_q <= clipped & {2{en & leaving}};
+    if (rst) begin
+      out_start <= 1'b0;
+      out_frame_start <= 1'b0;
+      clipped_q <= '0;
+    end
+  end
+  assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Size != (1 << $clog2(Size))) begin : g_refused_0
+    Size_must_be_a_power_of_two u_refused ();
+  end
+  if (Delay < 1 || 2 * Delay > Size || Delay != (1 << $clog2(Delay))) begin : g_refused_1
+    Delay_must_be_a_power_of_two_1_to_Size_2 u_refused ();
+  end
+  if (RotateBlock != 0 && (RotateBlock < 4 || RotateBlock > Size || RotateBlock != (1 << $clog2(RotateBlock))))
+  begin : g_refused_2
+    RotateBlock_must_be_0_or_a_power_of_two_4_to_Size u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_types_pkg: what travels beside the data between the units, and the bus of the tables.
+//
+// Members are unsigned and of fixed width: Icarus 11 takes no others.
+
+`default_nettype none
+
+package td_types_pkg;
+
+  // The position of a pixel, or of its slopes, in the frame.
+  typedef struct packed {
+    logic last_column;
+    logic last_row;
+    logic first_column;
+    logic first_row;
+  } position_t;
+
+  // Faults of a frame on s_axis, each for one cycle: hdl/video/frame_guard.sv.
+  typedef struct packed {
+    logic timed_out;
+    logic start_early;
+    logic start_missing;
+    logic row_long;
+    logic row_short;
+  } faults_t;
+
+  // Settings of hdl/camera/camera_front_end.sv, for the next picture: its size, the first pixel of the window, and what
+  // channel_gain does to samples; a gain has 12 fraction bits.
+  typedef struct packed {
+    logic [12:0] columns;
+    logic [12:0] rows;
+    logic [12:0] window_x;
+    logic [12:0] window_y;
+    logic [11:0] black_level;
+    logic [15:0] red_gain;
+    logic [15:0] green_gain;
+    logic [15:0] blue_gain;
+  } camera_settings_t;
+
+  // Faults of a camera's picture, each for one cycle: hdl/camera/camera_window.sv.
+  typedef struct packed {
+    logic window_outside;
+    logic start_early;
+    logic start_missing;
+    logic row_long;
+    logic row_short;
+  } camera_faults_t;
+
+  // The position of a depth value in its frame, in the order in which depth leaves.
+  typedef struct packed {
+    logic frame_start;
+    logic row_end;
+    logic frame_end;
+  } depth_position_t;
+
+  // What the units report to the register file; each bit for one cycle.
+  typedef struct packed {
+    faults_t     faults;
+    logic        out_of_step;    // depth was not where it was due
+    logic        frame_in;       // a whole, good frame came in
+    logic        frame_out;      // a frame has left
+    logic        dark;           // a pixel was held from its neighbour
+    logic        depth_dropped;  // a depth frame was given up
+    logic        record_lost;
+    logic        record_valid;   // the record of contact is new
+    logic [12:0] saturations;    // values clipped: up to 8 bits of them for each of 32 lanes
+  } events_t;
+
+  // What STATUS shows as it is.
+  typedef struct packed {
+    logic busy;      // a frame is in flight
+    logic contact;
+    logic touching;
+  } levels_t;
+
+  // From the register file to every table. A table obeys `write` and `read` if `select` names it. Beside this bus,
+  // table_bank and table_in_use have a bit for each table, by its number in TABLE_SELECT.
+  typedef struct packed {
+    logic        write;   // the entry `index` becomes {high, low}
+    logic        read;
+    logic [1:0]  select;  // TABLE_SELECT
+    logic [23:0] index;
+    logic [31:0] high;
+    logic [31:0] low;
+  } table_command_t;
+
+  // The entry that was read. A table that `select` does not name answers zero; the answers are combined by OR.
+  typedef struct packed {
+    logic [31:0] high;
+    logic [31:0] low;
+  } table_answer_t;
+
+  // A capture: of the reference frame, or of the zero offset.
+  typedef struct packed {
+    logic       request;
+    logic [3:0] log2_frames;
+  } capture_command_t;
+
+  typedef struct packed {
+    logic busy;
+    logic done;
+  } capture_status_t;
+
+  // What the registers say of contact. Thresholds are signed depth codes.
+  typedef struct packed {
+    logic [31:0] threshold;
+    logic [31:0] off_threshold;
+    logic [31:0] minimum_area;
+    logic [7:0]  debounce;
+    logic        hold_contact;
+    logic        drop_frames;
+  } contact_settings_t;
+
+  // Words 4 to 11 of a contact record: of all depths above the threshold in a frame. All zero if there are none.
+  // Rows are counted from the top of the picture. volume and peak are signed.
+  typedef struct packed {
+    logic [63:0] volume;  // sum of the depths
+    logic [31:0] row_sum;
+    logic [31:0] column_sum;
+    logic [15:0] greatest_row;
+    logic [15:0] greatest_column;
+    logic [15:0] least_row;
+    logic [15:0] least_column;
+    logic [15:0] peak_row;  // of equal peaks the first in stream order
+    logic [15:0] peak_column;
+    logic [31:0] peak;
+  } contact_sums_t;
+
+endpackage
+
+`default_nettype wire

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// frame_guard: whatever arrives, only whole frames of Rows x Columns pixels leave.
+//
+//   fault                                        what happens to the frame
+//   row_short      tlast before the last column  marked, filled up
+//   row_long       no tlast in the last column   marked, filled up
+//   start_early    tuser inside a frame          marked, filled up; the early start waits, then begins the next frame
+//   timed_out      silence of `timeout` cycles   marked, filled up                           (timeout 0: wait for ever)
+//   start_missing  no tuser where a frame begins dropped up to the next tuser
+//
+// A fault is high for one cycle, once for each broken frame. What is left of a broken frame on the input is dropped;
+// the filler repeats the last pixel. Stream in: AXI4-Stream Video, ready/valid. Stream out: pixels in raster order;
+// with the last of a frame out_frame_end, and out_bad if it is marked. Latency: 1 cycle; en low: nothing moves.
+// Bit-accurate model: models/tactile_depth/video/frame_guard.py.
+
+`default_nettype none
+
+module frame_guard
+  import td_types_pkg::*;
+#(
+  parameter int Rows    = 128,
+  parameter int Columns = 128
+) (
+  input  wire         clk,
+  input  wire         rst,
+  input  wire         en,
+  input  wire  [31:0] timeout,   // cycles
+  input  wire         s_valid,
+  output logic        s_ready,
+  input  wire  [23:0] s_data,    // three codes of 8 bits
+  input  wire         s_last,
+  input  wire         s_user,
+  output logic        out_valid,
+  output logic [23:0] out_data,  // as s_data
+  output position_t   out_position,
+  output logic        out_frame_start,
+  output logic        out_frame_end,
+  output logic        out_bad,   // with out_frame_end: the frame was malformed
+  output faults_t     faults     // each for one cycle
+);
+
+  localparam int ColumnWidth = $clog2(Columns);
+  localparam int RowWidth = $clog2(Rows);
+
+  logic [ColumnWidth-1:0] column;
+  logic [RowWidth-1:0] row;
+  logic [31:0] silence;
+  logic filling;  // completing a broken frame
+  logic hunting;  // dropping up to the next start of frame
+
+  logic origin, last_column, frame_end, take, emit;
+  logic row_short, row_long, start_missing, start_early, timed_out, fault_in_frame;
+  assign origin = (column == '0) & (row == '0);
+  assign last_column = column == ColumnWidth'(Columns - 1);
+  assign frame_end = last_column & (row == RowWidth'(Rows - 1));
+
+  // A start of frame is taken only where a frame begins; all else is taken at once, as a pixel or to be dropped.
+  logic accept;
+  assign accept = origin & ~filling ? 1'b1 : ~s_user;
+  assign s_ready = en & accept;
+  assign take = s_valid & accept & ~filling & (~origin | s_user);  // this word is a pixel
+
+  assign row_short = en & take & s_last & ~last_column;
+  assign row_long = en & take & ~s_last & last_column;
+  assign start_missing = en & s_valid & origin & ~filling & ~s_user & ~hunting;
+  assign start_early = en & s_valid & ~origin & ~filling & s_user;
+  assign timed_out = en & ~s_valid & ~origin & ~filling & (timeout != '0) & (silence >= timeout);
+  assign fault_in_frame = row_short | row_long | start_early | timed_out;
+  assign faults = {timed_out, start_early, start_missing, row_long, row_short};
+  assign emit = take | filling;
+
+  always_ff @(posedge clk) begin
+    if (en) begin
+      out_valid <= emit;
+      if (take) out_data <= s_data;
+      out_position <= {last_column, row == RowWidth'(Rows - 1), column == '0, row == '0};
+      out_frame_start <= take & origin;
+      out_frame_end <= emit & frame_end;
+      out_bad <= filling | row_long;  // at the end of a frame nothing else can be wrong
+      if (emit) begin
+        column <= last_column ? '0 : column + ColumnWidth'(1);
+        if (last_column) row <= frame_end ? '0 : row + RowWidth'(1);
+      end
+      silence <= (s_valid | origin | filling) ? '0 : silence + 32'd1;
+      filling <= (filling | fault_in_frame) & ~(emit & frame_end);
+      if (emit & frame_end) hunting <= filling | row_long;
+      else if (start_missing) hunting <= 1'b1;
+      else if (take) hunting <= 1'b0;
+    end
+    if (rst) begin
+      out_valid <= 1'b0;
+      out_frame_start <= 1'b0;
+      out_frame_end <= 1'b0;
+      column <= '0;
+      row <= '0;
+      silence <= '0;
+      filling <= 1'b0;
+      hunting <= 1'b0;
+    end
+  end
+
+  // A module that does not exist stops every tool where a parameter is refused.
+  if (Rows < 2 || Columns < 2) begin : g_refused
+    Rows_and_Columns_must_be_at_least_2 u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire

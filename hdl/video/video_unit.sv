@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// video_unit: the pixels of whole frames from an AXI4-Stream Video input, with their position and the time of the
+// frame.
+//
+//   s_axis -> td_axis_skid -> frame_guard -> pixel
+//
+// Stream in: 24-bit pixels, raster order, ready/valid. Stream out: Rows x Columns pixels a frame, under `en`; with the
+// first of a frame pixel_frame_start, with the last pixel_frame_end, and pixel_bad if the frame was malformed.
+// Latency: 2 cycles. A gap in, a gap out. Model: models/tactile_depth/video/frame_guard.py.
+
+`default_nettype none
+
+module video_unit
+  import td_config_pkg::*;
+  import td_types_pkg::*;
+#(
+  parameter int Rows    = DefaultRows,
+  parameter int Columns = DefaultSize
+) (
+  input  wire         clk,
+  input  wire         rst,
+  input  wire         en,
+
+  input  wire  [23:0] s_axis_tdata,
+  input  wire         s_axis_tvalid,
+  output logic        s_axis_tready,
+  input  wire         s_axis_tlast,
+  input  wire         s_axis_tuser,
+
+  input  wire  [31:0] timeout,  // of a source that falls silent inside a frame, in clocks; 0: none
+  output faults_t     faults,
+  output logic        busy,     // a pixel waits, or a frame has begun and not ended
+
+  output logic        pixel_valid,
+  output logic [23:0] pixel_data,  // R in 23:16, B in 15:8, G in 7:0
+  output position_t   pixel_position,
+  output logic        pixel_frame_start,
+  output logic        pixel_frame_end,
+  output logic        pixel_bad,
+
+  output logic [31:0] now,        // clocks since reset
+  output logic [31:0] frame_time  // `now` when the first pixel of this frame was taken
+);
+
+  logic held_valid, held_ready, held_last, held_user;
+  logic [23:0] held_data;
+  td_axis_skid #(.Width(26)) u_skid (
+    .clk, .rst,
+    .s_valid(s_axis_tvalid), .s_ready(s_axis_tready), .s_data({s_axis_tuser, s_axis_tlast, s_axis_tdata}),
+    .m_valid(held_valid), .m_ready(held_ready), .m_data({held_user, held_last, held_data})
+  );
+
+  frame_guard #(.Rows(Rows), .Columns(Columns)) u_guard (
+    .clk, .rst, .en, .timeout,
+    .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last), .s_user(held_user),
+    .out_valid(pixel_valid), .out_data(pixel_data), .out_position(pixel_position),
+    .out_frame_start(pixel_frame_start), .out_frame_end(pixel_frame_end), .out_bad(pixel_bad), .faults
+  );
+
+  logic taking;  // a frame has begun and not ended
+  logic [31:0] arrival_time;
+  assign busy = held_valid | pixel_frame_start | taking;
+  always_ff @(posedge clk) begin
+    now <= now + 32'd1;
+    if (s_axis_tvalid && s_axis_tready && s_axis_tuser) arrival_time <= now;
+    if (en && pixel_frame_start) frame_time <= arrival_time;
+    if (en) taking <= (pixel_frame_start | taking) & ~pixel_frame_end;
+    if (rst) begin
+      now <= '0;
+      taking <= 1'b0;
+    end
+  end
+
+endmodule
+
+`default_nettype wire

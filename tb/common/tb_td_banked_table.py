@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_banked_table against its model, every cycle: frames of any length, both ports of the free bank, pauses, resets."""
+
+import random
+from pathlib import Path
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.common.td_banked_table import BankedTable
+from tb.stream import CLOCK_NS, parameters
+
+CLOCKS = 6000
+
+
+class Bench:
+    """Random stimuli that the header of the core allows, one cycle at a time."""
+
+    banks: Any = None  # contents; they survive a reset, so the next test begins with them
+
+    def __init__(self, dut: Any, pause: float) -> None:
+        self.dut, self.pause = dut, pause
+        self.width, self.depth = parameters(dut, "Width", "Depth")
+        self.chance = random.Random(cocotb.RANDOM_SEED)
+        self.named = 0  # bank of the next frame
+        self.begun: int | None = None  # clocks with en since frame_start, until the change
+        self.word: int | None = None  # entry that is read
+        self.free_word: int | None = None
+        self.changes = 0
+
+    async def start(self) -> None:
+        """Start and reset. On Verilator pins are random at first, and may write a word (test_power_up)."""
+        pins = ("en", "frame_start", "change", "read", "free_write", "free_read", "table_bank")
+        for pin in pins:
+            getattr(self.dut, pin).value = 0
+        self.dut.rst.value = 1
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await RisingEdge(self.dut.clk)
+        if Bench.banks is None:
+            Bench.banks = BankedTable.of(np.array([int(line, 16) for line in Path("table.hex").read_text().split()]))
+            if cocotb.SIM_NAME == "Verilator":
+                await self.rewrite()
+        self.banks.wanted = 0
+        self.banks.begin_frame()
+        self.dut.table_bank.value = 0
+        await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+
+    async def rewrite(self) -> None:
+        """Write the words of both banks anew; in reset table_bank counts at once."""
+        for bank in range(2):
+            self.dut.table_bank.value = bank
+            await RisingEdge(self.dut.clk)
+            self.dut.free_write.value = 1
+            for address, word in enumerate(self.banks.words[1 - bank]):
+                self.dut.free_write_address.value = address
+                self.dut.free_write_word.value = int(word)
+                await RisingEdge(self.dut.clk)
+            self.dut.free_write.value = 0
+
+    async def clock(self, reset: bool = False) -> None:
+        chance, dut, banks = self.chance, self.dut, self.banks
+        en = chance.random() >= self.pause
+        if banks.wanted == banks.in_use and chance.random() < 0.1:  # also while a frame that has begun is on its way
+            banks.wanted ^= 1
+        settled = banks.wanted == banks.in_use and not reset
+        start = chance.random() < (0.2 if self.begun is None else 0.1)
+        change = self.begun is not None and (self.begun >= 2 or chance.random() < 0.5)
+        address, free_address, write_address = (chance.randrange(self.depth) for _ in range(3))
+        write = settled and chance.random() < 0.5
+        read = not reset and chance.random() < 0.5 and not (write and write_address == free_address)
+        written = chance.getrandbits(self.width)
+        for pin, value in {
+            **{"rst": reset, "en": en, "table_bank": banks.wanted, "frame_start": start, "change": change},
+            **{"read": chance.random() < 0.8 or change, "read_address": address},
+            **{"free_write": write, "free_write_address": write_address, "free_write_word": written},
+            **{"free_read": read, "free_read_address": free_address},
+        }.items():
+            getattr(dut, pin).value = int(value)
+        await RisingEdge(dut.clk)
+        self.check()
+        self.free_word = None
+        if reset:
+            banks.begin_frame()
+            self.named, self.begun, self.word = banks.in_use, None, None
+            return
+        if en:
+            if change:
+                self.changes += self.named != banks.in_use
+                banks.in_use, self.begun = self.named, None
+            elif self.begun is not None:
+                self.begun += 1
+            if start:
+                self.named, self.begun = banks.wanted, 0
+            self.word = int(banks.words[banks.in_use][address]) if int(dut.read.value) else None
+        if read:  # in the cycle of a change: of the previous bank
+            self.free_word = int(banks.free[free_address])
+        if write:
+            banks.write(write_address, written)
+
+    def check(self) -> None:
+        dut = self.dut
+        assert int(dut.table_in_use.value) == self.banks.in_use, "table_in_use"
+        if self.word is not None:
+            assert int(dut.read_word.value) == self.word, "read_word"
+        if self.free_word is not None:
+            assert int(dut.free_word.value) == self.free_word, "free_word"
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.5])
+async def frames_and_bus(dut: Any, pause: float) -> None:
+    """Read in frames while both ports of the free bank are in use; reset from time to time."""
+    bench = Bench(dut, pause)
+    await bench.start()
+    for _ in range(CLOCKS):
+        await bench.clock(bench.chance.random() < 0.005)
+    assert bench.changes > CLOCKS // 100, f"the test is void: {bench.changes} change-overs"

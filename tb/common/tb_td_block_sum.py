@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_block_sum against its model, with a memory: every write in its cycle, sums over frames, gaps, resets."""
+
+import itertools
+import random
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.common.td_block_sum import CYCLES_TO_SUM, block_sum
+from tb.stream import CLOCK_NS, MANY, parameters
+
+NAMES = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
+
+
+class Device:
+    """Core, a memory that refuses accesses with an undefined result in td_ram.sv, and the expected writes."""
+
+    def __init__(self, dut: Any, gap: float = 0.0) -> None:
+        self.dut, self.gap = dut, gap
+        self.rows, self.columns, self.log2, self.column_log2, *more = parameters(dut, *NAMES)
+        self.channels, self.width, self.signed, self.sum_width = more
+        self.blocks = (self.rows >> self.log2, self.columns >> self.column_log2)
+        self.chance = random.Random(cocotb.RANDOM_SEED)
+        self.generator = np.random.default_rng(cocotb.RANDOM_SEED)
+        self.memory: dict[int, int] = {}
+        self.due: dict[int, tuple[int, int, bool]] = {}  # block, word, complete, by cycle
+        self.sums = np.zeros((*self.blocks, self.channels), np.int64)
+        self.clock = 0
+        self.writes = 0
+
+    async def start(self) -> None:
+        self.drive(False, 0)
+        self.dut.rst.value = 1
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await RisingEdge(self.dut.clk)
+        await RisingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+
+    def drive(self, valid: bool, data: int, start: int = 0, first: int = 0, last: int = 0) -> None:
+        self.dut.in_valid.value, self.dut.in_data.value = int(valid), data
+        self.dut.in_frame_start.value, self.dut.in_first_frame.value, self.dut.in_last_frame.value = start, first, last
+
+    def packed(self, words: Any, width: int) -> int:
+        return sum((int(word) & (1 << width) - 1) << width * channel for channel, word in enumerate(words))
+
+    async def edge(self) -> None:
+        """Run one cycle of the memory and of the checks."""
+        dut = self.dut
+        await RisingEdge(dut.clk)
+        self.clock += 1
+        expected = self.due.pop(self.clock, None)
+        assert bool(dut.write_en.value) == (expected is not None), f"write_en in clock {self.clock}"
+        assert bool(dut.write_complete.value) == (expected is not None and expected[2]), "write_complete"
+        read = bool(dut.read_en.value)
+        if read:
+            address = int(dut.read_block.value)
+            assert address in self.memory, f"block {address} is read before it was written"
+        if expected is not None:
+            self.writes += 1
+            block, word, _ = expected
+            assert (int(dut.write_block.value), int(dut.write_sums.value)) == (block, word), f"in clock {self.clock}"
+            assert not read or address != block, f"block {block} is read while it is written"
+            self.memory[block] = word
+        dut.read_sums.value = self.memory[address] if read else self.chance.getrandbits(self.channels * self.sum_width)
+
+    async def idle(self, clocks: int = 1) -> None:
+        for _ in range(clocks):
+            coin = self.chance.getrandbits
+            self.drive(False, coin(self.channels * self.width), coin(1), coin(1), coin(1))
+            await self.edge()
+
+    def frame_words(self) -> np.ndarray:
+        """Return random words, or words at the limits."""
+        low, high = (-(1 << self.width - 1), (1 << self.width - 1) - 1) if self.signed else (0, (1 << self.width) - 1)
+        shape = (self.rows, self.columns, self.channels)
+        match self.chance.randrange(4):
+            case 0:
+                return np.full(shape, self.chance.choice((low, high)))
+            case 1:
+                return self.generator.choice([low, high], shape)
+        return self.generator.integers(low, high, shape, endpoint=True)
+
+    async def frame(self, first: bool, last: bool, count: int | None = None) -> None:
+        """Send a frame, or its first words; sums add up."""
+        words = self.frame_words()
+        totals = block_sum(words[None, ...], self.log2, self.column_log2)[0]
+        before = np.zeros_like(self.sums) if first else self.sums
+        rows, columns = self.blocks
+        size, wide = 1 << self.log2, 1 << self.column_log2
+        for place, word in enumerate(words.reshape(-1, self.channels)[:count]):
+            while self.chance.random() < self.gap:
+                await self.idle()
+            marks = (int(first), int(last)) if place == 0 else (self.chance.getrandbits(1), self.chance.getrandbits(1))
+            self.drive(True, self.packed(word, self.width), int(place == 0), *marks)
+            await self.edge()
+            row, column = divmod(place, self.columns)
+            if column % wide == wide - 1 and row < rows * size:
+                so_far = words[row // size * size : row + 1, column - wide + 1 : column + 1].sum(axis=(0, 1))
+                at = row // size, column // wide
+                total = self.packed(before[at] + so_far, self.sum_width)
+                complete = last and row % size == size - 1
+                self.due[self.clock + CYCLES_TO_SUM] = at[0] * columns + at[1], total, complete
+        self.sums = before + totals
+
+    async def reset(self) -> None:
+        self.drive(False, 0)
+        self.dut.rst.value = 1
+        await self.edge()
+        self.dut.rst.value = 0
+        self.due.clear()
+
+
+@cocotb.test()
+@cocotb.parametrize(gap=[0.0, 0.3])
+async def sums(dut: Any, gap: float) -> None:
+    """Capture one frame and several, one capture after another, and send frames after the last one."""
+    device = Device(dut, gap)
+    await device.start()
+    for frames in (1, 1, 2, 5) * MANY:
+        for index in range(frames):
+            await device.frame(index == 0, index == frames - 1)
+        for _ in range(device.chance.randrange(2)):
+            await device.frame(False, False)
+        await device.idle(device.chance.choice([0, CYCLES_TO_SUM + 1]))
+    await device.idle(CYCLES_TO_SUM + 1)
+    assert not device.due
+    assert device.writes > 9 * MANY * np.prod(device.blocks)
+
+
+@cocotb.test()
+async def resets(dut: Any) -> None:
+    """Reset in any cycle of a frame and after it: nothing of the frame is written."""
+    device = Device(dut)
+    await device.start()
+    await device.frame(True, True)
+    size = device.rows * device.columns
+    counts = range(1, size + 1) if size <= 64 else [*range(1, 8), *range(size - 7, size + 1)]
+    for count, wait in itertools.product(counts, range(CYCLES_TO_SUM + 1)):
+        await device.frame(True, True, count)
+        await device.idle(wait)
+        await device.reset()
+        await device.idle(device.chance.choice([0, CYCLES_TO_SUM + 1]))
+        if count % 4 == 0:
+            await device.frame(True, False)
+    await device.idle(CYCLES_TO_SUM + 1)
+    assert not device.due

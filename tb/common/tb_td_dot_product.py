@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_dot_product against tactile_depth.common.td_dot_product: every combination of extremes, random words, pauses."""
+
+import itertools
+import random
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_dot_product import dot_product
+from tactile_depth.latency import DOT_PRODUCT
+from tb.stream import drive, parameters
+
+FACTORS = ("a0", "b0", "a1", "b1")
+
+
+@cocotb.test()
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def products(dut: Any, pause: float) -> None:
+    widths = parameters(dut, "AWidth", "BWidth") * 2
+    chance = random.Random(cocotb.RANDOM_SEED)
+    limits = [(-(1 << (width - 1)), 0, (1 << (width - 1)) - 1) for width in widths]
+    operands = [*itertools.product(*limits)]
+    operands += [tuple(chance.randint(low, high) for low, _, high in limits) for _ in range(300)]
+    operands += [(0, 0, 0, 0)] * DOT_PRODUCT
+    pins = await drive(dut, [dict(zip(FACTORS, words, strict=True)) for words in operands], ["sum"], pause)
+    factors = [np.array([word.to_signed() for word in pins[pin]]) for pin in FACTORS]
+    got = [word.to_signed() for word in pins["sum"][DOT_PRODUCT:]]
+    np.testing.assert_array_equal(got, dot_product(*factors)[:-DOT_PRODUCT])

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_node_map against its model: random and extreme words, rewritten and changed over while frames stream."""
+
+import random
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_node_map import latency, side
+from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_offset import interpolated_zero
+from tb.depth_frames import packed
+from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends, watch_active
+from tb.stream import Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
+
+BEATS = 1024  # that a test sends, at least
+
+
+class Nodes(Gains):
+    """Node memory: one channel, one entry per node."""
+
+    name = "zero"
+    capture_pin = "capture_zeros"
+    per_node = 1
+
+    def __init__(self, dut: Any, config: Configuration, lanes: int) -> None:
+        self.side = side(lanes, config.reference_block_log2)
+        super().__init__(dut, config)
+
+    def at_power_up(self) -> Any:
+        return first_gains(*self.config.reference_nodes, 1, self.width)
+
+    def random(self, chance: random.Random) -> Any:
+        return random_gains(self.config, chance, 1, self.width)
+
+    def entries(self, words: Any) -> dict[Any, Any]:
+        return dict(enumerate(words.reshape(-1).tolist()))
+
+
+class Map:
+    """Device, and the words that each frame should get."""
+
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+        self.dut, self.gap = dut, gap
+        self.config = Grid.of(dut)
+        self.lanes, data_width = parameters(dut, "Lanes", "DataWidth")
+        self.latency = latency(self.lanes, self.config.reference_block_log2)
+        self.row = self.config.columns // self.lanes
+        self.beats = [(word,) for word in places(self.config.rows * self.row, data_width).tolist()]
+        self.frames = max(2, BEATS // len(self.beats))
+        self.bench = Bench(dut, pause)
+        self.gains = Nodes(dut, self.config, self.lanes)
+        self.driver = StreamDriver(dut, "in", "valid", ["data"])
+        self.source = StreamMonitor(dut, "in", "valid", ["data"])
+        self.sink = StreamMonitor(dut, "out", "valid", ["zeros", "data"], unsigned=["zeros"])
+        self.expected: list[Any] = []
+
+    async def start(self, written: bool = True) -> None:
+        await self.bench.start()
+        cocotb.start_soon(watch_active(self.dut, self.latency))
+        await self.gains.settle(written)
+
+    def expect(self, nodes: Any) -> None:
+        """Expect a frame with the words of these nodes."""
+        self.expected.append(interpolated_zero(nodes[..., 0], self.config))
+
+    async def send(self, frames: int = 1) -> None:
+        """Send frames back to back, each with the bank at its beginning."""
+        for _ in range(frames):
+            while self.bench.random.random() < self.gap:
+                await self.bench.clocks(1)
+            self.expect(self.gains.begin_frame())
+            await self.beats_of_frame(0, 1)
+            await self.beats_of_frame(1, None, self.gap)
+
+    async def beats_of_frame(self, begin: int, end: int | None, gap: float = 0.0) -> None:
+        await send_apart(self.bench, self.driver, self.beats[begin:end], gap, 0 if begin else len(self.beats))
+
+    async def check(self) -> None:
+        await self.bench.clocks(self.latency + 2)
+        sent = [beat for _ in self.expected for beat in self.beats]
+        assert self.source.words == sent, "the driver sent other words than the test gave it"
+        words = packed(np.concatenate([words.reshape(-1, self.lanes) for words in self.expected]), self.gains.width)
+        want = [(word, beat) for word, (beat,) in zip(words, sent, strict=True)]
+        rows, columns = self.expected[0].shape[:2]
+        check_words(np.array(self.sink.words), np.array(want), columns // self.lanes, rows)  # columns are beats
+        assert self.sink.starts == [clock + self.latency for clock in self.source.starts]
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def at_power_up(dut: Any) -> None:
+    """Read both banks at power-up: they hold the words of the files."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start(written=False)
+    await device.send()
+    device.gains.change()
+    await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
+async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
+    """Rewrite nodes while frames stream: the frame before a change-over has the old words, the frame after it the
+    new."""
+    device = Map(dut, gap, pause)
+    await device.start()
+    await device.gains.write(device.gains.random(device.bench.random))
+    device.gains.due = True
+    going_on = [True]
+    rewriter = cocotb.start_soon(device.gains.rewrite(device.bench.random, lambda: going_on[0]))
+    await device.send(device.frames)
+    going_on[0] = False
+    await rewriter
+    await device.check()
+    assert len({words.tobytes() for words in device.expected}) > 1, "the test is void: no change-over was seen"
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def read_as_a_pause_ends(dut: Any) -> None:
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    await reads_as_a_pause_ends(device)
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.3])
+async def named_inside_a_frame(dut: Any, pause: float) -> None:
+    """Select the other bank at any beat of a frame: the next frame uses it."""
+    device = Map(dut, 0.0, pause)
+    await device.start()
+    for count in range(4, len(device.beats), max(device.row + 1, len(device.beats) // 8)):
+        await device.gains.write(device.gains.random(device.bench.random))
+        device.expect(device.gains.begin_frame())
+        await device.beats_of_frame(0, count)
+        device.gains.change()
+        await device.beats_of_frame(count, None)
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def captured(dut: Any) -> None:
+    """Capture all nodes, several at once, into both banks; the bus reads the same values."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    for _ in range(2):
+        await device.gains.capture(device.gains.random(device.bench.random))
+        for index in range(device.gains.banks[0].size):
+            await device.gains.read(index)
+        device.gains.due = True
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """Reset inside a frame: words and banks stay, a due change-over takes place, and the next frame is right."""
+    device = Map(dut, 0.0, 0.0)
+    await device.start()
+    for count in (1, 2, 3, 4, 6, device.row, 2 * device.row + 3, 5 * device.row // 2):
+        await device.gains.write(device.gains.random(device.bench.random))
+        await device.beats_of_frame(0, count)
+        if count % 2:
+            device.gains.change()
+        await device.bench.reset(en=count % 4 > 1)
+        device.expected.clear()
+        device.source.forget()
+        device.sink.forget()
+        await device.send()
+        await device.check()

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_ram against its model: every word read, with reads and writes of different addresses in the same cycle."""
+
+import os
+import random
+from pathlib import Path
+from typing import Any
+
+import cocotb
+
+from tactile_depth.common.td_ram import ram
+from tb.stream import drive, parameters
+
+
+@cocotb.test()
+async def reads_and_writes(dut: Any) -> None:
+    width, depth = parameters(dut, "Width", "Depth")
+    chance = random.Random(cocotb.RANDOM_SEED)
+    file = os.environ.get("FILE")
+    before = [int(line, 16) for line in Path(file).read_text().split()] if file else [None] * depth
+
+    def clock(read_address: Any = None, write_address: Any = None) -> Any:
+        return {
+            "write_en": write_address is not None,
+            "write_address": write_address or 0,
+            "write_data": chance.getrandbits(width),
+            "read_en": read_address is not None,
+            "read_address": read_address or 0,
+        }
+
+    every = [clock(read_address=place) for place in range(depth)] if file else []
+    every += [clock(write_address=place) for place in chance.sample(range(depth), depth)]
+    mixed = max(2_000, depth)
+    for _ in range(mixed):
+        read, write = (place if chance.random() < 0.5 else None for place in chance.sample(range(depth), 2))
+        every.append(clock(read, write))
+    every += [clock(read_address=place) for place in range(depth)]
+    outputs = await drive(dut, [*every, clock()], ["read_data"])
+
+    pins = ("write_en", "write_address", "write_data", "read_en", "read_address")
+    _, expected = ram(before, list(zip(*(map(int, outputs[pin]) for pin in pins), strict=True))[:-1])  # type: ignore[arg-type]
+    compared = [(int(outputs["read_data"][n + 1]), word) for n, word in enumerate(expected) if word is not None]
+    assert len(compared) > mixed
+    for n, (got, word) in enumerate(compared):
+        assert got == word, f"read {n}: {got:#x}, expected {word:#x}"

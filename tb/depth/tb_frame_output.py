@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_output against tactile_depth.depth.frame_output: words, side-bands and marks in every enabled cycle."""
+
+import os
+import random
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock as ClockOf
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.depth.frame_output import Clock, frame_output
+from tb.stream import CLOCK_NS, depth_position, parameters
+
+
+class Bench:
+    """Driver of one cycle at a time; it keeps the outputs and compares them with the model at the end."""
+
+    def __init__(self, dut: Any, pause: float = 0.0) -> None:
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut, self.pause = dut, pause
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        self.width, self.rows, self.columns = parameters(dut, "Width", "Rows", "Columns")
+
+    async def start(self) -> None:
+        self.dut.en.value = 1
+        await self.reset()
+
+    async def reset(self) -> None:
+        dut = self.dut
+        dut.in_start.value, dut.in_frame_start.value, dut.in_due.value, dut.rst.value = 0, 0, 0, 1
+        await RisingEdge(dut.clk)
+        dut.rst.value = 0
+        self.left = 0  # words of the frame, the current one included
+        self.inputs: list[Any] = []
+        self.beats: list[Any] = []
+        self.clocks: list[Any] = []
+        self.ends: list[Any] = []
+        self.out_of_step: list[Any] = []
+
+    async def clock(
+        self, start: bool = False, frame_start: bool = False, due: bool = False, bad: bool | None = None
+    ) -> None:
+        """Run one cycle. in_bad has its value with in_due only, and is random elsewhere."""
+        dut, coin = self.dut, self.random.random
+        bad = coin() < 0.5 if bad is None else bad
+        word = Clock(start, frame_start, self.random.getrandbits(self.width), due, bad)
+        dut.in_start.value, dut.in_frame_start.value, dut.in_data.value = int(start), int(frame_start), word.data
+        dut.in_due.value, dut.in_bad.value = int(due), int(bad)
+        en = False
+        while not en:
+            en = coin() >= self.pause
+            dut.en.value = int(en)
+            await RisingEdge(dut.clk)
+        now = len(self.inputs)
+        self.inputs.append(word)
+        position = int(dut.out_position.value)
+        self.left = self.rows * self.columns if due else max(self.left - 1, 0)
+        row_end, frame_end = bool(self.left) and self.left % self.columns == 1 % self.columns, self.left == 1
+        assert position == depth_position(due, row_end, frame_end), f"position {position:03b}, {self.left} words left"
+        if dut.out_valid.value:
+            self.beats.append((int(dut.out_data.value), position >> 1 & 1, position >> 2))
+            self.clocks.append(now)
+            assert dut.active.value
+        if position & 1:
+            self.ends.append(now)
+        if dut.out_of_step.value:
+            self.out_of_step.append(now)
+
+    async def frame(self, bad: bool = False, rows: int | None = None, due: bool = True, begins: bool = True) -> None:
+        for row in range(self.rows if rows is None else rows):
+            for column in range(self.columns):
+                first = row == column == 0
+                await self.clock(column == 0, first and begins, first and due, bad if first else None)
+
+    async def idle(self, clocks: int) -> None:
+        for _ in range(clocks):
+            await self.clock()
+
+    def check(self) -> Any:
+        want = frame_output(self.inputs, self.rows, self.columns)
+        assert self.out_of_step == want.out_of_step
+        assert self.beats == want.beats
+        assert self.clocks == want.clocks
+        assert self.ends == want.ends
+        return want
+
+
+async def started(dut: Any, **arguments: Any) -> Any:
+    ClockOf(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+    bench = Bench(dut, **arguments)
+    await bench.start()
+    return bench
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
+async def frames(dut: Any, gap: float, pause: float) -> None:
+    """Send frames: those marked bad do not leave, the others do, and out_of_step stays low."""
+    bench = await started(dut, pause=pause)
+    marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
+    for bad in marks:
+        await bench.idle(bench.random.randint(0, gap))
+        await bench.frame(bool(bad))
+    await bench.idle(2)
+    out = bench.check()
+    assert not out.out_of_step
+    assert len(out.beats) == marks.count(0) * bench.rows * bench.columns
+    assert len(out.ends) == len(marks)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def out_of_step(dut: Any) -> None:
+    """Send a frame that is not due, omit one that is due, send rows too early, too late or without a start."""
+    bench = await started(dut)
+    await bench.frame(due=False)
+    await bench.frame()
+    await bench.frame(begins=False)
+    await bench.frame(rows=1)
+    await bench.idle(bench.rows * bench.columns - bench.columns)
+    await bench.frame()
+    await bench.clock(start=True)
+    await bench.clock(frame_start=True)
+    await bench.clock(due=True, bad=False)
+    await bench.idle(3)
+    await bench.frame()
+    good = bench.check()
+    assert len(good.out_of_step) > 5
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def whatever_comes(dut: Any) -> None:
+    """Drive each input at random: frames that leave have the right form for any bursts."""
+    bench = await started(dut, pause=0.1)
+    chance = bench.random.random
+    for _ in range(2000):
+        await bench.clock(chance() < 0.2, chance() < 0.1, chance() < 0.05)
+    bench.check()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(bad=[False, True])
+async def resets(dut: Any, bad: Any) -> None:
+    """Reset in any row of a frame: nothing of the frame leaves afterwards."""
+    bench = await started(dut)
+    for row in range(1, bench.rows + 1):
+        await bench.frame(bad, rows=row)
+        await bench.reset()
+        await bench.idle(bench.columns + 1)
+        bench.check()
+        assert not bench.beats, f"words left after a reset in row {row}"
+        await bench.frame()
+        bench.check()
+        await bench.reset()

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_tags against its model: every output in every cycle; frames close together and apart, pauses, resets."""
+
+import os
+import random
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.depth.frame_tags import FrameTags
+from tb.stream import CLOCK_NS, parameters
+
+
+class Bench:
+    """Driver of one cycle at a time; it compares the outputs with the model."""
+
+    def __init__(self, dut: Any) -> None:
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut = dut
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        self.width, latency, self.pixels = parameters(dut, "Width", "Latency", "Pixels")
+        self.model = FrameTags(latency)
+
+    async def start(self) -> None:
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        self.dut.rst.value, self.dut.en.value, self.dut.push.value = 1, 1, 0
+        await RisingEdge(self.dut.clk)
+
+    async def clock(self, push: Any, en: bool = True, rst: bool = False) -> None:
+        tag = self.random.getrandbits(self.width)
+        dut, model = self.dut, self.model
+        dut.push.value, dut.tag.value, dut.en.value, dut.rst.value = int(push), tag, int(en), int(rst)
+        await RisingEdge(dut.clk)
+        assert bool(dut.held.value) == model.held
+        assert bool(dut.due.value) == (model.due is not None), f"{len(model.due_clock)} tags, clock {model.now}"
+        assert int(dut.due_tag.value) == (model.due or 0)
+        if rst:
+            model.reset()
+        elif en:
+            model.clock(tag if push else None)
+
+    async def frames(self, count: int, apart: Any, pause: float = 0.0, reset: float = 0.0) -> None:
+        """Push `count` tags, with `apart()` enabled cycles from one to the next."""
+        for _ in range(count):
+            left = apart()
+            while left:
+                en = self.random.random() >= pause
+                rst = self.random.random() < reset
+                await self.clock(push=left == 1, en=en, rst=rst)
+                left -= en or rst
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(pause=[0.0, 0.4])
+async def frames_as_close_as_they_can_be(dut: Any, pause: float) -> None:
+    bench = Bench(dut)
+    await bench.start()
+    await bench.frames(30, lambda: bench.pixels, pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(reset=[0.0, 0.01])
+async def frames_apart(dut: Any, reset: Any) -> None:
+    """Send frames at each distance, from the closest until the one before has left; then at random."""
+    bench = Bench(dut)
+    await bench.start()
+    distances = iter(range(bench.pixels, bench.model.latency + bench.pixels + 2))
+    await bench.frames(bench.model.latency + 2, lambda: next(distances), reset=reset)
+    await bench.frames(60, lambda: bench.pixels + bench.random.randrange(2 * bench.model.latency), 0.2, reset)

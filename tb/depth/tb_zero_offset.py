@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: Apache-2.0
+"""zero_offset against its model in every cycle: depths and nodes of all kinds, changed over while frames stream."""
+
+import random
+from collections import deque
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.triggers import FallingEdge, RisingEdge
+
+from tactile_depth.common import td_node_map
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.configuration import Configuration
+from tactile_depth.depth.zero_offset import interpolated_zero, zero_offset
+from tactile_depth.latency import zero_offset_latency
+from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
+from tb.gains import Gains, Grid
+from tb.stream import Bench, depth_position, parameters, places, sample
+
+WORDS = 2048  # that a test sends, at least
+
+
+def first_zero(config: Configuration) -> Any:
+    """Return the zero offset of zero_0.hex, (node rows, node columns); every node differs."""
+    rows, columns = config.reference_nodes
+    return places(rows * columns, config.depth.width).reshape(rows, columns)
+
+
+class Zeros(Gains):
+    """Zero memory: one channel, one entry per node."""
+
+    name = "zero"
+    capture_pin = "capture_zero"
+    per_node = 1
+
+    def __init__(self, dut: Any, config: Configuration) -> None:
+        (lanes,) = parameters(dut, "Lanes")
+        self.side = td_node_map.side(lanes, config.reference_block_log2)
+        super().__init__(dut, config)
+
+    def at_power_up(self) -> Any:
+        return first_zero(self.config)[..., None]
+
+    def random(self, chance: random.Random) -> Any:
+        return random_depths((*self.config.reference_nodes, 1), self.width, chance)
+
+    def entries(self, words: Any) -> dict[Any, Any]:
+        return dict(enumerate(words.reshape(-1).tolist()))
+
+
+class Zero:
+    """Device, and the words that the model expects for every word sent."""
+
+    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+        self.dut, self.gap = dut, gap
+        self.config = Grid.of(dut)
+        self.shape = (self.config.rows, self.config.columns)
+        self.width = self.config.depth.width
+        self.frames = max(3, WORDS // (self.config.rows * self.config.columns))
+        self.large = self.config.rows * self.config.columns > WORDS  # so that a large grid gets a few frames only
+        self.bench = Bench(dut, pause)
+        self.chance = self.bench.random
+        (self.lanes,) = parameters(dut, "Lanes")
+        self.latency = zero_offset_latency(self.lanes, self.config.reference_block_log2)
+        self.zeros = Zeros(dut, self.config)
+        self.driver = DepthDriver(dut, self.bench, gap)
+        self.monitor = Monitor()
+        self.counted = 0  # of `saturations`
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget the words sent and the words expected."""
+        self.sent: list[Any] = []
+        self.taken = 0
+        self.expected: list[Any] = []  # of each beat: data, values clipped
+        self.used: list[Any] = []
+        self.inside: deque[int | None] = deque([None] * self.latency)
+        self.begun = False
+        self.clipped = 0
+
+    async def start(self, written: bool = True) -> None:
+        await self.bench.start()
+        await self.zeros.settle(written)
+        cocotb.start_soon(self.watch())
+
+    async def watch(self) -> None:
+        """Check each cycle: a beat leaves `latency` enabled cycles after it entered, and its clips are counted as it
+        leaves."""
+        dut = self.dut
+        while True:
+            await RisingEdge(dut.clk)
+            if dut.rst.value:
+                continue
+            active = self.begun or any(index is not None and self.sent[index][2] for index in self.inside)
+            assert bool(dut.active.value) == active, f"active is {dut.active.value}"
+            assert int(dut.saturations.value) == self.clipped, f"saturations is {dut.saturations.value}"
+            self.counted += self.clipped
+            self.clipped = 0
+            if not dut.en.value:
+                continue
+            leaves = self.inside.pop()
+            assert bool(dut.out_valid.value) == (leaves is not None), f"out_valid is {dut.out_valid.value}"
+            if leaves is not None:
+                position, got = int(dut.out_position.value), int(dut.out_data.value)
+                assert position == depth_position(*self.sent[leaves][:3]), f"beat {leaves}: position {position:03b}"
+                assert got == self.expected[leaves][0], f"beat {leaves}: {got:#x}, not {self.expected[leaves][0]:#x}"
+            comes = None
+            if dut.in_valid.value:
+                comes, self.taken = self.taken, self.taken + 1
+                *marks, data = self.sent[comes]
+                pins = int(dut.in_position.value), int(dut.in_data.value)
+                assert pins == (depth_position(*marks), data), "the driver sent other words than the test gave it"
+                self.begun = not marks[2]
+            self.inside.appendleft(comes)
+            self.clipped = 0 if self.inside[-1] is None else self.expected[self.inside[-1]][1]
+
+    def depths(self, zero: np.ndarray | None = None) -> Any:
+        """Return a frame. With a zero offset some depths equal it, some differences lie at the limits or beyond."""
+        if zero is None or self.chance.random() < 0.6:
+            return random_depths(self.shape, self.width, self.chance)
+        low, high = -(1 << self.width - 1), (1 << self.width - 1) - 1
+        generator = np.random.default_rng(self.chance.getrandbits(32))
+        target = generator.choice([low - 1, low, low + 1, -1, 0, 1, high - 1, high, high + 1], self.shape)
+        return np.clip(interpolated_zero(zero, self.config) + target, low, high)
+
+    async def send(self, frames: int = 1, depths: np.ndarray | None = None, count: int | None = None) -> None:
+        """Send frames back to back, or the first words of one. Each uses the bank that table_bank then selects."""
+        for _ in range(frames):
+            zero = self.zeros.begin_frame()[..., 0].copy()
+            frame = self.depths(zero) if depths is None else depths
+            words = depth_words(frame, self.width, self.lanes)[:count]
+            self.sent += words
+            self.used.append(zero.tobytes())
+            zeroed = zero_offset(frame, zero, self.config, self.monitor)
+            clipped = (frame - interpolated_zero(zero, self.config) != zeroed).reshape(-1, self.lanes).sum(axis=1)
+            self.expected += zip(packed(zeroed.reshape(-1, self.lanes), self.width), clipped.tolist(), strict=True)
+            await self.driver.words(words)
+
+    async def reset(self, en: Any) -> None:
+        resetting = cocotb.start_soon(self.bench.reset(en))
+        await FallingEdge(self.dut.clk)  # after the tasks of the previous cycle
+        self.forget()
+        await resetting
+
+    async def check(self) -> None:
+        """Wait until everything has left, and compare."""
+        await self.bench.clocks(self.latency + 3)
+        assert self.taken == len(self.sent) == len(self.expected)
+        assert not any(index is not None for index in self.inside)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def at_power_up(dut: Any) -> None:
+    """Subtract the zero offset of zero_0.hex, which both banks hold at power-up."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start(written=False)
+    for _ in range(2):
+        await device.send()
+        await device.check()
+        assert device.used[-1] == first_zero(device.config).tobytes()
+        device.zeros.due = True
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
+async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
+    """Rewrite the zero offset while frames stream: the frame before a change-over has the old one, the frame after it
+    the new."""
+    device = Zero(dut, gap, pause)
+    await device.start()
+    await device.zeros.write(device.zeros.random(device.chance))
+    device.zeros.due = True
+    going_on = [True]
+    rewriter = cocotb.start_soon(device.zeros.rewrite(device.chance, lambda: going_on[0]))
+    await device.send(device.frames)
+    going_on[0] = False
+    await rewriter
+    await device.check()
+    assert len(set(device.used)) > 1, "the test is void: no change-over was seen"
+    assert device.counted == device.monitor.saturations.total() > 0
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def captured(dut: Any) -> None:
+    """Capture all nodes into both banks; the bus reads the same values."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start()
+    for _ in range(2):
+        await device.zeros.capture(device.zeros.random(device.chance))
+        for index in range(device.zeros.banks[0].size):
+            await device.zeros.read(index)
+        device.zeros.due = True
+        await device.send()
+    await device.check()
+
+
+@cocotb.test(timeout_time=60, timeout_unit="ms")
+async def differences_at_their_limits(dut: Any) -> None:
+    """Reach differences that just fit, differences that are just clipped, and the largest difference of all."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start()
+    low, high = -(1 << device.width - 1), (1 << device.width - 1) - 1
+    for level in (low,) if device.large else (low, low + 1, -1, 0, 1, high - 1, high):
+        await device.zeros.write(np.full((*device.config.reference_nodes, 1), level))
+        device.zeros.due = True
+        await device.send()  # its first word changes the bank
+        await device.zeros.changed()
+        for depth in (low + level, low + level - 1, high + level, high + level + 1, low, high):
+            if low <= depth <= high:
+                await device.send(depths=np.full(device.shape, depth))
+    await device.check()
+    assert device.counted == device.monitor.saturations.total() > 0
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def resets(dut: Any) -> None:
+    """Reset inside a frame: no earlier word leaves or is counted, the nodes stay, and a due change-over takes place."""
+    device = Zero(dut, 0.0, 0.0)
+    await device.start()
+    row = device.config.columns // device.lanes
+    size = device.config.rows * row
+    counts = (1, 2, 3, 4, *range(device.latency - 2, device.latency + 3), 2 * row + 3, size)
+    for turn, count in enumerate(counts[-2:] if device.large else counts):
+        await device.zeros.write(device.zeros.random(device.chance))
+        await device.send(count=count)
+        if count % 2:
+            device.zeros.change()
+        await device.reset(en=turn % 2)
+        if count % 3:
+            await device.bench.clocks(device.latency + 2)
+        await device.send()
+        await device.check()

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""divergence against its model: codes, latency; frame on frame with gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import DIVERGENCE
+from tactile_depth.poisson.divergence import divergence
+from tb.stream import (
+    Bench,
+    StreamDriver,
+    StreamMonitor,
+    check_frame_starts,
+    check_maps,
+    extremes,
+    interrupt,
+    parameters,
+    raster,
+    send_apart,
+    uniform,
+)
+
+FIELDS = ["gx", "gy", "position"]
+
+
+def pixels(gradient: Any) -> Any:
+    """Return gradients (frames, rows, columns, 2) as words of FIELDS."""
+    frames, rows, columns, _ = gradient.shape
+    positions = np.array(frames * raster(rows, columns)).reshape(frames, rows, columns, 1)
+    return np.concatenate((gradient, positions), axis=-1).reshape(-1, len(FIELDS)).tolist()
+
+
+async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = ()) -> None:
+    (neumann,) = parameters(dut, "Neumann")
+    bench = Bench(dut, pause)
+    driver = StreamDriver(dut, "in", "valid", FIELDS)
+    source = StreamMonitor(dut, "in", "valid", FIELDS, unsigned=FIELDS[2:])
+    sink = StreamMonitor(dut, "out", "valid", ["data"])
+    await bench.start()
+
+    async def send(count: int) -> None:
+        await send_apart(bench, driver, pixels(gradient)[:count], gap)
+
+    await interrupt(bench, send, interrupts, (source, sink), quiet=DIVERGENCE + 2)
+    await send_apart(bench, driver, pixels(gradient), gap)
+    await bench.clocks(DIVERGENCE + 2)
+    sent = np.array(source.words)[:, :2].reshape(gradient.shape)
+    np.testing.assert_array_equal(sent, gradient, "the driver sent other words than the test gave it")
+    check_maps(sink.words, divergence(sent, bool(neumann)))
+    assert sink.starts == [clock + DIVERGENCE for clock in source.starts]
+    check_frame_starts([sink], gradient[0, ..., 0].size)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.1, 0.3), (0.7, 0.0)]), ("rows", [1, 4]))
+async def frames(dut: Any, gap: float, pause: float, rows: int) -> None:
+    width, columns = parameters(dut, "Width", "Columns")
+    await check(dut, uniform((3, rows, columns, 2), width), gap, pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    """Send rows of each kind of limits, then with their fields exchanged; the last frame is a chequer board.
+
+    On the board all neighbours are at opposite limits, which gives the largest and the smallest results.
+    """
+    width, columns = parameters(dut, "Width", "Columns")
+    rows = extremes(columns, width, 2)
+    board = np.where(np.indices((2, columns)).sum(axis=0) % 2, -(1 << (width - 1)), (1 << (width - 1)) - 1)
+    frames = [np.stack((rows, rows[:, :, ::-1]), axis=1), np.stack((board, board), axis=-1)[None]]
+    await check(dut, np.concatenate(frames))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def reset_in_mid_frame(dut: Any) -> None:
+    """Reset at each of the first words, and in the second row."""
+    width, columns = parameters(dut, "Width", "Columns")
+    await check(dut, uniform((2, 4, columns, 2), width), interrupts=[1, 2, 3, 4, columns, 5 * columns // 4])

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tests of the sine transforms, dst_forward and dst_inverse, against their models.
+
+The tests check codes, latency and saturation counts, with gaps, pauses, extreme words and resets.
+"""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.latency import dst_forward_latency, dst_inverse_latency
+from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tb.stream import MANY, check_bursts, corners, extremes, parameters, sample, uniform, with_and_without_en
+
+CORES: dict[str, tuple[Any, Any]] = {
+    "dst_forward": (dst_forward, dst_forward_latency),
+    "dst_inverse": (dst_inverse, dst_inverse_latency),
+}
+CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to leave
+
+
+async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
+    """Send bursts (count, size, 1) and compare the output with the model of the device."""
+    *formats, alternate = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Alternate")
+    transform, latency = CORES[dut._name]
+
+    def model(words: Any, monitor: Any) -> Any:
+        return transform(words[..., 0], *formats, monitor, alternate=bool(alternate))
+
+    return await check_bursts(
+        dut, words, model, latency(words.shape[1]), in_fields=["data"], out_fields=["data"], **behaviour
+    )
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    size, width = parameters(dut, "Size", "InWidth")
+    shape = (5, size, 1)
+    words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+    await check(dut, words, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def many_bursts(dut: Any, amplitude: float) -> None:
+    """Reach ties of every rounding, and clip every value that can clip."""
+    size, width = parameters(dut, "Size", "InWidth")
+    shape = (2 * MANY, size, 1)
+    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "InWidth")
+    _, sink = await check(dut, extremes(size, width))
+    assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("late", "clips"), sample([(False, True), (False, False), (True, False), (True, True)])))
+async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
+    """Reset in each cycle in which a burst begins to enter, or to leave; a clip after the reset is not counted."""
+    size, width = parameters(dut, "Size", "InWidth")
+    _, latency = CORES[dut._name]
+    first = latency(size) - 3 if late else 1
+    words = (corners if clips else uniform)((2, size, 1), width)
+    await check(dut, words, interrupts=with_and_without_en(range(first, first + CLOCKS_OF_A_BURST_EDGE)))

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""mode_pairs against tactile_depth.poisson.transform.mode_pairs: codes, latency; gaps, pauses, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.latency import mode_pairs_latency
+from tactile_depth.poisson.transform.mode_pairs import mode_pairs
+from tb.stream import check_bursts, parameters, uniform
+
+
+async def check(dut: Any, x: Any, **behaviour: Any) -> None:
+    def model(x: Any, monitor: Monitor) -> Any:
+        return np.stack(mode_pairs(x[..., 0]), axis=-1)
+
+    await check_bursts(
+        dut,
+        x,
+        model,
+        mode_pairs_latency(x.shape[1]),
+        in_fields=["mode"],
+        out_fields=["mode", "mirrored"],
+        **behaviour,
+    )
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3), (200, 0.3)]))
+async def bursts(dut: Any, gap: float, pause: float) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((6, size, 1), width), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def reset_in_mid_burst(dut: Any) -> None:
+    """Reset in each cycle of a burst, as it enters and as it leaves."""
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((2, size, 1), width), interrupts=range(1, size + size // 2 + 3))

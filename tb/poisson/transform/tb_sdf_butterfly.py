@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""sdf_butterfly against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.latency import BUTTERFLY
+from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.poisson.transform.sdf_fft import Stage
+from tb.stream import check_bursts, corners, extremes, parameters, uniform
+
+FIELDS = ["re", "im"]
+
+
+async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
+    width, delay, rotate_block, inverse, halve = parameters(dut, "Width", "Delay", "RotateBlock", "Inverse", "Halve")
+    stage = Stage(rotate_block or 2 * delay, delay, bool(rotate_block), bool(halve))
+
+    def model(x: Any, monitor: Monitor) -> Any:
+        return np.stack(sdf_butterfly(x[..., 0], x[..., 1], stage, bool(inverse), width, monitor), axis=-1)
+
+    return await check_bursts(dut, x, model, delay + BUTTERFLY, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (9, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((8, size, 2), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    _, sink = await check(dut, extremes(size, width, 2))
+    assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def limits_in_every_pairing(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, corners((30, size, 2), width))
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_burst(dut: Any, late: bool) -> None:
+    """Reset in each cycle in which a burst begins to enter, or to leave."""
+    size, width, delay = parameters(dut, "Size", "Width", "Delay")
+    first = max(delay + BUTTERFLY, 4) - 3 if late else 1
+    await check(dut, uniform((2, size, 2), width), interrupts=range(first, first + 8))

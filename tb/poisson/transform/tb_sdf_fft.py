@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""sdf_fft against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
+
+from typing import Any
+
+import cocotb
+import numpy as np
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.latency import sdf_fft_latency
+from tactile_depth.poisson.transform.sdf_fft import sdf_fft
+from tb.stream import MANY, check_bursts, corners, extremes, parameters, uniform
+
+FIELDS = ["re", "im"]
+
+
+async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
+    width, coeff, inverse = parameters(dut, "Width", "CoeffWidth", "Inverse")
+
+    def model(x: Any, monitor: Monitor) -> Any:
+        return np.stack(sdf_fft(x[..., 0], x[..., 1], bool(inverse), width, coeff, monitor), axis=-1)
+
+    latency = sdf_fft_latency(x.shape[1])
+    return await check_bursts(dut, x, model, latency, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", [0.3, 1.0]))
+async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    await check(dut, uniform((5, size, 2), width, amplitude), gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=50, timeout_unit="ms")
+@cocotb.parametrize(amplitude=[0.1, None])
+async def many_bursts(dut: Any, amplitude: float) -> None:
+    """Reach ties of every rounding, and clip every value that can clip."""
+    size, width = parameters(dut, "Size", "Width")
+    shape = (2 * MANY, size, 2)
+    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+async def limits(dut: Any) -> None:
+    size, width = parameters(dut, "Size", "Width")
+    _, sink = await check(dut, extremes(size, width, 2))
+    assert not np.any(sink.words[:size]), "zero in, but not zero out"
+
+
+@cocotb.test(timeout_time=10, timeout_unit="ms")
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_burst(dut: Any, late: bool) -> None:
+    """Reset in each cycle in which a burst begins to enter, or to leave."""
+    size, width = parameters(dut, "Size", "Width")
+    first = sdf_fft_latency(size) - 3 if late else 1
+    await check(dut, uniform((2, size, 2), width), interrupts=range(first, first + 8))

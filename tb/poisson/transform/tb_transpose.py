@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""transpose against its model: positions, latency, columns without a pause; gaps, pauses, reset."""
+
+from typing import Any
+
+import cocotb
+
+from tactile_depth.latency import TRANSPOSE
+from tactile_depth.poisson.transform.transpose import transpose
+from tb.stream import check_frame_memory, parameters, places
+
+FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
+
+
+async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
+    size, width, makhoul_in, makhoul_out = parameters(dut, "Size", "Width", "MakhoulIn", "MakhoulOut")
+
+    def model(words: Any) -> Any:
+        return transpose(words, bool(makhoul_in), bool(makhoul_out))
+
+    words = places(frames * size * size, width).reshape(frames, -1)
+    await check_frame_memory(dut, words, model, TRANSPOSE, rows=size, **behaviour)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0, 0.0), (5, 0.0), (80, 0.0), (0, 0.3), (30, 0.3)]))
+async def frames(dut: Any, gap: float, pause: float) -> None:
+    await check(dut, gap=gap, pause=pause)
+
+
+@cocotb.test(timeout_time=2, timeout_unit="ms")
+@cocotb.parametrize(late=[False, True])
+async def reset_in_mid_frame(dut: Any, late: bool) -> None:
+    """Reset as the first words enter, as the last row enters, as reading begins, and in the middle of a third frame."""
+    (size,) = parameters(dut, "Size")
+    first = (size - 1) * size if late else 1
+    await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+@cocotb.parametrize(strays=[1, 2, 11])
+async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
+    """Start a frame after part of another one, and after more than one without a start of frame in between."""
+    await check(dut, frames=2, strays=strays)

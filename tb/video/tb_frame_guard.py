@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: Apache-2.0
+"""frame_guard against tactile_depth.video.frame_guard: frames, marks and faults of the words seen at the input.
+
+tests/video/test_frame_guard.py checks the frames and faults of the model.
+"""
+
+import os
+import random
+from itertools import chain, repeat
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.video.frame_guard import FAULTS, frame_guard
+from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, video
+from tb.stream import CLOCK_NS, REGRESS, parameters, raster
+
+TIMEOUT = 5
+RANDOM_FRAMES = 60
+
+
+class Collector:
+    """Collect frames as (pixels, bad) and faults by name; check the position of every flag."""
+
+    def __init__(self, dut: Any) -> None:
+        self.dut = dut
+        self.rows, self.columns = parameters(dut, "Rows", "Columns")
+        self.frames: list[Any] = []
+        self.faults: list[Any] = []
+        self.open: list[Any] = []
+        cocotb.start_soon(self.run())
+
+    async def run(self) -> None:
+        dut, edge = self.dut, RisingEdge(self.dut.clk)
+        while True:
+            await edge
+            if dut.rst.value:
+                continue
+            faults = [name for bit, name in enumerate(FAULTS) if int(dut.faults.value) >> bit & 1]
+            assert dut.en.value or not faults, f"{faults} while en is low: would count more than once"
+            self.faults += faults
+            if dut.en.value:
+                self.step()
+
+    def step(self) -> None:
+        dut, place = self.dut, len(self.open)
+        if not dut.out_valid.value:
+            assert not dut.out_frame_end.value
+            assert not dut.out_frame_start.value
+            return
+        self.open.append(int(dut.out_data.value))
+        position = raster(self.rows, self.columns)[place]
+        assert int(dut.out_position.value) == position, f"out_position at pixel {place}"
+        flags = {
+            "out_frame_start": place == 0,
+            "out_frame_end": place == self.rows * self.columns - 1,
+        }
+        for name, want in flags.items():
+            assert bool(getattr(dut, name).value) == want, f"{name} at pixel {place}"
+        if flags["out_frame_end"]:
+            self.frames.append((tuple(self.open), bool(dut.out_bad.value)))
+            self.open = []
+
+
+class Bench:
+    def __init__(self, dut: Any, offers: str = "none", enabled: str = "none") -> None:
+        dut._log.info("SEED=%s", os.environ["COCOTB_RANDOM_SEED"])
+        self.dut = dut
+        self.rows, self.columns = parameters(dut, "Rows", "Columns")
+        self.random = random.Random(cocotb.RANDOM_SEED)
+        dut.rst.value, dut.en.value, dut.timeout.value = 1, 1, 0
+        self.source = AxisSource(dut, "s", offers=profile(offers, 1))
+        self.monitor = AxisMonitor(dut, "s", silence="en")
+        self.collector = Collector(dut)
+        self.enabled = profile(enabled, 2)
+
+    async def start(self, timeout: int = 0) -> None:
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        cocotb.start_soon(self.enable())
+        await self.reset(3, timeout)
+
+    async def enable(self) -> None:
+        while True:
+            self.dut.en.value = int(next(self.enabled))
+            await RisingEdge(self.dut.clk)
+
+    async def reset(self, clocks: int, timeout: int | None = None) -> None:
+        self.source.abort()
+        if timeout is not None:
+            self.timeout = self.dut.timeout.value = timeout
+        self.dut.rst.value = 1
+        await ClockCycles(self.dut.clk, clocks)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)  # AXI: the first edge out of reset comes before the first word
+        self.forget()
+
+    def forget(self) -> None:
+        self.monitor.forget()
+        self.collector.frames, self.collector.faults, self.collector.open = [], [], []
+
+    def frame(self) -> Any:
+        pixels = (self.random.getrandbits(24) for _ in range(self.rows * self.columns))
+        return video(pixels, self.columns)
+
+    async def check(self, what: Any) -> Any:
+        """Wait for the end of the filler, compare with the model, and clear the records. The source must be idle."""
+        moved = 0
+        while moved < self.rows * self.columns + 2:
+            await RisingEdge(self.dut.clk)
+            moved += bool(self.dut.en.value)
+        want = frame_guard(self.monitor.words, self.rows, self.columns, self.timeout)
+        got = self.collector
+        assert got.faults == want.faults, f"{what}: faults {got.faults}, expected {want.faults}"
+        marks = [frame.bad for frame in want.frames]
+        assert [bad for _, bad in got.frames] == marks, f"{what}: marks, expected {marks}"
+        for index, ((pixels, _), frame) in enumerate(zip(got.frames, want.frames, strict=True)):
+            assert pixels == frame.pixels, f"{what}: pixels of frame {index}"
+        assert got.open == want.open, f"{what}: pixels of the last, incomplete frame"
+        return want
+
+    def places(self, fault: str) -> Any:
+        return positions(fault, self.rows, self.columns)
+
+
+STALLS = {
+    "none": ("none", "none"),
+    "gaps": ("random", "none"),
+    "en": ("none", "random"),
+    "both": ("random",) * 2,
+}
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def long_silences(dut: Any) -> None:
+    """Time out with every bit of the timeout and of the counter, which is set to a value near its end to save time."""
+    bench = Bench(dut)
+    await bench.start()
+    powers = [1 << bit for bit in range(3, 32)]
+    for timeout in (*powers, *(power - 1 for power in powers), *(bench.random.getrandbits(32) | 8 for _ in range(10))):
+        await bench.reset(1, timeout)
+        await bench.source.send(bench.frame()[:3])
+        await ClockCycles(dut.clk, 2)
+        dut.silence.value = timeout - 3
+        await ClockCycles(dut.clk, 4)
+        assert not bench.collector.faults, f"timed out before {timeout} cycles"
+        await ClockCycles(dut.clk, 1)
+        assert bench.collector.faults == ["timed_out"], f"not timed out after {timeout} cycles"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(kind=list(BREAKS), stalls=list(STALLS))
+async def faults(dut: Any, kind: str, stalls: str) -> None:
+    """Send a good frame, a broken one and a good one, for every position of the break; with stalls for a third of
+    them."""
+    bench = Bench(dut, *STALLS[stalls])
+    timeout = TIMEOUT if kind in SILENT else 0
+    await bench.start(timeout)
+    places = bench.places(kind)
+    stride = 1 if REGRESS or stalls == "none" else min(3, len(places))
+    for position in places[bench.random.randrange(stride) :: stride]:
+        wrong = broken(bench.frame(), kind, position, bench.columns, timeout + (kind != "waited"))
+        await bench.source.send([*bench.frame(), *wrong, *bench.frame()])
+        want = await bench.check(f"{kind} at {position}")
+        if stalls == "none":
+            faults = faults_of(kind, position, bench.columns)
+            assert want.faults == list(faults), f"not the stream it was meant to be: {want.faults} at {position}"
+        bench.forget()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(stalls=list(STALLS))
+async def words_before_the_first_frame(dut: Any, stalls: str) -> None:
+    """Send any number of words before a frame: they are dropped as one fault, and the frame is right."""
+    bench = Bench(dut, *STALLS[stalls])
+    await bench.start()
+    for count in range(1, 2 * bench.columns + 2):
+        await bench.reset(1)
+        before = [word._replace(user=0) for word in (bench.frame() * 2)[:count]]
+        await bench.source.send([*before, *bench.frame()])
+        want = await bench.check(f"{count} words before")
+        assert want.faults == ["start_missing"]
+        assert [frame.bad for frame in want.frames] == [False]
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def silence(dut: Any) -> None:
+    """Pause at every position for `timeout` cycles and for one more. With a timeout of 0, or between frames, wait for
+    ever."""
+    bench = Bench(dut)
+    await bench.start()
+    for timeout in (0, 1, TIMEOUT):
+        await bench.reset(1, timeout)
+        for position in bench.places("timed_out"):
+            for clocks in {1, max(timeout, 1), timeout + 1, timeout + 2, 40}:
+                frame = bench.frame()
+                pause = [None] * clocks
+                await bench.source.send([*frame[:position], *pause, *frame[position:], *pause, *bench.frame()])
+                want = await bench.check(f"{clocks} silent clocks at {position}, timeout {timeout}")
+                given_up = 0 < timeout < clocks
+                assert want.faults == ["timed_out"] * given_up
+                bench.forget()
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def silence_without_movement(dut: Any) -> None:
+    """Pause with en low, which is not silence; a timeout written during a silence counts from its beginning."""
+    bench = Bench(dut)
+    await bench.start(TIMEOUT)
+    frame = bench.frame()
+    await bench.source.send(frame[:3])
+    bench.enabled = chain(repeat(False, 50), repeat(True))
+    await ClockCycles(dut.clk, 45)
+    assert not bench.collector.faults
+    await ClockCycles(dut.clk, 8 + TIMEOUT)
+    assert bench.collector.faults == ["timed_out"]
+
+    await bench.reset(1, 0)
+    await bench.source.send(frame[:3])
+    await ClockCycles(dut.clk, 30)
+    assert not bench.collector.faults
+    dut.timeout.value = 20
+    await ClockCycles(dut.clk, 2)
+    assert bench.collector.faults == ["timed_out"]
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def long_time_outs(dut: Any) -> None:
+    """Time out with every bit of the register; the counter is set to a value near its end to save time."""
+    bench = Bench(dut)
+    await bench.start()
+    left = 5
+    for timeout in (*(1 << bit for bit in range(4, 32)), (1 << 32) - 1):
+        await bench.reset(1, timeout)
+        await bench.source.send(bench.frame()[:3])
+        await ClockCycles(dut.clk, 2)
+        dut.silence.value = timeout - left
+        await ClockCycles(dut.clk, left)
+        assert not bench.collector.faults, f"timeout {timeout}: too early"
+        await ClockCycles(dut.clk, 2)
+        assert bench.collector.faults == ["timed_out"], f"timeout {timeout}"
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+@cocotb.parametrize(clocks=[1, 2, 16])
+async def resets(dut: Any, clocks: Any) -> None:
+    """Reset at every position of a good frame and of the filler of a broken one; the next frame is right."""
+    bench = Bench(dut)
+    await bench.start()
+    for position in bench.places("start_early"):
+        for fault in (None, "row_short"):
+            words = bench.frame()
+            words = words if fault is None else broken(words, fault, 0, bench.columns)
+            cocotb.start_soon(bench.source.send(words))
+            await ClockCycles(dut.clk, position + 1)
+            await bench.reset(clocks)
+            await bench.source.send(bench.frame())
+            want = await bench.check(f"reset of {clocks} clocks at {position}, {fault}")
+            assert want.faults == []
+            assert len(want.frames) == 1
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize(timeout=[0, 1, TIMEOUT], stalls=list(STALLS))
+async def random_streams(dut: Any, timeout: int, stalls: str) -> None:
+    """Send random streams: good and broken frames, several faults in one, stray words, flipped marks, long silences."""
+    bench = Bench(dut, *STALLS[stalls])
+    await bench.start(timeout)
+    rng, faults_reached = bench.random, set()
+    for index in range(RANDOM_FRAMES):
+        words = bench.frame()
+        for _ in range(rng.choice((0, 0, 1, 1, 2, 3))):
+            if not words:
+                break
+            place = rng.randrange(len(words))
+            match rng.randrange(6):
+                case 0:
+                    words[place] = words[place]._replace(last=1 - words[place].last)
+                case 1:
+                    words[place] = words[place]._replace(user=1 - words[place].user)
+                case 2:
+                    del words[place : place + rng.randint(1, 2 * bench.columns)]
+                case 3:
+                    words[place:place] = words[place : place + rng.randint(1, 2 * bench.columns)]
+                case 4:
+                    words[0] = words[0]._replace(user=0)
+                case 5:
+                    words = words[:place]
+        silent = [None] * rng.choice((0, 0, 0, 1, timeout, timeout + 1, 3 * timeout + 2))
+        place = rng.randrange(len(words) + 1)
+        await bench.source.send([*words[:place], *silent, *words[place:]])
+        if index % 10 == 9:
+            await bench.source.send(bench.frame())
+            faults_reached |= set((await bench.check(f"random stream {index}")).faults)
+            await bench.reset(1)
+    if stalls in ("none", "en"):  # with gaps most frames time out before another fault can occur
+        assert faults_reached >= set(FAULTS) - ({"timed_out"} if not timeout else set()), (
+            f"the test is void: it reached only {faults_reached}"
+        )

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_banked_table: RTL against the model; the model's banks."""
+
+import random
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cocotb_tools.runner import as_sv_literal
+
+from tactile_depth.common.td_banked_table import BankedTable
+from tactile_depth.rom_files import write_words
+
+DISTRIBUTED, BLOCK = range(2)
+
+
+@pytest.mark.structures(
+    "width depth style",
+    verilator=[(24, 36, BLOCK)],
+    icarus=[(5, 6, DISTRIBUTED)],
+    regress=[(42, 64, BLOCK)],
+)
+def test_rtl(run_tb: Callable[..., None], width: int, depth: int, style: int) -> None:
+    def contents(folder: Path) -> None:
+        chance = random.Random(depth)
+        write_words(folder / "table.hex", [chance.getrandbits(width) for _ in range(depth)], width)
+
+    parameters = {"Width": width, "Depth": depth, "Style": style, "File": as_sv_literal("table.hex")}
+    run_tb("td_banked_table", parameters, roms=contents)
+
+
+def test_a_bank_is_written_while_the_other_is_in_use() -> None:
+    table = BankedTable.of(np.array([1, 2, 3]))
+    table.write(0, 9)
+    assert table.begin_frame().tolist() == [1, 2, 3]
+    table.wanted = 1
+    with pytest.raises(ValueError, match="entry 1 is written while a change-over is due"):
+        table.write(1, 8)
+    assert table.begin_frame().tolist() == [9, 2, 3]
+    assert table.free.tolist() == [1, 2, 3]

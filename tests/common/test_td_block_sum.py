@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_block_sum: RTL against the model, the model against a sum word by word."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from tactile_depth.common.td_block_sum import block_sum
+
+
+@pytest.mark.structures(
+    "case",  # rows, columns, block_log2, column_log2, channels, width, signed, sum_width
+    verilator=[((21, 16, 2, 2, 1, 24, 1, 38),)],
+    icarus=[((5, 8, 1, 1, 3, 8, 0, 11),), ((5, 4, 1, 1, 1, 4, 1, 8),), ((7, 4, 1, 0, 2, 5, 1, 10),)],
+    regress=[((8, 16, 1, 1, 3, 8, 0, 24),), ((16, 16, 3, 3, 1, 12, 1, 24),), ((21, 16, 3, 1, 1, 24, 1, 38),)],
+)
+def test_rtl(run_tb: Callable[..., None], case: tuple[int, ...]) -> None:
+    names = ("Rows", "Columns", "BlockLog2", "ColumnLog2", "Channels", "Width", "Signed", "SumWidth")
+    run_tb("td_block_sum", dict(zip(names, case, strict=True)))
+
+
+@given(arrays(np.int64, (2, 5, 8, 2), elements=st.integers(-8, 7)), st.integers(1, 2))
+def test_each_word_of_a_whole_block_counts_once(frames: np.ndarray, block_log2: int) -> None:
+    rows, columns = 5 >> block_log2, 8 >> block_log2
+    expected = np.zeros((2, rows, columns, 2), np.int64)
+    for frame, row, column, channel in np.ndindex(*frames.shape):
+        if row >> block_log2 < rows:
+            expected[frame, row >> block_log2, column >> block_log2, channel] += frames[frame, row, column, channel]
+    np.testing.assert_array_equal(block_sum(frames, block_log2), expected)

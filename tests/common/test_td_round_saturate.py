@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""td_round_saturate: RTL against the model, the model against Python's own rounding of fractions."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
+
+
+@pytest.mark.structures(
+    "in_width drop out_width",
+    verilator=[(10, 4, 5)],
+    icarus=[
+        (8, 1, 6),  # only ties are dropped; overflow both ways
+        (8, 1, 7),  # only the carry out of the top overflows
+        (8, 1, 8),  # the carry fits
+        (8, 2, 5),
+        (8, 3, 4),
+        (8, 3, 10),  # wider than what is left
+        (8, 7, 2),
+        (8, 0, 8),
+        (8, 0, 5),
+        (8, -2, 10),
+        (8, -3, 9),
+        (8, -3, 14),
+    ],
+    regress=[(10, 4, 5)],
+)
+def test_rtl(run_tb: Callable[..., None], in_width: int, drop: int, out_width: int) -> None:
+    parameters = {"InWidth": in_width, "Drop": drop, "OutWidth": out_width}
+    run_tb("td_round_saturate", parameters)
+
+
+# In eighths, dropping three bits: ties on both sides of zero, beside a tie, carry out of the top, overflow.
+@pytest.mark.parametrize(
+    ("eighths", "expected"),
+    [
+        *[(0, 0), (4, 0), (12, 2), (20, 2), (28, 4), (-4, 0), (-12, -2), (-20, -2), (-28, -4)],
+        *[(3, 0), (5, 1), (11, 1), (13, 2), (-3, 0), (-5, -1), (-11, -1), (-13, -2)],
+        *[(59, 7), (60, 7), (61, 7), (64, 7), (127, 7), (-64, -8), (-68, -8), (-69, -8), (-128, -8)],
+    ],
+)
+def test_cases_by_hand(eighths: Any, expected: Any) -> None:
+    assert round_saturate(np.array([eighths]), 3, 4) == [expected]
+
+
+@given(st.integers(-(2**50), 2**50), st.integers(-10, 45))
+def test_rounding_is_that_of_fractions(x: Any, drop: Any) -> None:
+    assert round_half_even(np.array([x]), drop) == [round(Fraction(x) / Fraction(2) ** drop)]
+
+
+@given(st.lists(st.tuples(st.integers(-(2**50), 2**50), st.integers(1, 45)), min_size=1))
+def test_each_word_may_have_its_own_drop(pairs: Any) -> None:
+    x, drop = np.array(pairs).T
+    assert round_half_even(x, drop).tolist() == [round(Fraction(a, 2**d)) for a, d in pairs]
+
+
+@given(st.integers(-(2**50), 2**50), st.integers(-10, 45))
+def test_rounding_is_odd(x: np.ndarray, drop: int) -> None:
+    assert round_half_even(np.array([-x]), drop) == -round_half_even(np.array([x]), drop)
+
+
+@given(st.integers(-(2**20), 2**20), st.integers(-4, 12), st.integers(2, 24))
+def test_saturation_clips_and_counts(x: Any, drop: Any, width: int) -> None:
+    monitor = Monitor()
+    out = int(round_saturate(np.array([x]), drop, width, monitor, "node")[0])
+    rounded = round(Fraction(x) / Fraction(2) ** drop)
+    assert out == min(max(rounded, -(2 ** (width - 1))), 2 ** (width - 1) - 1)
+    assert monitor.saturations == ({"node": 1} if out != rounded else {})
+
+
+@given(st.lists(st.floats(-1e9, 1e9), min_size=1), st.integers(-10, 45))
+def test_floats_pass_unrounded_and_leave_their_l1_norm(x: np.ndarray, drop: int) -> None:
+    monitor = Monitor()
+    response = np.array(x)[:, None]
+    np.testing.assert_array_equal(round_saturate(response, drop, 2, monitor, "node"), response / 2.0**drop)
+    assert monitor.peak["node"] == pytest.approx(np.abs(response / 2.0**drop).sum())

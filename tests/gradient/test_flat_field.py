@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""flat_field: RTL against the model, and the model against its definition."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_depth.configuration import DEVIATION, Configuration, Format
+from tactile_depth.gradient.flat_field import (
+    captured_gains,
+    deviations,
+    flat_codes,
+    flat_field_parameters,
+    interpolated_gains,
+    unit_gains,
+)
+from tactile_depth.rom_files import write_gains
+from tb.gains import Grid
+
+
+@pytest.mark.structures(
+    "columns rows block_log2 quadratic gain_width",
+    verilator=[(16, 11, 2, False, 24)],
+    icarus=[(16, 8, 1, True, 17)],
+    regress=[
+        *((16, 11, 2, True, 24), (16, 11, 2, False, 24), (32, 21, 1, False, 24), (128, 8, 3, False, 24)),
+        *((64, 64, 2, True, 24), (16, 8, 1, True, 16), (128, 8, 3, True, 17)),
+    ],
+    regress_verilator=[(16, 8, 1, True, 17)],
+)
+def test_rtl(run_tb: Any, columns: int, rows: int, block_log2: int, quadratic: Any, gain_width: int) -> None:
+    config = Grid(rows, columns, block_log2, Format(gain_width, 0))
+    run_tb(
+        "flat_field",
+        flat_field_parameters(config, quadratic),  # type: ignore[arg-type]
+        roms=lambda folder: write_gains(folder, unit_gains(config), gain_width),  # type: ignore[arg-type]
+    )
+
+
+CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")
+
+
+@pytest.mark.parametrize("level", [8, 16, 40, 128, 255])
+def test_a_frame_like_the_reference_is_flat(level: int) -> None:
+    """Send the reference as a frame, at every level. Below 16 grey levels pixels are dark, and flat as well."""
+    frames = np.full((1, 21, 32, 3), level, np.uint8)
+    gains = captured_gains(frames, CONFIG)
+    assert np.all(np.abs(interpolated_gains(gains, CONFIG) * level - (1 << CONFIG.gain_fraction)) <= level)
+    assert np.all(flat_codes(frames, gains, CONFIG) == 128)
+    assert not np.any(deviations(frames, gains, CONFIG))
+
+
+def test_gains_at_power_up_leave_pixels_as_they_are() -> None:
+    frames = np.random.default_rng(1).integers(0, 256, (2, 21, 32, 3), dtype=np.uint8)
+    np.testing.assert_array_equal(flat_codes(frames, unit_gains(CONFIG), CONFIG), frames)
+    relative = frames.astype(int) - 128 << (DEVIATION.fraction - 7)
+    np.testing.assert_array_equal(deviations(frames, unit_gains(CONFIG), CONFIG), relative)
+
+
+def test_interpolation_is_linear_between_the_centres_of_blocks() -> None:
+    """Interpolate gains on a plane: between the outermost centres the result is that plane."""
+    log2 = CONFIG.reference_block_log2
+    rows, columns = CONFIG.reference_nodes
+    centre = np.arange(max(rows, columns)) * (1 << log2) + ((1 << log2) - 1) / 2
+    plane = 2**16 * (centre[:rows, None] * 3 + centre[None, :columns] * 5) + 2**20
+    gains = np.repeat(plane[..., None], 3, axis=-1).astype(np.int64)
+    row = np.clip(np.arange(21), centre[0], centre[rows - 1])
+    column = np.clip(np.arange(32), centre[0], centre[columns - 1])
+    want = 2**16 * (row[:, None] * 3 + column[None] * 5) + 2**20
+    assert np.abs(interpolated_gains(gains, CONFIG)[..., 1] - want).max() <= 0.5
+
+
+def test_a_dark_pixel_takes_over_its_neighbour_and_is_not_counted_as_clipped() -> None:
+    frames = np.full((21, 32, 3), 100, np.uint8)
+    frames[3, 0] = frames[3, 1] = frames[5, 4] = frames[5, 5] = 2
+    frames[5, 3] = 77
+    frames[7, 9] = 2, 3, 2  # one colour is not
+    codes = flat_codes(frames, unit_gains(CONFIG), CONFIG, dark_level=3)
+    assert codes[3, :3, 0].tolist() == [128, 128, 100]
+    assert codes[5, 2:7, 0].tolist() == [100, 77, 77, 77, 100]
+    assert codes[7, 9].tolist() == [2, 3, 2]

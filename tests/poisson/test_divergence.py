@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""divergence: RTL against the model, the model against the formula."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tactile_depth.poisson.divergence import divergence
+
+
+@pytest.mark.structures(
+    "columns width neumann",
+    verilator=[(16, 21, 0)],
+    icarus=[(16, 6, 0), (32, 24, 1)],
+    regress=[(128, 35, 0), (16, 21, 1), (4, 3, 1), (16, 21, 0)],
+)
+def test_rtl(run_tb: Callable[..., None], columns: int, width: int, neumann: bool) -> None:
+    run_tb("divergence", {"Columns": columns, "Width": width, "Neumann": neumann})
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 6), st.integers(1, 6))
+def test_every_pixel_is_the_formula(seed: int, rows: int, columns: int) -> None:
+    gradient = np.random.default_rng(seed).integers(-100, 100, (rows, columns, 2))
+    out = divergence(gradient)
+    for i, j in np.ndindex(rows, columns):
+        left = gradient[i, j - 1, 0] if j else 0
+        above = gradient[i - 1, j, 1] if i else 0
+        assert out[i, j] == gradient[i, j, 0] - left + gradient[i, j, 1] - above
+
+
+def test_two_bits_more_hold_every_result() -> None:
+    checks = np.where(np.indices((4, 4)).sum(axis=0) % 2, -128, 127)
+    out = divergence(np.stack((checks, checks), axis=-1))
+    assert out.max() == 2 * (127 + 128)
+    assert out.min() == -2 * (127 + 128)
+
+
+def test_frames_do_not_mix() -> None:
+    gradient = np.random.default_rng(1).integers(-100, 100, (2, 4, 4, 2))
+    np.testing.assert_array_equal(divergence(gradient), [divergence(frame) for frame in gradient])
+
+
+def test_neumann_gives_a_divergence_without_sum() -> None:
+    gradient = np.random.default_rng(1).integers(-100, 100, (3, 5, 7, 2))
+    assert not np.any(divergence(gradient, neumann=True).sum(axis=(1, 2)))

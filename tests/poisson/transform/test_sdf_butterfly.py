@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""sdf_butterfly: RTL against the model, the model against complex sums."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.poisson.transform.sdf_fft import Stage
+
+
+@pytest.mark.structures(
+    "size delay rotate_block inverse halve width",
+    verilator=[(16, 8, 16, 1, 1, 27)],
+    icarus=[
+        (16, 8, 0, 0, 0, 27),
+        (16, 4, 16, 0, 1, 9),
+        (32, 4, 8, 1, 0, 12),
+        (32, 2, 8, 0, 1, 35),
+    ],
+    regress=[
+        (16, 2, 4, 1, 1, 9),
+        (16, 1, 4, 0, 1, 9),
+        (8, 1, 0, 1, 1, 15),
+        (8, 1, 0, 0, 0, 15),
+        (64, 32, 64, 0, 0, 27),
+        (16, 8, 16, 1, 1, 27),
+    ],
+)
+def test_rtl(
+    run_tb: Callable[..., None], size: int, delay: Any, rotate_block: Any, inverse: bool, halve: Any, width: int
+) -> None:
+    parameters = {
+        "Size": size,
+        "Delay": delay,
+        "RotateBlock": rotate_block,
+        "Inverse": inverse,
+        "Halve": halve,
+        "Width": width,
+    }
+    run_tb("sdf_butterfly", parameters)
+
+
+WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)
+
+
+@given(WORDS, st.booleans(), st.sampled_from([Stage(16, delay=8, rotate=True), Stage(16, delay=4, rotate=True)]))
+def test_model_is_the_complex_sum_and_difference(words: Any, inverse: bool, stage: Any) -> None:
+    re, im = np.array(words).reshape(2, 16)
+    z = re + 1j * im
+    z[12:] *= 1j if inverse else -1j
+    want = np.empty(16, complex)
+    for block in range(0, 16, 2 * stage.delay):
+        for n in range(block, block + stage.delay):
+            want[n], want[n + stage.delay] = z[n] + z[n + stage.delay], z[n] - z[n + stage.delay]
+    out_re, out_im = sdf_butterfly(re, im, stage, inverse, 40)
+    np.testing.assert_array_equal(out_re + 1j * out_im, want)
+
+
+@given(WORDS, st.booleans())
+def test_negation_goes_through(words: Any, inverse: bool) -> None:
+    re, im = np.array(words).reshape(2, 16)
+    stage = Stage(16, delay=4, rotate=True, halve=True)
+    forward, backward = (sdf_butterfly(s * re, s * im, stage, inverse, 40) for s in (1, -1))
+    np.testing.assert_array_equal(np.negative(forward), backward)
+
+
+@given(WORDS)
+def test_twice_is_twice_unless_it_halves(words: Any) -> None:
+    re, im = np.array(words).reshape(2, 16)
+    stage = Stage(16, delay=8)
+    twice = sdf_butterfly(*sdf_butterfly(re, im, stage, False, 40), stage, False, 40)
+    np.testing.assert_array_equal(twice, 2 * np.stack((re, im)))
+
+
+def test_full_scale_sums_saturate_and_halved_ones_do_not() -> None:
+    full = np.full(16, 127)
+    for halve, clipped in ((False, 16), (True, 0)):  # the sums of both parts; the differences are 0
+        monitor = Monitor()
+        sdf_butterfly(full, full, Stage(16, delay=8, halve=halve), False, 8, monitor)
+        assert monitor.saturations.total() == clipped
+
+
+def test_zero_gives_zero() -> None:
+    zero = np.zeros(16, np.int64)
+    assert not np.any(sdf_butterfly(zero, zero, Stage(16, 8, rotate=True, halve=True), True, 8))

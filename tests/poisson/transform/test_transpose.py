@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""transpose: RTL against the model, the model against numpy."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_depth.poisson.transform.orders import makhoul
+from tactile_depth.poisson.transform.transpose import transpose
+
+
+@pytest.mark.structures(
+    "size width makhoul_in makhoul_out",
+    verilator=[(16, 24, 0, 1)],
+    icarus=[
+        (8, 16, 0, 0),
+        (8, 16, 0, 1),
+        (8, 16, 1, 0),
+    ],
+    regress=[
+        (8, 16, 1, 1),
+        (4, 5, 0, 1),
+        (16, 24, 0, 1),
+    ],
+)
+def test_rtl(run_tb: Callable[..., None], size: int, width: int, makhoul_in: int, makhoul_out: int) -> None:
+    parameters = {"Size": size, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
+    run_tb("transpose", parameters)
+
+
+@pytest.mark.parametrize("makhoul_out", [False, True])
+@pytest.mark.parametrize("makhoul_in", [False, True])
+def test_rows_become_columns(makhoul_in: Any, makhoul_out: Any) -> None:
+    size = 16
+    frames = np.arange(3 * size * size).reshape(3, size, size)
+    order = makhoul(size)
+    sent = frames[..., order] if makhoul_in else frames
+    out = transpose(sent, makhoul_in, makhoul_out)
+    for frame, columns in zip(frames, out, strict=True):
+        for c in range(size):
+            column = frame[:, c]
+            np.testing.assert_array_equal(columns[c], column[order] if makhoul_out else column)
+
+
+def test_twice_is_the_frame() -> None:
+    frame = np.arange(64).reshape(8, 8)
+    np.testing.assert_array_equal(transpose(transpose(frame, False, True), True, False), frame)
