@@ -62,7 +62,6 @@ module uart_receive #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Divider < 4) begin : g_refused
     Divider_must_be_at_least_4 u_refused ();
   end

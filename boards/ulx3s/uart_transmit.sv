@@ -46,7 +46,6 @@ module uart_transmit #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Divider < 2) begin : g_refused
     Divider_must_be_at_least_2 u_refused ();
   end

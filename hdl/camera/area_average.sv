@@ -119,7 +119,6 @@ module area_average #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Bits < 8 || Rows < 2) begin : g_refused
     Bits_must_be_at_least_8_and_Rows_at_least_2 u_refused ();
   end

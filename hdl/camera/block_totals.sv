@@ -173,7 +173,6 @@ module block_totals #(
     assign out_areas = {3{Area}};
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Columns < 4) begin : g_refused
     Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written u_refused ();
   end

@@ -118,7 +118,6 @@ module camera_front_end
     .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_data({m_axis_tuser, m_axis_tlast, m_axis_tdata})
   );
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (WindowColumns != (Columns * Numerator + Denominator - 1) / Denominator
       || WindowRows != (Rows * Numerator + Denominator - 1) / Denominator) begin : g_refused
     the_window_must_be_the_grid_times_the_ratio u_refused ();

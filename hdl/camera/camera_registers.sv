@@ -158,7 +158,6 @@ module camera_registers
   logic unused_pins;
   assign unused_pins = ^{read, s_axil_awprot, s_axil_arprot};
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (((PictureColumns | PictureRows | WindowX | WindowY | WindowColumns | WindowRows) >>> 13) != 0)
   begin : g_refused_0
     pictures_and_windows_have_up_to_8191_rows_and_columns u_refused ();

@@ -225,7 +225,6 @@ module camera_setup #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (AddressBytes < 1 || AddressBytes > 2) begin : g_refused_0
     AddressBytes_must_be_1_or_2 u_refused ();
   end

@@ -166,7 +166,6 @@ module camera_window #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (WindowColumns < 2 || WindowRows < 2 || WindowColumns >= 1 << CountWidth || WindowRows >= 1 << CountWidth)
   begin : g_refused_0
     WindowColumns_and_WindowRows_must_be_2_to_8191 u_refused ();

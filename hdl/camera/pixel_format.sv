@@ -160,20 +160,19 @@ module pixel_format #(
     assign unused_inputs = ^{in_data[23:16], in_odd_row};
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Format < 0 || Format > 3) begin : g_refused_0
     Format_is_0_to_3 u_refused ();
   end
-  if (Phase < 0 || Phase > 3) begin : g_refused_4
+  if (Phase < 0 || Phase > 3) begin : g_refused_1
     Phase_is_0_to_3 u_refused ();
   end
-  if (Format == 0 && Bits != 8 && Bits != 10 && Bits != 12) begin : g_refused_1
+  if (Format == 0 && Bits != 8 && Bits != 10 && Bits != 12) begin : g_refused_2
     Bits_of_RAW_are_8_10_or_12 u_refused ();
   end
-  if ((Format == 1 || Format == 2) && Bits != 8) begin : g_refused_2
+  if ((Format == 1 || Format == 2) && Bits != 8) begin : g_refused_3
     Bits_of_RGB_are_8 u_refused ();
   end
-  if (Format == 3 && Bits != 10) begin : g_refused_3
+  if (Format == 3 && Bits != 10) begin : g_refused_4
     Bits_of_YUYV_are_10 u_refused ();
   end
 

@@ -71,7 +71,6 @@ module round_divide #(
     if (en) mean <= clipped[Bits] | quotients[Bits] == '1 ? '1 : quotients[Bits] + Bits'(up);
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (UpperWidth < 1 || WeightWidth < 1 || Drop < 0) begin : g_refused
     TotalWidth_must_be_at_least_10_WeightWidth_at_least_1_and_Drop_at_least_0 u_refused ();
   end

@@ -116,7 +116,6 @@ module row_sums #(
     assign out_red_columns = '0;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Bayer < 0 || Bayer > 1) begin : g_refused_0
     Bayer_is_0_or_1 u_refused ();
   end

@@ -85,7 +85,6 @@ module td_async_fifo #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (DepthLog2 < 2) begin : g_refused
     DepthLog2_must_be_at_least_2 u_refused ();
   end

@@ -103,7 +103,6 @@ module td_block_sum #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (BlockLog2 < 1) begin : g_refused_0
     BlockLog2_must_be_at_least_1 u_refused ();
   end

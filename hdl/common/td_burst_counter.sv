@@ -36,7 +36,6 @@ module td_burst_counter #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 2) begin : g_refused
     Size_must_be_at_least_2 u_refused ();
   end

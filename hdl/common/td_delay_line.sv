@@ -55,7 +55,6 @@ module td_delay_line #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Delay < 1) begin : g_refused
     Delay_must_be_at_least_1 u_refused ();
   end

@@ -53,7 +53,6 @@ module td_divide #(
     if (rst) dividing <= 1'b0;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (DivisorWidth < 1 || QuotientWidth < 2) begin : g_refused
     DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2 u_refused ();
   end

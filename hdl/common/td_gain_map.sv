@@ -233,7 +233,6 @@ module td_gain_map #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (BlockLog2 < 1) begin : g_refused_0
     BlockLog2_must_be_at_least_1_a_node_is_read_in_a_clock_and_two_are_needed u_refused ();
   end

@@ -228,7 +228,6 @@ module td_node_map #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (BlockLog2 < 1) begin : g_refused_0
     BlockLog2_must_be_at_least_1_a_run_is_half_a_block u_refused ();
   end

@@ -53,7 +53,6 @@ module td_ram #(
     end
   endcase
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Depth < 2) begin : g_refused_0
     Depth_must_be_at_least_2 u_refused ();
   end

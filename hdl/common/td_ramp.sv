@@ -47,7 +47,6 @@ module td_ramp #(
     assign unused_clock = clk & en;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Count < 1 || Count != (1 << Levels)) begin : g_refused_0
     Count_must_be_a_power_of_two u_refused ();
   end

@@ -30,7 +30,6 @@ module td_rom #(
     always_ff @(posedge clk) if (en) data <= words[address];
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Depth < 2) begin : g_refused
     Depth_must_be_at_least_2 u_refused ();
   end

@@ -42,7 +42,6 @@ module td_round_saturate #(
     assign out = OutWidth'(sum);
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Drop >= InWidth) begin : g_refused_0
     Drop_must_leave_a_bit_of_the_input u_refused ();
   end

@@ -81,7 +81,6 @@ module beat_sums #(
   assign least_offset = g_node[1].first;
   assign greatest_offset = g_node[1].last;
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Lanes < 2 || Lanes != (1 << $clog2(Lanes))) begin : g_refused
     Lanes_must_be_a_power_of_two_at_least_2 u_refused ();
   end

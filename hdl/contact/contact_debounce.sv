@@ -44,7 +44,6 @@ module contact_debounce #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (AreaWidth < 1 || AreaWidth > 32) begin : g_refused
     AreaWidth_must_be_1_to_32 u_refused ();
   end

@@ -112,7 +112,6 @@ module contact_events
     if (rst) frame <= '0;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Rows * Columns < Latency) begin : g_refused
     a_frame_must_take_at_least_Latency_cycles u_refused ();
   end

@@ -191,7 +191,6 @@ module contact_sums
     16'(peak_row), 16'(peak_column), 32'(peak)
   };
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Width < 2 || Width > 32) begin : g_refused_0
     Width_must_be_2_to_32 u_refused ();
   end

@@ -52,7 +52,6 @@ module record_packets #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Words < 2) begin : g_refused
     Words_must_be_at_least_2 u_refused ();
   end

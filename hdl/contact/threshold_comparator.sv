@@ -50,7 +50,6 @@ module threshold_comparator #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Width < 2 || Width > 32) begin : g_refused_0
     Width_must_be_2_to_32 u_refused ();
   end

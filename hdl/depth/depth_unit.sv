@@ -130,7 +130,6 @@ module depth_unit
   logic unused_command;  // banks of other tables, bits of wider entries
   assign unused_command = ^{table_command, table_bank};
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (ZeroOffset < 0 || ZeroOffset > 1) begin : g_refused_0
     ZeroOffset_is_0_or_1 u_refused ();
   end

@@ -52,7 +52,6 @@ module frame_output
 
   always_ff @(posedge clk) if (en) bad_q <= bad;
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Rows < 2) begin : g_refused_0
     Rows_must_be_at_least_2 u_refused ();
   end

@@ -134,7 +134,6 @@ module zero_capture #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (MaxLog2 > 8) begin : g_refused
     MaxLog2_must_be_at_most_8 u_refused ();
   end

@@ -135,7 +135,6 @@ module flat_field
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Offset % 2 != 0) begin : g_refused
     Offset_must_be_even_it_is_subtracted_before_rounding_to_even u_refused ();
   end

@@ -78,7 +78,6 @@ module gradient_lookup
     if (rst) {out_valid, valid_q3, valid_q2, valid_q} <= '0;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (BitsPerChannel < 1 || BitsPerChannel > 8) begin : g_refused
     BitsPerChannel_must_be_1_to_8 u_refused ();
   end

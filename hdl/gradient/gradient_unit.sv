@@ -168,7 +168,6 @@ module gradient_unit
   logic unused_command;  // banks of other tables, bits of wider entries
   assign unused_command = ^{command, table_bank};
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Quadratic != 0 && FlatField == 0) begin : g_refused_0
     Quadratic_needs_FlatField u_refused ();
   end

@@ -193,7 +193,6 @@ module quadratic_gradient
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (CoeffWidth > WordWidth) begin : g_refused
     CoeffWidth_must_be_at_most_WordWidth u_refused ();
   end

@@ -152,7 +152,6 @@ module reference_capture
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (8 + 2 * BlockLog2 + MaxLog2 > Width) begin : g_refused_0
     a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits u_refused ();
   end

@@ -155,7 +155,6 @@ module back_substitution #(
     for (int lane = 0; lane < Lanes; lane++) saturations = saturations + ClippedWidth'(clipped_q[lane]);
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || (Lanes > 1 && Size / Lanes < Direct)) begin : g_refused
     Lanes_must_be_a_power_of_two_and_at_most_Size_by_4 u_refused ();
   end

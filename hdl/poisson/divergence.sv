@@ -77,7 +77,6 @@ module divergence
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Columns < 2) begin : g_refused
     Columns_must_be_at_least_2 u_refused ();
   end

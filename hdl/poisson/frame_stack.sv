@@ -194,7 +194,6 @@ module frame_stack #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 2) begin : g_refused_0
     Size_must_be_at_least_2 u_refused ();
   end

@@ -91,7 +91,6 @@ module poisson_unit
     );
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Tridiagonal == 0 && Rows != Columns) begin : g_refused_0
     the_spectral_solver_takes_square_grids_Rows_must_be_Columns u_refused ();
   end

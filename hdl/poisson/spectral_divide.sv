@@ -107,7 +107,6 @@ module spectral_divide #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused
     Size_must_be_a_power_of_two_at_least_2 u_refused ();
   end

@@ -80,7 +80,6 @@ module thomas_table #(
     always_ff @(posedge clk) if (en) coefficient <= inner;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused_0
     Size_must_be_a_power_of_two_at_least_2 u_refused ();
   end

@@ -186,7 +186,6 @@ module axil_registers
   logic unused_pins;
   assign unused_pins = ^{s_axil_awprot, s_axil_arprot};
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Rows < 1 || Rows > 65535) begin : g_refused_0
     Rows_does_not_fit_GRID u_refused ();
   end

@@ -99,7 +99,6 @@ module frame_guard
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Rows < 2 || Columns < 2) begin : g_refused
     Rows_and_Columns_must_be_at_least_2 u_refused ();
   end

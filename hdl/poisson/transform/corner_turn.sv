@@ -146,7 +146,6 @@ module corner_turn #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Lanes < 2 || Lanes != (1 << $clog2(Lanes)) || Size < 2 * Lanes || Size != (1 << $clog2(Size))) begin : g_refused
     Lanes_and_Size_must_be_powers_of_two_of_at_least_2_and_2_Lanes u_refused ();
   end

@@ -86,7 +86,6 @@ module row_reorder #(
     end
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
     Size_must_be_a_power_of_two_at_least_4 u_refused ();
   end

@@ -90,7 +90,6 @@ module sdf_fft #(
     if (rst) saturations <= '0;
   end
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 8 || Size != (1 << Log2Size)) begin : g_refused
     Size_must_be_a_power_of_two_at_least_8 u_refused ();
   end

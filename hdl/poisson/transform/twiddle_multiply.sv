@@ -118,7 +118,6 @@ module twiddle_multiply #(
   end
   assign saturations = 2'(clipped_q[0]) + 2'(clipped_q[1]);
 
-  // A module that does not exist stops every tool where a parameter is refused.
   if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused_0
     Size_must_be_a_power_of_two_at_least_2 u_refused ();
   end
