@@ -44,7 +44,7 @@ override PACKAGES := g++ git iverilog libpython3-dev perl python3-venv
 override need_icarus := command -v iverilog > /dev/null || { \
   echo 'Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`' >&2; exit 2; }
 
-.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate certify extremes report calibrate reflex baselines benchmark asic fpga synth wrap netlists system-tools setup clean
+.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate certify extremes report calibrate reflex baselines asic fpga synth wrap netlists system-tools setup clean
 override .DEFAULT_GOAL := sim
 
 # Print this list. docs/commands.md explains the variables.
@@ -120,10 +120,6 @@ reflex: $(STAMP)
 # Time the solve in software, frame by frame, against the clock cycles of the pipeline.
 baselines: $(BASELINES)
 	@exec $(PY) -m commands baselines $(given)
-
-# Time a camera picture to depth in the models, against another commit. BEFORE=32a97ff
-benchmark: $(STAMP)
-	@exec $(PY) -m commands benchmark $(given)
 
 # Write an HTML page with figures of latency, throughput, error, cost and extremes.
 report: $(STAMP)

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Time from uint8 pictures of a camera to depth in mm: bit-accurate, in double precision, and bit-accurate in a batch.
+
+Area average to 128 x 128, flat field, quadratic slopes, divergence, tridiagonal solve (Neumann), scale. Tables are
+prepared first. Pictures are a scene of the project. The suite does not collect this file: docs/commands.md.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.scenes import Press, render
+from tactile_depth.sensor import Camera, synthetic
+
+CAMERA = (240, 320)  # picture size of a GelSight Mini
+
+
+@pytest.mark.parametrize(("arithmetic", "pictures"), [("chip", 1), ("float", 1), ("chip", 16)])
+def test_picture_to_depth(benchmark: Any, arithmetic: str, pictures: int) -> None:
+    no_contact = render("flat", *CAMERA, press=Press(noise=0)).frames[0]
+    frames = render("bench", *CAMERA).frames
+    sensor = replace(synthetic(), camera=Camera(*CAMERA), model="quadratic")
+    pipeline = Pipeline(sensor, no_contact, grid=(128, 128), zero_offset=False, arithmetic=arithmetic)
+    result = benchmark(pipeline, frames[np.arange(pictures) % len(frames)])
+    benchmark.extra_info["pictures"] = pictures
+    assert result.depth_mm.shape == (pictures, 128, 128)
