@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from commands.run.calibrate import data_folder
-from tactile_depth.errors import InputError
 from tactile_depth.presses import GridPresses, camera_pitch_mm, gather, to_grid
 from tactile_depth.scenes import LIGHTS
+from tests import real_data
 
 CAMERA, PITCH = (112, 160), 0.1  # rows and columns, mm per pixel
 SENSITIVITY = 0.7  # deviation of a colour per unit of slope towards its light
@@ -91,7 +90,6 @@ def read(folder: Path, pitch_mm: float | None = None, **choices: Any) -> GridPre
 
 def real_folder() -> Path:
     """Return the folder of the real presses; skip the test if it is absent."""
-    try:
-        return data_folder()
-    except InputError as error:
-        pytest.skip(f"TACTILE_DATA names no folder with gelslam/: {error}")
+    if not real_data.PRESENT:
+        pytest.skip("TACTILE_DATA names no folder with gelslam/")
+    return real_data.FOLDER / "gelslam"

@@ -41,7 +41,6 @@ def pytest_configure(config: Any) -> None:
         "of `regress_verilator` on Verilator, in `make regress` only. With HDL_COVERAGE=1 all run on Verilator, "
         "because only Verilator counts coverage.",
     )
-    config.addinivalue_line("markers", "regress: runs in `make regress` only")
     for name in simulation.SIMULATORS:
         config.addinivalue_line("markers", f"{name}: runs in this simulator; set for each test of RTL")
     config.addinivalue_line(

@@ -67,7 +67,7 @@ def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, 
     assert depth_mm.dtype == np.float32
     np.testing.assert_array_equal(depth_mm, height.astype(np.float32))
     with Image.open(tmp_path / "depth_um.png") as picture:
-        assert picture.mode == "I;16"
+        assert (tmp_path / "depth_um.png").read_bytes()[24:26] == bytes([16, 0]), "16 bits of grey"
         assert picture.text["Description"].endswith("in micrometres")  # type: ignore[attr-defined]
         np.testing.assert_array_equal(np.array(picture), np.maximum(np.rint(1000 * height), 0))
     vertices, faces = read_ply(tmp_path / "depth.ply")

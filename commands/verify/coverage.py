@@ -190,7 +190,8 @@ def run_tests() -> int:
     worst = 0
     # The bins need every fault and disturbance with both solvers, so the top repeats its rare cases more often.
     for more, chosen in (({"MANY": str(MANY)}, [tests[TOP]]), ({}, cores)):
-        command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "-m", "verilator", *chosen]
+        command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "--timeout=3600"]
+        command += ["-m", "verilator", *chosen]
         settings = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": "1", **more}
         run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | settings, check=False)
         worst = max(worst, run.returncode)

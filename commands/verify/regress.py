@@ -199,7 +199,7 @@ def pytest_part(part: Part, bar: tqdm, jobs: int, arguments: list[str], environm
     """Run tests; their records become the lines of the part."""
     with tempfile.TemporaryDirectory() as folder:
         records = Path(folder) / "records.jsonl"
-        options = ["-vv", "-n", str(jobs), "--dist", "worksteal", f"--basetemp={folder}/tests"]
+        options = ["-vv", "--timeout=3600", "-n", str(jobs), "--dist", "worksteal", f"--basetemp={folder}/tests"]
         command = [sys.executable, "-m", "pytest", *options, *arguments]
         process = subprocess.Popen(
             command,

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from commands.common import repository, variables
 from commands.common.simulator import SIMULATORS
 
+REPORTS = ("--junitxml=build/junit.xml", "--durations=10", "--durations-min=20")
 WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
 ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from a second random power-up state too
 
@@ -24,7 +25,7 @@ def lint(cores: Sequence[str] = ()) -> list[str]:
 
 def pytest(tests: Sequence[str] = (), *, workers: str = "auto") -> list[str]:
     """Return the command that runs these test files, or the whole suite."""
-    return [sys.executable, "-m", "pytest", "-n", workers, "--dist", "worksteal", *tests]
+    return [sys.executable, "-m", "pytest", "-n", workers, "--dist", "worksteal", *REPORTS, *tests]
 
 
 def tests_of(cores: Sequence[str]) -> list[str]:
