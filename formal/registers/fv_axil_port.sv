@@ -71,13 +71,14 @@ module fv_axil_port
 
   always_comb begin
     no_access_in_reset: assert (!(rst && (write || read)));
+    nothing_taken_in_reset: assert (!(rst && (s_axil_awready || s_axil_wready || s_axil_arready)));
     if (started) begin
-      one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
-      one_read_in_flight: assert (s_axil_arready == !read_busy);
+      one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
+      one_read_in_flight: assert (s_axil_arready == (!read_busy && !rst));
       a_write_when_due: assert (write == (has_address && has_data && !answered && until_late == 3'd0 && !rst));
       response_when_due: assert (s_axil_bvalid == answered);
       answer_when_due: assert (s_axil_rvalid == (read_busy && until_late == 3'd0));
-      read_when_taken: assert (read == (s_axil_arvalid && s_axil_arready && !rst));
+      read_when_taken: assert (read == (s_axil_arvalid && s_axil_arready));
       if (write) begin
         its_own_register: assert (write_offset == 32'({address[AddressWidth-1:2], 2'd0}));
         its_own_bytes: assert (write_mask == strobed && write_ones == (word[31:0] & strobed));

@@ -5,7 +5,8 @@
 // in the clock after it. Read: `read` is high in the clock in which the address is taken, and read_data of that clock
 // leaves in the next; if read_late is high with `read`, late_data of 4 clocks later leaves in the clock after that, and
 // writes wait until then. A response waits for its ready, and the next transaction of its kind waits for the response.
-// No ready output depends on an input in the same clock. `refused`, with the data, makes the response SLVERR.
+// `refused`, with the data, makes the response SLVERR. No ready output depends on an input of the port in the same clock.
+// While rst is high every ready is low: no access is taken that would find no answer. A reset forgets those in flight.
 // Model: models/tactile_depth/registers/axil_port.py.
 
 `default_nettype none
@@ -57,14 +58,14 @@ module axil_port
   logic [3:0] strobe;
   logic [3:0] waiting;  // for late_data, one bit a clock
 
-  assign s_axil_awready = !address_held;
-  assign s_axil_wready = !data_held;
-  assign s_axil_arready = !s_axil_rvalid && waiting == '0;
+  assign s_axil_awready = !address_held && !rst;
+  assign s_axil_wready = !data_held && !rst;
+  assign s_axil_arready = !s_axil_rvalid && waiting == '0 && !rst;
   assign write = address_held && data_held && !s_axil_bvalid && waiting == '0 && !rst;
   assign write_offset = 32'({address[AddressWidth-1:2], 2'b00});
   assign write_mask = {{8{strobe[3]}}, {8{strobe[2]}}, {8{strobe[1]}}, {8{strobe[0]}}};
   assign write_ones = data & write_mask;
-  assign read = s_axil_arvalid && s_axil_arready && !rst;
+  assign read = s_axil_arvalid && s_axil_arready;
   assign read_offset = 32'({s_axil_araddr[AddressWidth-1:2], 2'b00});
 
   always_ff @(posedge clk) begin

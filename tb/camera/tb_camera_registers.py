@@ -55,7 +55,7 @@ class Checker:
         """Compare the outputs of one clock."""
         model, port, offered = self.model, self.port, axil_pins.pins(self.dut)
         resets = bool(self.pin("rst"))
-        outputs = axil_pins.expected(port) | {"settings": structs.pack("camera_settings_t", model.settings)}
+        outputs = axil_pins.expected(port, resets) | {"settings": structs.pack("camera_settings_t", model.settings)}
         offset, writes = port.read(offered), port.write()
         setup = Setup(*map(bool, map(self.pin, SETUP[:2])), *map(self.pin, SETUP[2:]))
         answer = (0, Response.OKAY) if offset is None else model.read(offset, setup)

@@ -29,13 +29,13 @@ def pins(dut: Any) -> Pins:
     )
 
 
-def expected(port: AxilPort) -> dict[str, int]:
+def expected(port: AxilPort, resets: bool) -> dict[str, int]:
     """Return the outputs of the port in this cycle; data and responses only while they are valid."""
     outputs = {
-        "awready": port.address is None,
-        "wready": port.data is None,
+        "awready": port.address is None and not resets,
+        "wready": port.data is None and not resets,
         "bvalid": port.written is not None,
-        "arready": port.read_ready,
+        "arready": port.read_ready and not resets,
         "rvalid": port.answer is not None,
     }
     values = {name: int(high) for name, high in outputs.items()}

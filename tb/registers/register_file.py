@@ -106,7 +106,7 @@ class Checker:
         """Compare the outputs of one cycle."""
         model, port, offered = self.model, self.port, axil_pins.pins(self.dut)
         resets, starts = bool(self.pin("rst")), bool(self.pin("frame_start"))
-        outputs = axil_pins.expected(port) | self.settings()
+        outputs = axil_pins.expected(port, resets) | self.settings()
         outputs["table_bank"] = model.banks.wanted(starts and not resets)
         command = {"select": model.table, "index": model.values["TABLE_INDEX"], "high": model.values["TABLE_HIGH"]}
         log2 = {t: register.unpack(model.values[register.name])["log2_frames"] for t, register in CAPTURES.items()}

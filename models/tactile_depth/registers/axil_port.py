@@ -78,13 +78,13 @@ class AxilPort:
     late: int = 0
 
     def reset(self) -> None:
-        """Forget the transactions in flight."""
+        """Forget the transactions in flight; while a reset lasts, none is taken."""
         self.address = self.data = self.written = self.answer = None
         self.late = 0
 
     @property
     def read_ready(self) -> bool:
-        """Return `arready`; the ready of address and data of a write is that none is held."""
+        """Return `arready` out of reset; the ready of address and data of a write is that none is held."""
         return self.answer is None and not self.late
 
     def write(self) -> Write | None:
