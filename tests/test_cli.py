@@ -16,9 +16,10 @@ import pytest
 from PIL import Image
 
 import tactile_depth as td
-from tactile_depth.cli.main import SIGNALS, main
+from tactile_depth.cli.main import main
 from tactile_depth.cli.overview import DARK, OUTSIDE, colours, draw_overview, round_number
 from tactile_depth.cli.ply import triangles
+from tactile_depth.interruption import SIGNALS
 from tests.real_data import FOLDER, needs_real_data
 
 GRID = ["--grid", "32x24"]
@@ -343,7 +344,7 @@ def test_a_signal_removes_the_draft(tmp_path: Path, inputs: Any, arguments: Any,
         time.sleep(0.02)
     process.send_signal(getattr(signal, name))
     _, errors = process.communicate(timeout=WAIT_S)
-    assert errors == f"tactile-depth: {SIGNALS[name]}\n"
+    assert errors == f"tactile-depth: {SIGNALS[getattr(signal, name)]}\n"
     assert process.returncode == 128 + getattr(signal, name)
     assert [path.name for path in tmp_path.iterdir()] == ["pictures.npy"]
 

@@ -19,6 +19,7 @@ from cocotb_tools.check_results import get_results
 from cocotb_tools.runner import Runner, Verilator, get_runner
 
 from commands.common.repository import HDL, ROOT
+from tactile_depth import files
 from tactile_depth.errors import InputError
 
 SIMULATORS = ("verilator", "icarus")
@@ -152,8 +153,8 @@ def _keep_runtime(folder: Path, runtime: Path) -> None:
     They are the same for every model, and take most of the time of a small build.
     """
     runtime.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=runtime.parent) as place:
-        kept = Path(place) / "runtime"
+    with files.temporary(runtime.parent) as place:
+        kept = place / "runtime"
         kept.mkdir()
         for compiled in folder.glob("verilated*.o"):
             shutil.copy(compiled, kept)

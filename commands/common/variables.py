@@ -4,7 +4,6 @@
 import math
 import os
 import re
-import signal
 import subprocess
 import sys
 import traceback
@@ -14,6 +13,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from commands.common import signals
+from tactile_depth import interruption
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.files import cause
 
@@ -139,7 +139,7 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
     leaves.
     """
     try:
-        with signals.stoppable(), warnings.catch_warnings():
+        with interruption.stoppable(signals.end_children), warnings.catch_warnings():
             warnings.showwarning = show_warning(target)
             yield
     except InputError as error:
@@ -147,8 +147,8 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
     except Mismatch as error:
         message, status = str(error), MISMATCH
     except KeyboardInterrupt as stop:
-        number = stop.number if isinstance(stop, signals.Stopped) else signal.SIGINT
-        message, status = "; ".join(filter(None, (signals.SIGNALS[number], interrupted))), 128 + number
+        number = interruption.number_of(stop)
+        message, status = "; ".join(filter(None, (interruption.SIGNALS[number], interrupted))), 128 + number
     except BrokenPipeError:
         message, status = "whatever reads the output has ended", FAILURE
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest at its end

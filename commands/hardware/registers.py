@@ -13,7 +13,6 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from textwrap import wrap as wrapped
 from typing import Any
 
@@ -26,6 +25,7 @@ from systemrdl.node import FieldNode, RegNode, RootNode
 
 from commands.common import variables, wrapper
 from commands.common.repository import ROOT, sources
+from tactile_depth import files
 
 FUSESOC = ROOT / "tactile_depth.core"
 LAYER = ROOT / "build" / "registers"
@@ -240,8 +240,8 @@ def generated(of: Map) -> dict[Path, str]:
     top = compiled(of.source).top
     registers = [register_of(node) for node in top.registers(unroll=True)]
     described = {"written_by": of.written_by, "address_width": address_width(registers), "registers": registers}
-    with TemporaryDirectory() as folder:
-        page, header = Path(folder) / of.page, Path(folder) / f"{of.name}.h"
+    with files.temporary() as folder:
+        page, header = folder / of.page, folder / f"{of.name}.h"
         MarkdownExporter().export(top, str(page), input_files=[str(of.source.relative_to(ROOT))])
         # Names by position, not by type: a type that is used twice would get a hash for its name.
         CHeaderExporter().export(top, str(header), reuse_typedefs=False, std=CStandard.gnu11)

@@ -2,9 +2,8 @@
 """Steps that make synth, make fpga and make asic share: from a request to a design that Yosys has read."""
 
 import shutil
-import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from commands.common import repository, run_request
@@ -32,22 +31,9 @@ def design(request: run_request.Request, source: str | None = None) -> tuple[Fra
     return frames, calibration, run_request.configure(request, calibration)
 
 
-@contextmanager
-def workspace(out: Path, names: Iterable[str]) -> Iterator[Path]:
-    """Make `out` and yield an empty folder inside it; the folder stays after a RuntimeError, which names a log in it.
-
-    Raises InputError or OSError.
-    """
-    files.make(out, names)
-    work = Path(tempfile.mkdtemp(prefix=".work-", dir=out)).resolve()
-    try:
-        yield work
-    except RuntimeError:
-        raise
-    except BaseException:
-        shutil.rmtree(work, ignore_errors=True)
-        raise
-    shutil.rmtree(work, ignore_errors=True)
+def workspace(out: Path, names: Iterable[str]) -> AbstractContextManager[Path]:
+    """Provide `files.workspace` that stays after a RuntimeError, which names a log in it."""
+    return files.workspace(out, names, keep=RuntimeError)
 
 
 def read(

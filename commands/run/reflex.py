@@ -16,7 +16,6 @@ import json
 import math
 import os
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -195,8 +194,8 @@ def loop(request: Request, setup: Setup, draws: Draws) -> list[Loop]:
             seed=request.seed,
         )
 
-    with tempfile.TemporaryDirectory() as work, threads(min(len(configs), os.cpu_count() or 1)) as pool:
-        folders = [Path(work).resolve() / config.solver for config in configs]
+    with files.temporary() as work, threads(min(len(configs), os.cpu_count() or 1)) as pool:
+        folders = [work / config.solver for config in configs]
         runs = [pool.submit(play, config, folder) for config, folder in zip(configs, folders, strict=True)]
 
         def left() -> int:

@@ -8,7 +8,6 @@ import importlib.metadata
 import importlib.util
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +17,7 @@ import matplotlib
 import numpy as np
 import scipy.fft
 
-from tactile_depth import reference
+from tactile_depth import files, reference
 from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
@@ -165,8 +164,8 @@ def with_c(size: int, threads: int, from_pixels: bool = False) -> Prepared:
 
     Raises RuntimeError: the compiler refuses it.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        library = Path(folder) / "solver.so"
+    with files.temporary() as folder:
+        library = folder / "solver.so"
         command = [*COMPILER, f"-DN={size}", str(SIMD_SOLVER), "-o", str(library), "-lm"]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
         if result.returncode:

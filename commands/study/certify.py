@@ -10,9 +10,7 @@ import json
 import math
 import os
 import sys
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
@@ -193,8 +191,8 @@ def stream(request: run_request.Request, config: Configuration, calibration: Sen
     monitor = Monitor()
     model = tactile_depth(frames, calibration, config, monitor)
     clipped = {node: count * request.repeat for node, count in sorted(monitor.saturations.items())}
-    with tempfile.TemporaryDirectory() as folder:
-        played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, Path(folder))
+    with files.temporary() as folder:
+        played = sim.simulate(request, config, Frames(frames, 1.0, "", labels), calibration, folder)
     codes = played.codes.reshape(request.repeat, *model.shape)
     report = {"frames": request.repeat * len(frames), "saturations": clipped, **sim_table.measure(played)}
     differences = sim_table.check_registers(played.registers, report, request.stalls)
@@ -220,7 +218,7 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
     if request.depth_range_mm == math.inf:
         name += "-worst"
     out = request.out or repository.ROOT / "build" / "certify" / name
-    files.make(out, RESULTS)  # refuse bad input before minutes of work
+    files.check(out, RESULTS)  # refuse bad input before minutes of work
 
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
     with tqdm(total=1.0, desc="certifying", leave=False, disable=None, delay=3, bar_format=shape) as bar:

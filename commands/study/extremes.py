@@ -295,7 +295,7 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
     simulation.check(simulator)
     for solver in COLUMNS:
         Configuration(columns=size, solver=solver)
-    files.make(out, RESULTS)  # refuse bad input before minutes of work
+    files.check(out, RESULTS)  # refuse bad input before minutes of work
     plan = [
         (extreme, solver)
         for solver in COLUMNS

@@ -13,7 +13,6 @@ import logging
 import os
 import re
 import sys
-import tempfile
 import zipfile
 from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
@@ -180,8 +179,8 @@ def on_cluster(client: Any, rows: list[Choices]) -> Generator[Row]:
     from dask.distributed import as_completed
 
     try:
-        with tempfile.TemporaryDirectory() as folder:
-            client.upload_file(str(_packed(Path(folder))))
+        with files.temporary() as folder:
+            client.upload_file(str(_packed(folder)))
         futures = client.map(measure, rows, pure=False)
         for _, row in as_completed(futures, with_results=True):  # type: ignore[no-untyped-call]
             if row["models"] != VERSION:

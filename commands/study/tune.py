@@ -329,7 +329,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     print(how)
-    files.make(out, ("config.json", "report.json"))
+    files.check(out, ("config.json", "report.json"))
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
         measure = _measurement(tuning, calibration, widest, bar)

@@ -13,13 +13,11 @@ import re
 import resource
 import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,6 +25,7 @@ from tqdm import tqdm
 
 from commands.common import markdown, repository, variables
 from commands.run import bench
+from tactile_depth import files
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
@@ -153,13 +152,13 @@ def compare(job: Job, seed: int) -> dict[str, Any]:
     profiles = [bench.entry("sink", bench.chance(job.stalls)), bench.entry("source", bench.chance(job.gaps))]
     bench.build(job.simulator, config)
     began = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
+    with files.temporary() as folder:
         played = bench.play(
             job.simulator,
             config,
             calibration,
             np.concatenate([np.array(profiles, np.uint32), bench.frame_entries(frames)]),
-            Path(folder),
+            folder,
             clocks=int(3 * (count + 4) * pixels / (1 - job.gaps) / (1 - job.stalls)),
             total_frames=count,
             seed=seed,
@@ -197,8 +196,8 @@ class Part:
 
 def pytest_part(part: Part, bar: tqdm, jobs: int, arguments: list[str], environment: dict[str, str]) -> None:
     """Run tests; their records become the lines of the part."""
-    with tempfile.TemporaryDirectory() as folder:
-        records = Path(folder) / "records.jsonl"
+    with files.temporary() as folder:
+        records = folder / "records.jsonl"
         options = ["-vv", "--timeout=3600", "-n", str(jobs), "--dist", "worksteal", f"--basetemp={folder}/tests"]
         command = [sys.executable, "-m", "pytest", *options, *arguments]
         process = subprocess.Popen(

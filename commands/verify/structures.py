@@ -9,13 +9,13 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from commands.common import repository
+from tactile_depth import files
 
 FOLDER = "STRUCTURES"  # environment variable
 ARGUMENTS = "arguments.json"  # beside the ROM files of a structure
@@ -40,7 +40,7 @@ def structures(core: str) -> tuple[Structure, ...]:
     """
     test = repository.cores()[core].test
     assert test is not None, core
-    with tempfile.TemporaryDirectory() as folder:
+    with files.temporary() as folder:
         command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", f"--basetemp={folder}/tests", str(test)]
         environment = os.environ | {FOLDER: f"{folder}/structures", "SIM": "verilator"}
         ended = subprocess.run(
@@ -48,7 +48,7 @@ def structures(core: str) -> tuple[Structure, ...]:
         )
         if ended.returncode:
             raise RuntimeError(f"the structures of {core} cannot be read from {test}:\n{ended.stdout[-2000:]}")
-        written = sorted(Path(folder, "structures").iterdir(), key=lambda path: int(path.name))
+        written = sorted((folder / "structures").iterdir(), key=lambda path: int(path.name))
         return tuple(_structure(path) for path in written)
 
 

@@ -7,12 +7,14 @@ import contextlib
 import errno
 import json
 import os
+import secrets
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
+from tactile_depth import interruption
 from tactile_depth.errors import InputError
 
 # Failures of the machine; all others are due to the path.
@@ -21,17 +23,26 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 SHORT_WRITE = " requested and "  # of numpy, whose error has no number: "4096 requested and 512 written"
 
 
-def make(folder: Path, files: Iterable[str] = (), path: str = "") -> list[Path]:
-    """Make a folder and check that `files` can be written there.
+@contextmanager
+def workspace(
+    folder: Path,
+    files: Iterable[str] = (),
+    path: str = "",
+    keep: type[BaseException] | tuple[type[BaseException], ...] = (),
+) -> Iterator[Path]:
+    """Make a folder and yield an empty one inside it, which is removed at the end, however that comes about.
+
+    Folders that were missing are removed too when they stay empty. All have their names before they exist, so that a
+    signal at any time leaves none behind.
 
     Parameters
     ----------
+    files : names of str
+        Files that are to be written into `folder`.
     path : str
         Path that errors name, if the user gave another one than that of the folder.
-
-    Returns
-    -------
-    folders that were missing, innermost first
+    keep
+        Exceptions after which the folders stay, unless a signal caused them.
 
     Raises
     ------
@@ -40,7 +51,26 @@ def make(folder: Path, files: Iterable[str] = (), path: str = "") -> list[Path]:
     OSError
         The machine failed, with a full disk for example.
     """
-    given, names = path or str(folder), tuple(files)
+    missing = [part for part in (folder, *folder.parents) if not os.path.lexists(part)]
+    work = Path.cwd() / folder / f".work-{secrets.token_hex(8)}"
+    stays = False
+    try:
+        _create(folder, work, tuple(files), path)
+        yield work.resolve()
+    except keep:
+        stays = interruption.received() is None
+        raise
+    finally:
+        if not stays:
+            try:
+                _remove(work, missing)
+            finally:  # a signal may have cut the first time short, and rmtree ignores some exceptions of its handler
+                _remove(work, missing)
+
+
+def _create(folder: Path, work: Path, names: Iterable[str], path: str) -> None:
+    """Make a folder and `work` inside it, as `workspace` says."""
+    given = path or str(folder)
     try:
         for part in (folder, *folder.parents):
             if part.is_symlink() and not part.exists():
@@ -50,14 +80,12 @@ def make(folder: Path, files: Iterable[str] = (), path: str = "") -> list[Path]:
                 )
         if folder.exists() and not folder.is_dir():
             raise InputError(f"folder={given}{f': {folder}' if path else ''} is a file: give a folder")
-        missing = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
         refuse_folders(folder, names, path)
         for name in names:
             with contextlib.suppress(FileNotFoundError):
                 os.lstat(folder / name)  # refuses a name that no file can have
-        with tempfile.TemporaryFile(dir=folder):
-            return missing
+        work.mkdir(mode=0o700)
     except InputError:
         raise
     except (OSError, ValueError) as error:
@@ -65,6 +93,32 @@ def make(folder: Path, files: Iterable[str] = (), path: str = "") -> list[Path]:
             raise
         reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
         raise InputError(f"folder={given} cannot be written ({reason}): give a folder that can") from error
+
+
+def _remove(work: Path, empty: Iterable[Path]) -> None:
+    """Remove a folder with all that it holds, and others if they are empty."""
+    with contextlib.suppress(OSError, ValueError):
+        shutil.rmtree(work, ignore_errors=True)
+    for folder in empty:
+        with contextlib.suppress(OSError, ValueError):
+            folder.rmdir()
+
+
+def temporary(inside: Path | None = None) -> AbstractContextManager[Path]:
+    """Provide an empty folder as `workspace` does, by default where the system has its temporary files."""
+    return workspace(inside or Path(tempfile.gettempdir()))
+
+
+def check(folder: Path, files: Iterable[str] = ()) -> None:
+    """Raise what `workspace` raises, and leave no folder behind."""
+    with workspace(folder, files):
+        pass
+
+
+def make(folder: Path, files: Iterable[str] = ()) -> None:
+    """Make a folder in which `files` can be written; raise what `workspace` raises."""
+    check(folder, files)
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def refuse_folders(folder: Path, files: Iterable[str], path: str = "") -> None:
@@ -75,30 +129,6 @@ def refuse_folders(folder: Path, files: Iterable[str], path: str = "") -> None:
             raise InputError(
                 f"folder={path or folder} cannot be written ({name}{place} is a folder): remove it or give another"
             )
-
-
-@contextmanager
-def workspace(folder: Path, files: Iterable[str] = (), path: str = "") -> Iterator[Path]:
-    """Make a folder and yield an empty one inside it, which is removed at the end, however that comes about.
-
-    Folders that were missing are removed too when they stay empty.
-
-    Raises
-    ------
-    InputError, OSError
-        As `make` does.
-    """
-    missing = make(folder, files, path)
-    work = None
-    try:
-        work = Path(tempfile.mkdtemp(prefix=".work-", dir=folder)).resolve()
-        yield work
-    finally:
-        if work is not None:
-            shutil.rmtree(work, ignore_errors=True)
-        for created in missing:
-            with contextlib.suppress(OSError):
-                created.rmdir()
 
 
 def replace(work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = ()) -> None:
@@ -143,7 +173,7 @@ def new_files(folder: Path, index: str, key: str = "tables") -> Iterator[Path]:
     Raises
     ------
     InputError, OSError
-        As `make` does.
+        As `workspace` does.
     """
     with workspace(folder, (index,)) as work:
         yield work

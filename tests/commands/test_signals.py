@@ -17,6 +17,7 @@ import pytest
 
 from commands.common import signals, variables
 from commands.common.repository import ROOT
+from tactile_depth import interruption
 
 ENDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated by SIGTERM", signal.SIGHUP: "terminated by SIGHUP"}
 LONG = ["N=64", "SIM=icarus", "REPEAT=1000"]  # minutes
@@ -136,7 +137,7 @@ def test_a_signal_while_modules_are_imported_prints_one_line(tmp_path: Path) -> 
 def test_an_ignored_signal_stays_ignored() -> None:
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        with signals.stoppable():
+        with interruption.stoppable(signals.end_children):
             os.kill(os.getpid(), signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
@@ -161,7 +162,7 @@ def test_a_second_signal_does_not_cut_the_cleaning_up_short() -> None:
 
 def test_handlers_come_back() -> None:
     before = [signal.getsignal(number) for number in ENDS]
-    with signals.stoppable():
+    with interruption.stoppable(signals.end_children):
         assert [signal.getsignal(number) for number in ENDS] != before
     assert [signal.getsignal(number) for number in ENDS] == before
 
@@ -173,9 +174,9 @@ def test_grandchildren_end_and_those_that_ignore_sigterm_too() -> None:
     outer = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {inner!r}])"
     with subprocess.Popen([sys.executable, "-c", outer], stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline() == "up\n"  # type: ignore[union-attr]
-        assert len(signals.children()) == 2
+        assert len(signals.living()) == 2
         signals.end_children()
-        assert signals.children() == []
+        assert signals.living() == []
         assert process.wait(WAIT_S) == -signal.SIGTERM
 
 
@@ -199,5 +200,5 @@ def test_calls_of_a_pool_that_have_not_begun_are_cancelled() -> None:
     with pytest.raises(SystemExit), variables.reported("lint"):
         command()
     assert calls == [0]
-    assert signals.children() == []
+    assert signals.living() == []
     assert time.monotonic() - begun < WAIT_S / 2

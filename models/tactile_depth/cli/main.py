@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import argparse
 import re
-import signal
 import sys
-import threading
 import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from types import FrameType
 from typing import NoReturn
 
+from tactile_depth import interruption
 from tactile_depth.cli import depth, live
 from tactile_depth.cli.failure import Failure
 from tactile_depth.errors import InputError, InputWarning
@@ -25,7 +23,6 @@ from tactile_depth.files import cause
 
 PROGRAM = "tactile-depth"
 BAD_INPUT, FAILED = 2, 3
-SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "terminated by SIGTERM", "SIGHUP": "terminated by SIGHUP"}
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
 
 # Errors of the package name arguments; a user of the command gave options.
@@ -86,30 +83,11 @@ def _warnings_in_lines() -> Iterator[list[str]]:
         yield lines
 
 
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Turn SIGTERM and SIGHUP into a KeyboardInterrupt with the number of the signal, as SIGINT gives one."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread may change what a signal does
-        return
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise KeyboardInterrupt(number)
-
-    numbers = [getattr(signal, name) for name in SIGNALS if name != "SIGINT" and hasattr(signal, name)]
-    before = {number: signal.signal(number, stop) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     try:
         parsed = _parser().parse_args(arguments)
-        with _interruptible(), _warnings_in_lines() as lines:
+        with interruption.stoppable(), _warnings_in_lines() as lines:
             parsed.run(parsed, lines)
     except InputError as error:
         print(f"{PROGRAM}: {named(str(error))}", file=sys.stderr)
@@ -121,8 +99,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{PROGRAM}: {cause(error)}", file=sys.stderr)
         return FAILED
     except KeyboardInterrupt as stop:
-        number = signal.Signals(stop.args[0] if stop.args else signal.SIGINT)
-        print(f"{PROGRAM}: {SIGNALS[number.name]}", file=sys.stderr)
+        number = interruption.number_of(stop)
+        print(f"{PROGRAM}: {interruption.SIGNALS[number]}", file=sys.stderr)
         return 128 + number
     except Exception:
         traceback.print_exc()
