@@ -24,14 +24,14 @@ module tactile_depth
   parameter int Tridiagonal = DefaultTridiagonal, parameter int Neumann = DefaultNeumann,
   parameter int Rows = DefaultRows, parameter int Size = DefaultSize, parameter int Lanes = DefaultLanes,
   parameter int GradientWidth = DefaultGradientWidth, parameter int GradientFraction = DefaultGradientFraction,
-  parameter int DataWidth = DefaultDataWidth, parameter int Width = DefaultWidth,
-  parameter int CoeffWidth = DefaultCoeffWidth, parameter int FrameLatency = DefaultFrameLatency,
+  parameter int DataWidth = DefaultDataWidth, parameter int CoeffWidth = DefaultCoeffWidth,
+  parameter int FrameLatency = DefaultFrameLatency,
   parameter int RowForwardOut = DefaultRowForwardOut, parameter int ColumnForwardIn = DefaultColumnForwardIn,
   parameter int ColumnInverseOut = DefaultColumnInverseOut, parameter int RowInverseIn = DefaultRowInverseIn,
   parameter int RowInverseOut = DefaultRowInverseOut, parameter int StoreStyle = DefaultStoreStyle,
   parameter int DivideShiftWidth = DefaultDivideShiftWidth, parameter int DivideDrop = DefaultDivideDrop,
   // Of the tridiagonal solver.
-  parameter int StoreDrop = DefaultStoreDrop, parameter int WordsPerRow = DefaultWordsPerRow,
+  parameter int WordsPerRow = DefaultWordsPerRow,
   parameter int TableWords = DefaultTableWords, parameter int SettledWidth = DefaultSettledWidth,
   parameter int LastShiftWidth = DefaultLastShiftWidth, parameter int MomentDrop = DefaultMomentDrop,
   parameter int MeanReciprocal = DefaultMeanReciprocal, parameter int MeanDrop = DefaultMeanDrop,
@@ -39,13 +39,9 @@ module tactile_depth
   // depth less what it reads where nothing touches.
   parameter int BitsPerChannel = DefaultBitsPerChannel, parameter int Quadratic = DefaultQuadratic,
   parameter int FlatField = DefaultFlatField, parameter int ZeroOffset = DefaultZeroOffset,
-  parameter int BlockLog2 = DefaultBlockLog2, parameter int ZeroLog2 = DefaultZeroLog2,
-  parameter int CaptureLog2 = DefaultCaptureLog2, parameter int GainWidth = DefaultGainWidth,
-  parameter int GainFraction = DefaultGainFraction, parameter int ColourWidth = DefaultColourWidth,
-  parameter int ColourDrop = DefaultColourDrop, parameter int ColourOffset = DefaultColourOffset,
-  parameter int ColourFlat = DefaultColourFlat, parameter int PolynomialWords = DefaultPolynomialWords,
-  parameter int PolynomialWidth = DefaultPolynomialWidth, parameter int ColourCoeffWidth = DefaultColourCoeffWidth,
-  parameter int SlopeDrop = DefaultSlopeDrop,
+  parameter int BlockLog2 = DefaultBlockLog2, parameter int CaptureLog2 = DefaultCaptureLog2,
+  parameter int GainWidth = DefaultGainWidth,
+  parameter int ColourDrop = DefaultColourDrop, parameter int SlopeDrop = DefaultSlopeDrop,
   // For the host alone: depth and slope of code 1, mantissa * 2^exponent; width of a pixel, 0: unknown.
   parameter int DepthMantissa = DefaultDepthMantissa, parameter int DepthExponent = DefaultDepthExponent,
   parameter int SlopeMantissa = DefaultSlopeMantissa, parameter int SlopeExponent = DefaultSlopeExponent,
@@ -121,9 +117,7 @@ module tactile_depth
   gradient_unit #(
     .TableFolder(TableFolder), .Rows(Rows), .Columns(Size), .GradientWidth(GradientWidth),
     .BitsPerChannel(BitsPerChannel), .FlatField(FlatField), .Quadratic(Quadratic), .BlockLog2(BlockLog2),
-    .GainWidth(GainWidth), .GainFraction(GainFraction), .CaptureLog2(CaptureLog2), .ColourWidth(ColourWidth),
-    .ColourDrop(ColourDrop), .ColourOffset(ColourOffset), .ColourFlat(ColourFlat), .PolynomialWords(PolynomialWords),
-    .PolynomialWidth(PolynomialWidth), .ColourCoeffWidth(ColourCoeffWidth), .SlopeDrop(SlopeDrop)
+    .GainWidth(GainWidth), .CaptureLog2(CaptureLog2), .ColourDrop(ColourDrop), .SlopeDrop(SlopeDrop)
   ) u_gradient (
     .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
     .capture_command(reference_command), .capture_status(reference_status), .dark, .saturations(slope_saturations),
@@ -136,10 +130,10 @@ module tactile_depth
   logic [$clog2(Lanes):0] depth_saturations;
   poisson_unit #(
     .TableFolder(TableFolder), .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size),
-    .GradientWidth(GradientWidth), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
+    .GradientWidth(GradientWidth), .DataWidth(DataWidth), .CoeffWidth(CoeffWidth),
     .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
     .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .DivideShiftWidth(DivideShiftWidth),
-    .DivideDrop(DivideDrop), .StoreStyle(StoreStyle), .StoreDrop(StoreDrop), .TableWords(TableWords),
+    .DivideDrop(DivideDrop), .StoreStyle(StoreStyle), .TableWords(TableWords),
     .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
     .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .WordsPerRow(WordsPerRow), .Lanes(Lanes)
   ) u_poisson (
@@ -153,7 +147,7 @@ module tactile_depth
   logic [31:0] depth_time;
   depth_unit #(
     .TableFolder(TableFolder), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .Lanes(Lanes),
-    .FrameLatency(FrameLatency), .ZeroOffset(ZeroOffset), .BlockLog2(BlockLog2), .ZeroLog2(ZeroLog2)
+    .FrameLatency(FrameLatency), .ZeroOffset(ZeroOffset), .BlockLog2(BlockLog2)
   ) u_depth (
     .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
@@ -183,7 +177,7 @@ module tactile_depth
     .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth),
     .GradientWidth(GradientWidth), .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
     .FlatField(FlatField), .Quadratic(Quadratic), .ZeroOffset(ZeroOffset), .Lanes(Lanes), .BlockLog2(BlockLog2),
-    .GainWidth(GainWidth), .PolynomialWords(PolynomialWords), .DepthMantissa(DepthMantissa),
+    .GainWidth(GainWidth), .DepthMantissa(DepthMantissa),
     .DepthExponent(DepthExponent), .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
   ) u_registers (
     .clk, .rst, .cold_rst, .s_axil_awaddr, .s_axil_awprot, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_config_pkg: parameters of the default configuration, and of options that it leaves out.
+// td_config_pkg: constants, parameters of the default configuration, and of options that it leaves out.
 //
 // Written by `make registers` from models/tactile_depth/configuration.py: change it there.
 
@@ -7,8 +7,18 @@
 
 package td_config_pkg;
 
+  localparam int GuardBits = 3;  // bits of the arithmetic below a stored word
+  localparam int PolynomialWords = 36;  // of the quadratic model: slopes, colours, terms
+  localparam int PolynomialWidth = 32;  // bits of such a word
+  localparam int ColourCoeffWidth = 18;  // its upper bits, which are multiplied
+  localparam int DeviationWidth = 14;  // bits of a colour relative to the reference
+  localparam int DeviationFraction = 12;  // fraction bits of it
+  localparam int CodeWidth = 8;  // bits of a colour that indexes the gradient table
+  localparam int FlatCode = 128;  // code of a colour that equals the reference
+  localparam int DarkestLog2 = 3;  // fraction bits of a gain beyond its width
+  localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
+
   localparam int DefaultSize = 128;
-  localparam int DefaultWidth = 27;
   localparam int DefaultCoeffWidth = 18;
   localparam int DefaultDataWidth = 24;
   localparam int DefaultRowForwardOut = 3;
@@ -27,19 +37,12 @@ package td_config_pkg;
   localparam int DefaultGradientWidth = 21;
   localparam int DefaultGradientFraction = 20;
   localparam int DefaultFrameLatency = 17221;
-  localparam int DefaultColourDrop = 20;
-  localparam int DefaultColourOffset = 0;
-  localparam int DefaultColourFlat = 128;
   localparam int DefaultFlatField = 0;
   localparam int DefaultQuadratic = 0;
   localparam int DefaultBlockLog2 = 3;
+  localparam int DefaultColourDrop = 20;
   localparam int DefaultGainWidth = 24;
-  localparam int DefaultGainFraction = 27;
-  localparam int DefaultColourWidth = 8;
   localparam int DefaultCaptureLog2 = 8;
-  localparam int DefaultPolynomialWords = 36;
-  localparam int DefaultPolynomialWidth = 32;
-  localparam int DefaultColourCoeffWidth = 18;
   localparam int DefaultSlopeDrop = 6;
   localparam int DefaultZeroOffset = 0;
   localparam int DefaultDepthMantissa = 9437184;
@@ -47,8 +50,6 @@ package td_config_pkg;
   localparam int DefaultSlopeMantissa = 8388608;
   localparam int DefaultSlopeExponent = -43;
   localparam int DefaultPitchNm = 0;
-  localparam int DefaultZeroLog2 = 8;
-  localparam int DefaultStoreDrop = 3;
   localparam int DefaultTableWords = 1379;
   localparam int DefaultSettledWidth = 7;
   localparam int DefaultLastShiftWidth = 1;

@@ -9,7 +9,7 @@ from commands.common import repository
 from tactile_depth.camera.camera_front_end import SETTINGS, camera_front_end_parameters, camera_settings
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.tactile_depth import CONSTANTS, top_parameters
 
 TOP = repository.HDL / "tactile_depth.sv"
 DEFAULTS = repository.HDL / "td_config_pkg.sv"
@@ -35,13 +35,14 @@ def default_parameters() -> dict[str, int]:
 
 def package() -> str:
     """Return the text of hdl/td_config_pkg.sv."""
-    constants = "".join(f"  localparam int Default{name} = {value};\n" for name, value in default_parameters().items())
+    constants = "".join(f"  localparam int {name} = {value};  // {what}\n" for name, (value, what) in CONSTANTS.items())
+    defaults = "".join(f"  localparam int Default{name} = {value};\n" for name, value in default_parameters().items())
     return (
         "// SPDX-License-Identifier: Apache-2.0\n"
-        "// td_config_pkg: parameters of the default configuration, and of options that it leaves out.\n"
+        "// td_config_pkg: constants, parameters of the default configuration, and of options that it leaves out.\n"
         "//\n"
         "// Written by `make registers` from models/tactile_depth/configuration.py: change it there.\n\n"
-        f"`default_nettype none\n\npackage td_config_pkg;\n\n{constants}\nendpackage\n\n"
+        f"`default_nettype none\n\npackage td_config_pkg;\n\n{constants}\n{defaults}\nendpackage\n\n"
         "`default_nettype wire\n"
     )
 

@@ -7,7 +7,7 @@
 `default_nettype none
 
 module fv_axil_registers
-  import td_config_pkg::DefaultGainWidth;
+  import td_config_pkg::*;
   import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
@@ -24,7 +24,7 @@ module fv_axil_registers
   localparam int GradientFraction = 20,
   localparam int BitsPerChannel   = 4,
   localparam int GradientWords    = Quadratic != 0 ? 0 : 1 << 3 * BitsPerChannel,
-  localparam int CoefficientWords = Quadratic != 0 ? 36 : 0,
+  localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0,
   localparam int ZeroWords       = 4 * 8,
   localparam int ReferenceWords   = 4 * ZeroWords,
   localparam int Tables = TableSelectSelectCount,
@@ -70,7 +70,7 @@ module fv_axil_registers
   axil_registers #(
     .Tridiagonal(1), .Neumann(1), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
     .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel), .FlatField(1), .Quadratic(Quadratic),
-    .ZeroOffset(1), .BlockLog2(1), .PolynomialWords(36), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
+    .ZeroOffset(1), .BlockLog2(1), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
     .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
   ) dut (.*);
 

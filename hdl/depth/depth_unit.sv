@@ -24,8 +24,7 @@ module depth_unit
   parameter int Lanes        = DefaultLanes,         // depths in a beat
   parameter int FrameLatency = DefaultFrameLatency,  // from pixel_frame_end to the frame's first word out of the solver
   parameter int ZeroOffset     = DefaultZeroOffset,
-  parameter int BlockLog2    = DefaultBlockLog2,      // ZeroOffset
-  parameter int ZeroLog2    = DefaultZeroLog2       // ZeroOffset
+  parameter int BlockLog2    = DefaultBlockLog2      // ZeroOffset
 ) (
   input  wire                         clk,
   input  wire                         rst,

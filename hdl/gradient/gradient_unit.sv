@@ -25,16 +25,9 @@ module gradient_unit
   parameter int Quadratic        = DefaultQuadratic,   // 1 needs FlatField
   parameter int BlockLog2        = DefaultBlockLog2,   // from here: FlatField
   parameter int GainWidth        = DefaultGainWidth,
-  parameter int GainFraction     = DefaultGainFraction,
   parameter int CaptureLog2      = DefaultCaptureLog2,
-  parameter int ColourWidth      = DefaultColourWidth,
   parameter int ColourDrop       = DefaultColourDrop,
-  parameter int ColourOffset     = DefaultColourOffset,
-  parameter int ColourFlat       = DefaultColourFlat,
-  parameter int PolynomialWords  = DefaultPolynomialWords,  // from here: Quadratic
-  parameter int PolynomialWidth  = DefaultPolynomialWidth,
-  parameter int ColourCoeffWidth = DefaultColourCoeffWidth,
-  parameter int SlopeDrop        = DefaultSlopeDrop
+  parameter int SlopeDrop        = DefaultSlopeDrop          // Quadratic
 ) (
   input  wire                             clk,
   input  wire                             rst,
@@ -83,6 +76,7 @@ module gradient_unit
 
   logic colour_valid;
   position_t colour_position;
+  localparam int ColourWidth = Quadratic != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
   logic [1:0] colour_saturations, slope_saturations;
   assign saturations = 3'(colour_saturations) + 3'(slope_saturations);
@@ -97,7 +91,8 @@ module gradient_unit
     flat_field #(
       .TableFolder(TableFolder),
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
-      .Offset(ColourOffset), .OutWidth(ColourWidth), .Flat(ColourFlat)
+      .Offset(Quadratic != 0 ? 1 << DeviationFraction : 0), .OutWidth(ColourWidth),
+      .Flat(Quadratic != 0 ? 0 : FlatCode)
     ) u_flat_field (
       .clk, .rst, .en, .dark_level, .table_bank(bank), .table_in_use(reference_in_use),
       .table_write(command.write & selected), .table_read(command.read & selected),
@@ -109,8 +104,8 @@ module gradient_unit
       .dark, .saturations(colour_saturations)
     );
     reference_capture #(
-      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth), .GainFraction(GainFraction),
-      .MaxLog2(CaptureLog2)
+      .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
+      .GainFraction(GainWidth + DarkestLog2), .MaxLog2(CaptureLog2)
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
       .busy(capture_busy), .done(capture_done),
@@ -171,19 +166,11 @@ module gradient_unit
   if (Quadratic != 0 && FlatField == 0) begin : g_refused_0
     Quadratic_needs_FlatField u_refused ();
   end
-  if (Quadratic == 0 && ColourWidth != 8) begin : g_refused_1
-    the_gradient_table_takes_colours_of_8_bits u_refused ();
-  end
-  if ((FlatField | Quadratic) > 1 || (FlatField | Quadratic) < 0) begin : g_refused_2
+  if ((FlatField | Quadratic) > 1 || (FlatField | Quadratic) < 0) begin : g_refused_1
     FlatField_and_Quadratic_are_0_or_1 u_refused ();
   end
-  if (FlatField != 0
-      && (GainWidth < 2 || GainWidth > 32 || ColourWidth < 2 || ColourFlat < 0 || ColourFlat >= 1 << ColourWidth))
-  begin : g_refused_3
-    GainWidth_must_be_2_to_32_and_ColourFlat_must_fit_ColourWidth u_refused ();
-  end
-  if (Quadratic != 0 && (PolynomialWidth > 32 || ColourCoeffWidth < 2 || PolynomialWords != 36)) begin : g_refused_4
-    PolynomialWidth_must_be_at_most_32_ColourCoeffWidth_at_least_2_PolynomialWords_36 u_refused ();
+  if (FlatField != 0 && (GainWidth < 2 || GainWidth > 32)) begin : g_refused_2
+    GainWidth_must_be_2_to_32 u_refused ();
   end
 
 endmodule

@@ -22,7 +22,6 @@ module poisson_unit
   parameter int Columns          = DefaultSize,
   parameter int GradientWidth    = DefaultGradientWidth,
   parameter int DataWidth        = DefaultDataWidth,
-  parameter int Width            = DefaultWidth,
   parameter int CoeffWidth       = DefaultCoeffWidth,
   parameter int RowForwardOut    = DefaultRowForwardOut,
   parameter int ColumnForwardIn  = DefaultColumnForwardIn,
@@ -32,8 +31,7 @@ module poisson_unit
   parameter int DivideShiftWidth = DefaultDivideShiftWidth,
   parameter int DivideDrop       = DefaultDivideDrop,
   parameter int StoreStyle       = DefaultStoreStyle,
-  parameter int StoreDrop        = DefaultStoreDrop,   // from here: tridiagonal
-  parameter int TableWords       = DefaultTableWords,
+  parameter int TableWords       = DefaultTableWords,   // from here: tridiagonal
   parameter int SettledWidth     = DefaultSettledWidth,
   parameter int LastShiftWidth   = DefaultLastShiftWidth,
   parameter int MomentDrop       = DefaultMomentDrop,
@@ -57,6 +55,7 @@ module poisson_unit
 );
 
   localparam int InWidth = GradientWidth + 2;  // of a divergence
+  localparam int Width = DataWidth + GuardBits;  // of the arithmetic
 
   logic divergence_valid, divergence_frame_start;
   logic signed [InWidth-1:0] divergence_data;
@@ -68,7 +67,7 @@ module poisson_unit
   if (Tridiagonal != 0) begin : g_tridiagonal
     tridiagonal_solver #(
       .TableFolder(TableFolder), .Rows(Rows), .Size(Columns), .Lanes(Lanes), .InWidth(InWidth), .DataWidth(DataWidth),
-      .Width(Width), .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut), .StoreDrop(StoreDrop),
+      .Width(Width), .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut), .StoreDrop(GuardBits),
       .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
       .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
       .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .StoreStyle(StoreStyle), .WordsPerRow(WordsPerRow)
@@ -94,14 +93,14 @@ module poisson_unit
   if (Tridiagonal == 0 && Rows != Columns) begin : g_refused_0
     the_spectral_solver_takes_square_grids_Rows_must_be_Columns u_refused ();
   end
-  if (DataWidth < 2 || DataWidth > 32 || DataWidth > Width) begin : g_refused_1
-    DataWidth_must_be_2_to_32_and_at_most_Width u_refused ();
+  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_1
+    DataWidth_must_be_2_to_32 u_refused ();
   end
   if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused_2
     Tridiagonal_and_Neumann_are_0_or_1 u_refused ();
   end
-  if (Width > 48 || GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_3
-    Width_must_be_at_most_48_GradientWidth_and_CoeffWidth_2_to_32 u_refused ();
+  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_3
+    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
   end
   if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_4
     StoreStyle_must_be_0_to_2 u_refused ();

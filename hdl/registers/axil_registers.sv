@@ -33,7 +33,6 @@ module axil_registers
   parameter int Lanes            = DefaultLanes,
   parameter int BlockLog2        = DefaultBlockLog2,
   parameter int GainWidth        = DefaultGainWidth,
-  parameter int PolynomialWords  = DefaultPolynomialWords,
   parameter int DepthMantissa    = DefaultDepthMantissa,
   parameter int DepthExponent    = DefaultDepthExponent,
   parameter int SlopeMantissa    = DefaultSlopeMantissa,

@@ -7,14 +7,17 @@ which are registers. A test elaborates the RTL and compares the counts.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tactile_depth.common import td_node_map
-from tactile_depth.configuration import Configuration
+from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, GUARD_BITS, POLYNOMIAL, Configuration
+from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.latency import GAIN_MAP, first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.poisson.transform.sdf_fft import stages
+from tactile_depth.sensor import COEFFICIENTS
 from tactile_depth.tactile_depth import top_parameters
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
@@ -147,8 +150,8 @@ def _colours(p: dict[str, int]) -> Parts:
         memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Size"] >> log2), core)] * 6
         memories += [Memory("delay lines", 3 * 8 + PIXEL_MARKS, GAIN_MAP, core)]
     if p["Quadratic"]:
-        core, width, words = "quadratic_gradient", p["PolynomialWidth"], p["PolynomialWords"]
-        multipliers += [Multiplier(p["ColourWidth"], p["ColourCoeffWidth"], core)] * 6
+        core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
+        multipliers += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
         memories += [Memory("tables", width, words // 6, core)] * 12
     else:
         memories += [Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2
@@ -169,13 +172,13 @@ def _zero(p: dict[str, int]) -> Parts:
     memories = [
         *[Memory("tables", data, words, "zero_offset")] * (tables * side),
         Memory("delay lines", lanes * data + DEPTH_MARKS, delay, "zero_offset"),
-        Memory("tables", side * (data + 2 * log2 + p["ZeroLog2"]), words, "zero_capture"),
+        Memory("tables", side * (data + 2 * log2 + LARGEST_LOG2), words, "zero_capture"),
     ]
     return [Multiplier(data + 1, weight, "zero_offset")] * side, memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:
-    size, data, width, coefficient = p["Size"], p["DataWidth"], p["Width"], p["CoeffWidth"]
+    size, data, width, coefficient = p["Size"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
     return _joined(
         _forward(p),
         ([], [Memory("frame stores", data, size * size, "transpose")] * 2),
@@ -191,7 +194,7 @@ def _spectral(p: dict[str, int]) -> Parts:
 
 
 def _tridiagonal(p: dict[str, int]) -> Parts:
-    size, rows, data, width, lanes = p["Size"], p["Rows"], p["DataWidth"], p["Width"], p["Lanes"]
+    size, rows, data, width, lanes = p["Size"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"]
     packed = p["WordsPerRow"]
     row_number = (rows - 1).bit_length() + 2  # 1 to rows, signed
     mean = [Multiplier(width, row_number), Multiplier(width, p["CoeffWidth"])] if p["Neumann"] else []
@@ -212,7 +215,7 @@ def _thomas(p: dict[str, int], running: int) -> Parts:
 
     The table of the last row is not among them: only the elimination has one.
     """
-    width, coefficient, words = p["Width"], p["CoeffWidth"], p["TableWords"]
+    width, coefficient, words = p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], p["TableWords"]
     return (
         [Multiplier(width, coefficient)],
         [
@@ -225,7 +228,7 @@ def _thomas(p: dict[str, int], running: int) -> Parts:
 
 def _forward(p: dict[str, int]) -> Parts:
     """Count the parts of dst_forward.sv, which forms only the real part of the product with the phase."""
-    phase = [Multiplier(p["Width"], p["CoeffWidth"])] * 2
+    phase = [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"])] * 2
     phases = [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]
     return _in("dst_forward", *_joined(_fft(p, inverse=False), (phase, phases)))
 
@@ -247,9 +250,9 @@ def _fft(p: dict[str, int], inverse: bool) -> Parts:
     multipliers, memories = [], []
     for stage in stages(p["Size"], inverse):
         if stage.delay > LONGEST_SHIFT:
-            memories.append(Memory("delay lines", 2 * (p["Width"] + 1), stage.delay))
+            memories.append(Memory("delay lines", 2 * (p["DataWidth"] + GUARD_BITS + 1), stage.delay))
         elif not stage.delay:
-            multipliers += [Multiplier(p["Width"], p["CoeffWidth"])] * 4
+            multipliers += [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"])] * 4
             memories.append(Memory("tables", 3 * p["CoeffWidth"], stage.block))
     return multipliers, memories
 

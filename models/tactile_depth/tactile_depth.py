@@ -11,11 +11,20 @@ import numpy as np
 
 from tactile_depth.common import td_node_map
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import POLYNOMIAL, Configuration
-from tactile_depth.depth.zero_capture import zero_capture_parameters
+from tactile_depth.configuration import (
+    COLOUR_COEFFICIENT,
+    DARKEST_LOG2,
+    DEVIATION,
+    GUARD_BITS,
+    POLYNOMIAL,
+    Configuration,
+)
+from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.depth.zero_offset import no_zero, zero_offset
 from tactile_depth.errors import InputError
 from tactile_depth.gradient.flat_field import (
+    CODE_WIDTH,
+    FLAT_CODE,
     PixelGains,
     deviations,
     flat_codes,
@@ -37,6 +46,22 @@ from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.device_description import description_parameters
 from tactile_depth.rom_files import write_gains, write_gradient, write_quadratic, write_solver, write_zero
 from tactile_depth.sensor import COEFFICIENTS, Sensor
+
+CONSTANTS = {
+    "GuardBits": (GUARD_BITS, "bits of the arithmetic below a stored word"),
+    "PolynomialWords": (math.prod(COEFFICIENTS), "of the quadratic model: slopes, colours, terms"),
+    "PolynomialWidth": (POLYNOMIAL.width, "bits of such a word"),
+    "ColourCoeffWidth": (COLOUR_COEFFICIENT.width, "its upper bits, which are multiplied"),
+    "DeviationWidth": (DEVIATION.width, "bits of a colour relative to the reference"),
+    "DeviationFraction": (DEVIATION.fraction, "fraction bits of it"),
+    "CodeWidth": (CODE_WIDTH, "bits of a colour that indexes the gradient table"),
+    "FlatCode": (FLAT_CODE, "code of a colour that equals the reference"),
+    "DarkestLog2": (DARKEST_LOG2, "fraction bits of a gain beyond its width"),
+    "ZeroLog2": (LARGEST_LOG2, "base-2 logarithm of the most frames in a capture of the zero offset"),
+}
+"""Numbers that both the models and the RTL use, and that no configuration changes, with their meaning."""
+DERIVED = ("InWidth", "Width", "StoreDrop")
+"""Parameters of a solver that hdl/poisson/poisson_unit.sv derives."""
 
 
 @dataclass(frozen=True)
@@ -154,9 +179,8 @@ def top_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[s
     tridiagonal = config.solver == "tridiagonal"
     solver = tridiagonal_solver if tridiagonal else spectral_solver
     parameters = solver.solver_parameters(config)
-    del parameters["InWidth"]
     return {
-        **parameters,
+        **{name: value for name, value in parameters.items() if name not in DERIVED},
         "Rows": config.rows,
         "Lanes": config.lanes,
         "Tridiagonal": int(tridiagonal),
@@ -176,22 +200,13 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     if not config.flat_field:
         return {"FlatField": 0, "Quadratic": 0}
     flat, capture = flat_field_parameters(config, quadratic), reference_capture_parameters(config)
-    colour = {f"Colour{name}": flat[name] for name in ("Drop", "Offset", "Flat")}
-    colour |= {"FlatField": 1, "Quadratic": int(quadratic), "BlockLog2": flat["BlockLog2"]}
-    colour |= {"GainWidth": flat["GainWidth"], "GainFraction": capture["GainFraction"], "ColourWidth": flat["OutWidth"]}
-    colour["CaptureLog2"] = capture["MaxLog2"]
-    if quadratic:
-        slope = gradient_parameters(config)
-        colour |= {"PolynomialWords": math.prod(COEFFICIENTS), "PolynomialWidth": slope["WordWidth"]}
-        colour |= {"ColourCoeffWidth": slope["CoeffWidth"], "SlopeDrop": slope["Drop"]}
-    return colour
+    colour = {"FlatField": 1, "Quadratic": int(quadratic), "BlockLog2": flat["BlockLog2"]}
+    colour |= {"ColourDrop": flat["Drop"], "GainWidth": flat["GainWidth"], "CaptureLog2": capture["MaxLog2"]}
+    return colour | ({"SlopeDrop": gradient_parameters(config)["Drop"]} if quadratic else {})
 
 
 def _zero_parameters(config: Configuration) -> dict[str, int]:
-    if not config.zero_offset:
-        return {"ZeroOffset": 0}
-    capture = zero_capture_parameters(config)
-    return {"ZeroOffset": 1, "BlockLog2": capture["BlockLog2"], "ZeroLog2": capture["MaxLog2"]}
+    return {"ZeroOffset": 1, "BlockLog2": config.reference_block_log2} if config.zero_offset else {"ZeroOffset": 0}
 
 
 def write_roms(

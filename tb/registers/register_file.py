@@ -31,7 +31,7 @@ INPUTS = (
 )
 PARAMETERS = (
     *("Tridiagonal", "Neumann", "Rows", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
-    *("FlatField", "Quadratic", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth", "PolynomialWords"),
+    *("FlatField", "Quadratic", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
     *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
 )
 

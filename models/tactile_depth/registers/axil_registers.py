@@ -8,6 +8,7 @@ write.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -17,6 +18,7 @@ from tactile_depth.registers.register_map import MAP, REGISTERS, TABLES
 from tactile_depth.registers.setting_registers import SettingRegisters
 from tactile_depth.registers.table_access import PORTS, SIZE, TableAccess
 from tactile_depth.registers.table_banks import CAPTURES, COMMIT, TableBanks
+from tactile_depth.sensor import COEFFICIENTS
 
 BY_OFFSET = {register.offset: register for register in MAP}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")
@@ -44,7 +46,7 @@ class Build:
         )
         sizes = {
             "gradient": 0 if p["Quadratic"] else 1 << 3 * p["BitsPerChannel"],
-            "coefficients": p["PolynomialWords"] if p["Quadratic"] else 0,
+            "coefficients": math.prod(COEFFICIENTS) if p["Quadratic"] else 0,
             "reference": 4 * nodes if p["FlatField"] else 0,
             "zero": nodes if p["ZeroOffset"] else 0,
         }
