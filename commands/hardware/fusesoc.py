@@ -10,16 +10,19 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 
-from commands.common import run_request, wrapper  # noqa: E402
-from commands.common.zero_offset import untouched, zero_of  # noqa: E402
-from commands.hardware import synth  # noqa: E402
-from tactile_depth.errors import InputError  # noqa: E402
-from tactile_depth.tactile_depth import top_parameters, write_roms  # noqa: E402
+try:
+    import yaml
+
+    from commands.common import run_request, wrapper
+    from commands.common.zero_offset import untouched, zero_of
+    from commands.hardware import synth
+    from tactile_depth.errors import InputError
+    from tactile_depth.tactile_depth import top_parameters, write_roms
+except ImportError as error:
+    sys.exit(f"tables of tactile_depth: {error} ({sys.executable}): run `make setup`, put {ROOT}/.venv/bin on PATH")
 
 
 def generate(description: Path, folder: Path) -> None:

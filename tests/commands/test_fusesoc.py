@@ -51,6 +51,13 @@ def generated(folder: Path, parameters: Any) -> Any:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
+def test_the_generator_without_its_libraries_says_what_to_do(tmp_path: Path) -> None:
+    command = [sys.executable, "-S", str(repository.ROOT / "commands" / "hardware" / "fusesoc.py"), "wanted.yml"]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr.count("\n")) == (1, 1)
+    assert "run `make setup`" in ended.stderr
+
+
 def test_the_generator_writes_parameters_and_tables(tmp_path: Path) -> None:
     assert generated(tmp_path, {"SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}).returncode == 0
     made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))

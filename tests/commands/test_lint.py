@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """make lint: each tool reports the defects that it must find, and a correct module passes all tools."""
 
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +134,20 @@ def test_every_tool_looks_at_every_core_and_at_the_whole() -> None:
     assert {(s.config.solver, s.config.neumann) for s in lint.structures() if s.name in names["yosys"]} == {  # type: ignore[union-attr]
         (solver, neumann) for solver in ("spectral", "tridiagonal") for neumann in (False, True)
     }
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_time_scale_of_the_user_gives_no_warning(tmp_path: Path, first: bool) -> None:
+    """Lint a core with a file of another design, which has a time scale, in front of it or behind it."""
+    other = tmp_path / "other.sv"
+    instance = ".clk(1'b0), .write_en(1'b0), .write_address('0), .write_data('0), .read_en(1'b0), .read_address('0)"
+    other.write_text(f"`timescale 1ns/1ps\nmodule other;\n  td_ram u_ram ({instance}, .read_data());\nendmodule\n")
+    files = [other, *repository.sources("td_ram")] if first else [*repository.sources("td_ram"), other]
+    command = ["verilator", "--lint-only", "-Wall", "-Wno-PINCONNECTEMPTY", "--top-module", "other"]
+    ended = subprocess.run(
+        [*command, str(repository.HDL / "verilator.vlt"), *map(str, files)], capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, "%Warning" in ended.stderr) == (0, False), ended.stderr
 
 
 def test_no_waiver_of_slang_is_idle() -> None:
