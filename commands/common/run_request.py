@@ -67,7 +67,7 @@ class Request:
 
 
 def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request:
-    """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
+    """Return the Request of KEY=VALUE arguments. Raises InputError."""
     values = variables.given(arguments, accepted)
     if "CONFIG" in values:
         values = from_file(Path(values.pop("CONFIG")), values, [name for name in accepted if name != "CONFIG"]) | values
@@ -76,7 +76,7 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
 
     def position(key: str) -> tuple[float, float]:
         try:
-            x, y = (float(part) for part in values.get(key, "0,0").split(","))
+            x, y = (variables.plain(part, float) for part in values.get(key, "0,0").split(","))
         except ValueError:
             x = y = math.nan
         if not (abs(x) <= SENSOR_WIDTH_MM and abs(y) <= SENSOR_WIDTH_MM):

@@ -40,6 +40,8 @@ VARIABLES = {
 }
 
 
+PLAIN = {int: r"[+-]?[0-9]+", float: r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"}
+PRINTABLE = re.compile("[!-^`-~]*")  # ASCII without space and _
 RENAMED = {"FLOOR": "ZERO"}  # old name: new name
 
 
@@ -48,9 +50,9 @@ class Mismatch(Exception):
 
 
 def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
-    """Return name to value of the variables that have a value.
+    """Return name to value of the variables.
 
-    Raises InputError: a name is not accepted, or an argument is not NAME=value."""
+    Raises InputError: a name is not accepted, or an argument is not NAME=value, or its value is empty."""
     names = tuple(accepted)
     values: dict[str, str] = {}
     for argument in arguments:
@@ -59,13 +61,21 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
             raise InputError(f"{name} is called {RENAMED[name]} now: give {RENAMED[name]}={value}")
         if not equals or name not in names:
             raise InputError(f"{argument}: unknown variable: {listed(names)}")
-        if value:
-            values[name] = value
+        if not value:
+            raise InputError(f"{name}= has no value: omit {name} for the default")
+        values[name] = value
     return values
 
 
 def listed(accepted: Sequence[str]) -> str:
     return f"accepted {'are' if len(accepted) > 1 else 'is'} {', '.join(accepted) or 'none'}"
+
+
+def plain(text: str, kind: type) -> Any:
+    """Return the number of kind int or float in a text; ValueError if it is not written in digits 0 to 9 alone."""
+    if not re.fullmatch(PLAIN[kind], text):
+        raise ValueError
+    return kind(text)
 
 
 def number(values: Mapping[str, str], name: str, default: Any, low: float, high: float, kind: type = int) -> Any:
@@ -76,20 +86,21 @@ def number(values: Mapping[str, str], name: str, default: Any, low: float, high:
     if not values.get(name):
         return default
     try:
-        value = kind(values[name])
+        value = plain(values[name], kind)
     except ValueError:
         value = math.nan
     if not low <= value <= high or value in (math.inf, -math.inf):
         what = "a whole number" if kind is int else "a number"
         to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
-        raise InputError(f"{name}={values[name]}: accepted is {what}{to}")
+        how = "" if PRINTABLE.fullmatch(values[name]) else ", in digits 0 to 9 without spaces and _"
+        raise InputError(f"{name}={values[name]}: accepted is {what}{to}{how}")
     return value
 
 
 def whole_numbers(values: Mapping[str, str], name: str, default: Sequence[int]) -> tuple[int, ...]:
     """Return the numbers in the variable `name`, with commas between; none where one is no whole number."""
     try:
-        return tuple(int(part) for part in values[name].split(",")) if values.get(name) else tuple(default)
+        return tuple(plain(part, int) for part in values[name].split(",")) if values.get(name) else tuple(default)
     except ValueError:
         return ()
 

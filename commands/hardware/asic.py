@@ -65,7 +65,7 @@ class Options:
 
 
 def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
-    """Return KEY=VALUE arguments as a request and options; an empty value means the default. Raises InputError."""
+    """Return KEY=VALUE arguments as a request and options. Raises InputError."""
     values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
     others = {key: value for key, value in values.items() if key not in OWN}
     if not others.keys() & {"SOLVER", "CONFIG"}:

@@ -93,15 +93,15 @@ class Request:
 
 
 def parse(arguments: list[str]) -> Request:
-    """Return KEY=VALUE arguments as a Request; an empty value means the default. Raises InputError."""
+    """Return KEY=VALUE arguments as a Request. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "SEEDS", "CLOCK_MHZ", "SENSOR", *CHOICES, *run_request.CAMERA))
     target = values.pop("TARGET", "")
     if target not in BOARDS:
         raise InputError(f"TARGET={target} is unknown: accepted is {', '.join(BOARDS)}")
     numbers = variables.whole_numbers(values, "SEEDS", (1, 2, 3))
     seeds = values.pop("SEEDS", "")
-    if not numbers or not all(0 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
-        raise InputError(f"SEEDS={seeds}: accepted are different whole numbers with commas between, as 1,2,3")
+    if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
+        raise InputError(f"SEEDS={seeds}: accepted are different whole numbers from 1 with commas between, as 1,2,3")
     clock_mhz = values.pop("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")

@@ -54,7 +54,7 @@ class Request:
 
 
 def parse(arguments: list[str]) -> Request:
-    """Read KEY=VALUE arguments; an empty value means the default. Raises InputError."""
+    """Read KEY=VALUE arguments. Raises InputError."""
     values = variables.given(arguments, VARIABLES)
     models = {"both": MODELS, **{model: (model,) for model in MODELS}}
     out = Path(values["OUT"]) if "OUT" in values else None

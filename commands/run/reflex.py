@@ -49,7 +49,7 @@ DECIDING_CLOCKS = 1  # cycles from the deciding depth on m_axis to `contact`
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
+    """Return the Request of KEY=VALUE arguments. Raises InputError."""
     accepted = ("N", "CLOCK_MHZ", "SPEED", "TRIALS", "HOST_TRIALS", "SEED", "SIM", "OUT")
     values = variables.given(arguments, accepted)
     number = partial(variables.number, values)

@@ -185,7 +185,7 @@ class Request:
 
 
 def parse(arguments: Sequence[str]) -> Request:
-    """Return the Request of KEY=VALUE arguments; an empty value means the default. Raises InputError."""
+    """Return the Request of KEY=VALUE arguments. Raises InputError."""
     values = variables.given(arguments, ("GRIDS", "RUNS", "CLOCK_MHZ", "OUT"))
     low, high = COLUMNS["spectral"]
     grids = variables.whole_numbers(values, "GRIDS", GRIDS)

@@ -136,6 +136,7 @@ def test_only_registers_without_reset_are_packed() -> None:
         ([], "TARGET= is unknown: accepted is ulx3s"),
         (["TARGET=ulx3s", "SEEDS=1,x"], "SEEDS=1,x: accepted are different whole numbers"),
         (["TARGET=ulx3s", "SEEDS=2,2"], "SEEDS=2,2"),
+        (["TARGET=ulx3s", "SEEDS=0"], "whole numbers from 1 with commas"),
         (["TARGET=ulx3s", "GAPS=0.5"], "GAPS=0.5: unknown variable"),
         (["TARGET=ulx3s", "N=100"], "100"),
         (["TARGET=ulx3s", "CLOCK_MHZ=90"], "CLOCK_MHZ=90: accepted are 25, 50, 75, 100, 150"),

@@ -323,7 +323,7 @@ def test_a_configuration_file_gives_variables_and_explicit_ones_win(tmp_path: Pa
     words = _config(
         tmp_path / "c.json", '{"SOLVER": "tridiagonal", "ROWS": 24, "COLS": 32, "DATA_WIDTH": 20, "AT": "1,0"}'
     )
-    request = run_request.parse([words, "DATA_WIDTH=22", "SEED="])
+    request = run_request.parse([words, "DATA_WIDTH=22"])
     assert (request.rows, request.columns, request.solver, request.data_width) == (24, 32, "tridiagonal", 22)
     assert request.press.at_mm == (1, 0)
     square = run_request.parse([words, "N=64"])

@@ -13,10 +13,28 @@ from tactile_depth.errors import InputError, InputWarning
 
 
 def test_given() -> None:
-    assert variables.given(["N=64", "OUT=", "AT=a=b"], ("N", "OUT", "AT")) == {"N": "64", "AT": "a=b"}
+    assert variables.given(["N=64", "AT=a=b"], ("N", "OUT", "AT")) == {"N": "64", "AT": "a=b"}
     for word in ("M=64", "N"):
         with pytest.raises(InputError, match=f"^{word}: unknown variable: accepted is N$"):
             variables.given([word], ("N",))
+
+
+def test_an_empty_value_is_refused() -> None:
+    with pytest.raises(InputError, match=r"^N= has no value: omit N for the default$"):
+        variables.given(["N="], ("N",))
+
+
+@pytest.mark.parametrize("word", [" 2", "2 ", "٢", "1_0", "2\n"])
+@pytest.mark.parametrize("kind", [int, float])
+def test_a_number_is_written_in_plain_digits(word: str, kind: type) -> None:
+    with pytest.raises(InputError, match=r"from 1 to 20, in digits 0 to 9 without spaces and _$"):
+        variables.number({"N": word}, "N", 7, 1, 20, kind)
+    assert variables.whole_numbers({"N": f"1,{word}"}, "N", (7,)) == ()
+
+
+@pytest.mark.parametrize(("word", "value"), [("2", 2), ("+2.5", 2.5), (".5", 0.5), ("5.", 5), ("-1e-1", -0.1)])
+def test_a_number_with_a_fraction(word: str, value: float) -> None:
+    assert variables.number({"N": word}, "N", 7, -9, 9, float) == value
 
 
 def test_number() -> None:
