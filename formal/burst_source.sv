@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// burst_source: every legal stream of bursts, for a bench: Size words in successive enabled clocks, Rows bursts a
+// burst_source: every legal stream of bursts, for a bench: Columns words in successive enabled clocks, Rows bursts a
 // frame, any gaps between bursts. It takes its choices from free inputs, so a bench needs no assumptions about its
 // stream.
 //
@@ -9,9 +9,9 @@
 `default_nettype none
 
 module burst_source #(
-  parameter int Size = 8,
-  parameter int Rows = 4,
-  localparam int PositionWidth = $clog2(Size),
+  parameter int Columns = 8,
+  parameter int Rows    = 4,
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows + 1)
 ) (
   input  logic                     clk,
@@ -32,14 +32,14 @@ module burst_source #(
   assign start = go & (left == '0);
   assign frame_start = start & (restart | (next_row == '0));
   assign active = start | (left != '0);
-  assign position = start ? '0 : PositionWidth'((PositionWidth + 1)'(Size) - left);
+  assign position = start ? '0 : PositionWidth'((PositionWidth + 1)'(Columns) - left);
   assign row = !start ? row_q : frame_start ? '0 : next_row;
   assign last_row = row == RowWidth'(Rows - 1);
 
   always_ff @(posedge clk) begin
     if (en) begin
       if (start) begin
-        left <= (PositionWidth + 1)'(Size - 1);
+        left <= (PositionWidth + 1)'(Columns - 1);
         row_q <= row;
         next_row <= last_row ? '0 : row + RowWidth'(1);
       end else if (left != '0) begin

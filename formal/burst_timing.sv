@@ -4,7 +4,7 @@
 `default_nettype none
 
 module burst_timing #(
-  parameter int Size    = 8,
+  parameter int Columns = 8,
   parameter int Latency = 23
 ) (
   input logic clk,
@@ -36,11 +36,11 @@ module burst_timing #(
       frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
     end
   end
-  if (Latency > Size) begin : g_next
+  if (Latency > Columns) begin : g_next
     always_comb begin
       if (started) begin
-        next_burst_behind: cover (out_start && !out_frame_start && start_q[Latency-Size-1] && en);
-        next_frame: cover (out_frame_start && start_q[Size-1:0] == '0);
+        next_burst_behind: cover (out_start && !out_frame_start && start_q[Latency-Columns-1] && en);
+        next_frame: cover (out_frame_start && start_q[Columns-1:0] == '0);
       end
     end
   end

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// lane_source: every legal stream of lanes, for a bench: frames of Rows bursts of Size words, row b in lane b mod Lanes,
-// each Size / Lanes clocks behind the row before. At least as many clocks lie between two frames, and any gaps.
+// lane_source: every legal stream of lanes, for a bench: frames of Rows bursts of Columns words, row b in lane b mod
+// Lanes, each Columns / Lanes clocks behind the row before. At least as many clocks lie between two frames, and any
+// gaps.
 
 `default_nettype none
 
 module lane_source #(
-  parameter int Size  = 16,
-  parameter int Rows  = 3,
-  parameter int Lanes = 2,
-  localparam int PositionWidth = $clog2(Size),
+  parameter int Columns = 16,
+  parameter int Rows    = 3,
+  parameter int Lanes   = 2,
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows + 1)
 ) (
   input  logic                           clk,
@@ -22,8 +23,8 @@ module lane_source #(
   output logic [Lanes*RowWidth-1:0]      row           // of the frame, counted as they come
 );
 
-  localparam int Step = Size / Lanes;
-  localparam int Length = (Rows - 1) * Step + Size + Step;  // to the earliest start of the next frame
+  localparam int Step = Columns / Lanes;
+  localparam int Length = (Rows - 1) * Step + Columns + Step;  // to the earliest start of the next frame
   localparam int TimeWidth = $clog2(Length + 1);
 
   logic [TimeWidth-1:0] left, now;
@@ -35,9 +36,9 @@ module lane_source #(
     logic [TimeWidth-1:0] since;
     logic [31:0] burst;
     assign since = now - TimeWidth'(lane * Step);
-    assign burst = 32'(since) / Size * Lanes + lane;
+    assign burst = 32'(since) / Columns * Lanes + lane;
     assign active[lane] = present && 32'(now) >= lane * Step && burst < Rows;
-    assign position[lane*PositionWidth+:PositionWidth] = PositionWidth'(since % TimeWidth'(Size));
+    assign position[lane*PositionWidth+:PositionWidth] = PositionWidth'(since % TimeWidth'(Columns));
     assign row[lane*RowWidth+:RowWidth] = RowWidth'(burst);
     assign start[lane] = active[lane] && position[lane*PositionWidth+:PositionWidth] == '0;
     assign frame_start[lane] = start[lane] && burst == lane;

@@ -63,10 +63,10 @@ PROOFS: tuple[Proof, ...] = (
             "td_burst_counter",
             "position counts the words of a burst, active just as long",
             why,
-            {"Size": size},
+            {"Words": words},
             depth=20,
         )
-        for size, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
+        for words, why in ((2, "the smallest"), (8, "one counter, the same logic at every power of two"))
     ),
     *(
         Proof(
@@ -342,7 +342,7 @@ PROOFS: tuple[Proof, ...] = (
             "row_reorder",
             "an arbitrary word at its place in the burst; latency 2 from the last word of a row",
             f"{ONE_ORDER}; {WORD_FREE}",
-            {"Size": size, "ToBurst": to_burst},
+            {"Columns": size, "ToBurst": to_burst},
             depth=2 * size + 12,
         )
         for size in (4, 8)
@@ -353,7 +353,7 @@ PROOFS: tuple[Proof, ...] = (
             "corner_turn",
             "an arbitrary word at its place in its row, rows in turn; latency 3 from the last word of a row",
             f"{ONE_ORDER}; two lanes, and the fewest with more than one memory for each half; {WORD_FREE}",
-            {"Size": size, "Lanes": lanes},
+            {"Columns": size, "Lanes": lanes},
             depth=36,
         )
         for size, lanes in ((4, 2), (8, 4))
@@ -363,7 +363,7 @@ PROOFS: tuple[Proof, ...] = (
             "transpose",
             "an arbitrary word at its place in its column; latency 2 from the first word of the last row",
             f"{ONE_ORDER}; {WORD_FREE}",
-            {"Size": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
+            {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
             depth=45,
         )
         for makhoul_in, makhoul_out in ((0, 1), (1, 0))
@@ -374,7 +374,7 @@ PROOFS: tuple[Proof, ...] = (
             "an arbitrary word at its place, last row first; latency 3 from the first word of the last row",
             "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
             f"a memory row that divide a burst, and not; rows that lanes divide, and not, and fewer; {WORD_FREE}",
-            {"Rows": rows, "Size": size, "WordsPerRow": words, "Lanes": lanes},
+            {"Rows": rows, "Columns": size, "WordsPerRow": words, "Lanes": lanes},
             depth=3 * rows * size + 5,
         )
         for rows, size, words, lanes in (
@@ -431,7 +431,7 @@ PROOFS: tuple[Proof, ...] = (
             "spectral_divide",
             "word t of burst p meets the reciprocal of the pair (p, t); latency 6",
             f"one recurrence for every size; {ROUNDING}",
-            {"Size": size},
+            {"Columns": size},
             depth=40,
             roms=reciprocal_rom(size),
         )
@@ -441,7 +441,7 @@ PROOFS: tuple[Proof, ...] = (
         "thomas_table",
         "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 5",
         "every row and position of a table with all its cases; contents do not matter",
-        {"Rows": 6, "Size": 4, "Words": 14},
+        {"Rows": 6, "Columns": 4, "Words": 14},
         roms=thomas_roms(6, 4, 14, 5, 3, 2),
     ),
     *(
@@ -511,7 +511,7 @@ PROOFS: tuple[Proof, ...] = (
             "forward_elimination",
             "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 9",
             f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
-            {"Rows": 3, "Size": 8, "Words": 16, "Neumann": neumann},
+            {"Rows": 3, "Columns": 8, "Words": 16, "Neumann": neumann},
             depth=60,
             roms=thomas_roms(3, 8, 16, 3, 2, 1),
         )
@@ -522,7 +522,7 @@ PROOFS: tuple[Proof, ...] = (
             "back_substitution",
             "the recursion up an arbitrary column, from lane to lane; latency 8",
             f"z that waits in the memory, and z that goes straight on; {ROUNDING}",
-            {"Rows": 3, "Size": size, "Words": 2 * size, "Lanes": lanes},
+            {"Rows": 3, "Columns": size, "Words": 2 * size, "Lanes": lanes},
             depth=60,
             roms=thomas_roms(3, size, 2 * size, 3, 2, 1),
         )

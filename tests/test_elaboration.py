@@ -10,13 +10,13 @@ from commands.common import repository, simulator, wrapper
 from tb.stream import REGRESS
 
 INVALID = {
-    "td_burst_counter": ["Size=1"],
+    "td_burst_counter": ["Words=1"],
     "td_delay_line": ["Delay=0"],
-    "row_reorder": ["Size=12", "Size=2"],
-    "transpose": ["Size=12", "Size=2"],
+    "row_reorder": ["Columns=12", "Columns=2"],
+    "transpose": ["Columns=12", "Columns=2"],
     "mode_pairs": ["Size=12", "Size=2"],
-    "frame_stack": ["Size=1", "Rows=1", "WordsPerRow=0", "Lanes=3", "Lanes=128"],
-    "corner_turn": ["Lanes=1", "Lanes=12", "Lanes=128", "Size=96"],
+    "frame_stack": ["Columns=1", "Rows=1", "WordsPerRow=0", "Lanes=3", "Lanes=128"],
+    "corner_turn": ["Lanes=1", "Lanes=12", "Lanes=128", "Columns=96"],
     "back_substitution": ["Lanes=3", "Lanes=64"],
     "frame_guard": ["Rows=1", "Columns=1"],
     "frame_output": ["Columns=12", "Rows=1"],
@@ -50,8 +50,8 @@ INVALID = {
     "camera_setup": ["AddressBytes=3", "QuarterClocks=3", "Entries=1", "Attempts=0", "DeviceId=67", "DeviceId=256"],
     "camera_registers": ["PictureColumns=8192", "WindowY=-1", "WindowRows=8192", "BlackLevel=4096", "BlueGain=65536"],
     "camera_front_end": ["Format=4", "WindowColumns=479", "WindowRows=481", "WordsPerPixel=0"],
-    "spectral_divide": ["Size=12", "Size=1"],
-    "thomas_table": ["Size=12", "Rows=1"],
+    "spectral_divide": ["Columns=12", "Columns=1"],
+    "thomas_table": ["Columns=12", "Rows=1"],
     "twiddle_multiply": ["Size=12", "Size=1", "Block=12", "Block=1", "Block=256"],
     "tactile_depth": ["Quadratic=1", "Rows=64", "DataWidth=33", "ZeroOffset=2"],
     "poisson_unit": [
@@ -140,7 +140,7 @@ def test_every_parameter_of_the_top_has_a_value_that_is_refused() -> None:
 
 
 VALID = [
-    *("td_burst_counter Size=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"),
+    *("td_burst_counter Words=2", "frame_guard Rows=2", "sdf_butterfly RotateBlock=4", "threshold_comparator Width=32"),
     *("contact_events Rows=4 Columns=8", "contact_events Rows=1024 Columns=1024 Width=32"),
 ]
 

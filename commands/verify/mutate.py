@@ -46,6 +46,7 @@ class Core:
     structures: tuple[int, ...] = (0,)
     protocol: str = ""  # formal/protocols/protocol_<protocol>.sv; by default protocol_<name>.sv, if there is one
     rows_are: str = ""  # parameter of the core that the protocol calls Rows
+    columns_are: str = ""  # parameter of the core that the protocol calls Columns
     # Each simulator gets the survivors of the one before. Icarus needs no build, and sees X.
     simulators: Sequence[str] = ("icarus",)
     outside: Sequence[str] = ()  # registers of the core that its testbench writes
@@ -101,17 +102,17 @@ CORES = {
     "row_reorder": Core((2,), "words"),
     "corner_turn": Core((2,)),
     "divergence": Core((5,)),
-    "transpose": Core((5,), "bursts", rows_are="Size"),
+    "transpose": Core((5,), "bursts", rows_are="Columns"),
     "frame_stack": Core((5, 6)),
-    "spectral_divide": Core((2,), "bursts", rows_are="Size"),
+    "spectral_divide": Core((2,), "bursts", rows_are="Columns"),
     "forward_elimination": Core((2,), "bursts"),
     "back_substitution": Core((5, 4, 6)),
-    "mode_pairs": Core((4,), "bursts"),
-    "sdf_butterfly": Core((2,), "bursts"),
-    "twiddle_multiply": Core((6,), "bursts"),
-    "sdf_fft": Core((3,), "bursts"),
-    "dst_forward": Core((5,), "bursts", flat=False),
-    "dst_inverse": Core((5,), "bursts", flat=False),
+    "mode_pairs": Core((4,), "bursts", columns_are="Size"),
+    "sdf_butterfly": Core((2,), "bursts", columns_are="Size"),
+    "twiddle_multiply": Core((6,), "bursts", columns_are="Size"),
+    "sdf_fft": Core((3,), "bursts", columns_are="Size"),
+    "dst_forward": Core((5,), "bursts", columns_are="Size", flat=False),
+    "dst_inverse": Core((5,), "bursts", columns_are="Size", flat=False),
     "frame_output": Core((1,)),
     "frame_tags": Core((4,)),
     "axil_port": Core(protocol="axil_registers"),
@@ -120,7 +121,7 @@ CORES = {
     "table_access": Core(),
     "table_banks": Core(),
     "axil_registers": Core((1,), simulators=QUICK_FIRST, flat=False),
-    "spectral_solver": Core((2,), "words", rows_are="Size", simulators=QUICK_FIRST, flat=False),
+    "spectral_solver": Core((2,), "words", rows_are="Columns", simulators=QUICK_FIRST, flat=False),
     "tridiagonal_solver": Core((4, 9), "words", simulators=QUICK_FIRST, flat=False),
     "tactile_depth": Core((1,), simulators=("verilator",), flat=False),
 }
@@ -188,7 +189,8 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
         what = {mutant.number: mutant.what for mutant in made}
         outcome.mutants += len(made)
         outcome.killed += len(killed)
-        parameters = {**built.parameters, **({"Rows": built.parameters[core.rows_are]} if core.rows_are else {})}
+        called = {"Rows": core.rows_are, "Columns": core.columns_are}
+        parameters = {**built.parameters, **{name: built.parameters[own] for name, own in called.items() if own}}
         graph = equivalence.graph(name, folder, core.protocol or name, parameters)
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:

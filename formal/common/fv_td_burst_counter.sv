@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_td_burst_counter: position is the number of enabled clocks since the last start, active while that is less than Size.
+// fv_td_burst_counter: position is the number of enabled clocks since the last start, active while that is less than
+// Words.
 
 `default_nettype none
 
 module fv_td_burst_counter #(
-  parameter int Size = 8,
-  localparam int PositionWidth = $clog2(Size)
+  parameter int Words = 8,
+  localparam int PositionWidth = $clog2(Words)
 ) (
   input logic clk,
   input logic rst,
@@ -15,31 +16,31 @@ module fv_td_burst_counter #(
 
   logic [PositionWidth-1:0] position;
   logic active;
-  td_burst_counter #(.Size(Size)) dut (.clk, .rst, .en, .start, .position, .active);
+  td_burst_counter #(.Words(Words)) dut (.clk, .rst, .en, .start, .position, .active);
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
 
-  logic [PositionWidth:0] since, age;  // enabled clocks from the last start to this clock; Size: none, or long ago
+  logic [PositionWidth:0] since, age;  // enabled clocks from the last start to this clock; Words: none, or long ago
   assign age = start ? '0 : since;
   always_ff @(posedge clk) begin
     started <= 1'b1;
-    if (en) since <= age == (PositionWidth + 1)'(Size) ? age : age + (PositionWidth + 1)'(1);
-    if (rst) since <= (PositionWidth + 1)'(Size);
+    if (en) since <= age == (PositionWidth + 1)'(Words) ? age : age + (PositionWidth + 1)'(1);
+    if (rst) since <= (PositionWidth + 1)'(Words);
   end
 
   always_comb begin
     if (started) begin
-      whole_burst: assert (active == (age < (PositionWidth + 1)'(Size)));
+      whole_burst: assert (active == (age < (PositionWidth + 1)'(Words)));
       if (active) in_order: assert ((PositionWidth + 1)'(position) == age);
-      last_word: cover (active && age == (PositionWidth + 1)'(Size - 1));
+      last_word: cover (active && age == (PositionWidth + 1)'(Words - 1));
       after_burst: cover (!active && en);
-      begins_again: cover (start && since != '0 && since < (PositionWidth + 1)'(Size));
+      begins_again: cover (start && since != '0 && since < (PositionWidth + 1)'(Words));
     end
   end
 
   logic ended;
-  always_ff @(posedge clk) ended <= en & (age == (PositionWidth + 1)'(Size - 1)) & ~rst;
+  always_ff @(posedge clk) ended <= en & (age == (PositionWidth + 1)'(Words - 1)) & ~rst;
   always_comb if (started && ended) back_to_back: cover (start);
 
 endmodule

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_back_substitution: z[i] = d[i] - c[i] z[i+1] for every row of an arbitrary column, of any frame, 8 enabled clocks
-// behind d[i], in whichever lane it is, with the coefficient of its own row and column; start and frame_start with their
-// burst. No word of the frame before, and none from power-up, enters: the specification has none, and the memory begins
-// with any contents. Rounding is proven of td_round_saturate.
+// behind d[i], in whichever lane it is, with the coefficient of its own row and column; start and frame_start with
+// their burst. No word of the frame before, and none from power-up, enters: the specification has none, and the memory
+// begins with any contents. Rounding is proven of td_round_saturate.
 
 `default_nettype none
 
 module fv_back_substitution #(
-  parameter int Rows  = 3,
-  parameter int Size  = 8,
-  parameter int Lanes = 1,
-  parameter int Words = 16,
-  localparam int PositionWidth = $clog2(Size),
+  parameter int Rows    = 3,
+  parameter int Columns = 8,
+  parameter int Lanes   = 1,
+  parameter int Words   = 16,
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows + 1),
   localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1
 ) (
@@ -43,12 +43,12 @@ module fv_back_substitution #(
   logic [Lanes*RowWidth-1:0] row;
   if (Lanes == 1) begin : g_one_lane  // gaps between bursts, and frames that begin before the last one is whole
     logic unused_last;
-    burst_source #(.Size(Size), .Rows(Rows)) u_source (
+    burst_source #(.Columns(Columns), .Rows(Rows)) u_source (
       .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row,
       .last_row(unused_last)
     );
   end else begin : g_lanes
-    lane_source #(.Size(Size), .Rows(Rows), .Lanes(Lanes)) u_source (
+    lane_source #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_source (
       .clk, .rst, .en, .go, .start(in_start), .frame_start(in_frame_start), .active, .position, .row
     );
   end
@@ -56,7 +56,8 @@ module fv_back_substitution #(
   logic [Lanes*Width-1:0] out_data;
   logic [$clog2(Lanes+1)-1:0] saturations;
   back_substitution #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes), .InWidth(InWidth), .Lift(Lift),
+    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .InWidth(InWidth),
+    .Lift(Lift),
     .TableWords(Words), .SettledWidth(SettledWidth)
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
@@ -82,7 +83,7 @@ module fv_back_substitution #(
   end
 
   // The last row comes first; there the coefficient meets zero, so its shift does not matter.
-  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
+  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);
 
   // The recursion: a step in each clock in which the word followed is so old, as the multiplier takes it. A step from
@@ -115,7 +116,7 @@ module fv_back_substitution #(
       if (|present) begin
         lane_q <= lane;
         d <= in_word;
-        {unused_shift, c} <= square[(Rows - 1 - 32'(burst)) * Size + 32'(column)];
+        {unused_shift, c} <= square[(Rows - 1 - 32'(burst)) * Columns + 32'(column)];
         of_last_row <= burst == '0;
         of_first_row <= burst == RowWidth'(Rows - 1);
       end

@@ -8,10 +8,10 @@
 
 module fv_forward_elimination #(
   parameter int Rows    = 3,
-  parameter int Size    = 8,
+  parameter int Columns = 8,
   parameter int Neumann = 0,
   parameter int Words   = 16,
-  localparam int PositionWidth = $clog2(Size),
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows + 1)
 ) (
   input logic                     clk,
@@ -42,7 +42,7 @@ module fv_forward_elimination #(
   logic in_start, in_frame_start, active, last_row;
   logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
   logic [RowWidth-1:0] row;
-  burst_source #(.Size(Size), .Rows(Rows)) u_source (
+  burst_source #(.Columns(Columns), .Rows(Rows)) u_source (
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
@@ -50,14 +50,14 @@ module fv_forward_elimination #(
   logic signed [OutWidth-1:0] out_data;
   logic [2:0] saturations;
   forward_elimination #(
-    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .StoreDrop(StoreDrop), .OutWidth(OutWidth),
+    .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .StoreDrop(StoreDrop), .OutWidth(OutWidth),
     .Neumann(Neumann), .TableWords(Words), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth),
     .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
 
-  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
+  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);
 
   // The recursion for one word at a time: a step in each clock in which the word followed is so old, as the multiplier
@@ -109,7 +109,7 @@ module fv_forward_elimination #(
       old <= MeanLatency'({old, active & (position == column)});
       if (active && position == column) begin
         f <= in_data;
-        {by, c} <= square[32'(row) * Size + 32'(column)];
+        {by, c} <= square[32'(row) * Columns + 32'(column)];
         row_q <= row;
         singular <= Neumann != 0 && column == '0 && last_row;
       end

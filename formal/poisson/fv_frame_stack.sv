@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_frame_stack: an arbitrary word leaves at its place of its row, last row first, unchanged; the last row 3 enabled
-// clocks behind its own first word, from lane 0, the others from the lanes in turn, each Size / Lanes clocks behind the
-// one before; frame_start with the first of each lane. Any gaps between bursts, any en, any frame number, and frames
-// that begin before the last one is whole.
+// clocks behind its own first word, from lane 0, the others from the lanes in turn, each Columns / Lanes clocks behind
+// the one before; frame_start with the first of each lane. Any gaps between bursts, any en, any frame number, and
+// frames that begin before the last one is whole.
 
 `default_nettype none
 
 module fv_frame_stack #(
   parameter int Width       = 1,
   parameter int Rows        = 3,
-  parameter int Size        = 4,
+  parameter int Columns     = 4,
   parameter int Lanes       = 1,
   parameter int WordsPerRow = 1,
-  localparam int Step = Size / Lanes,
-  localparam int Clocks = (Rows - 1) * Step + Size,  // in which a frame leaves
-  localparam int PositionWidth = $clog2(Size),
+  localparam int Step = Columns / Lanes,
+  localparam int Clocks = (Rows - 1) * Step + Columns,  // in which a frame leaves
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows + 1),
   localparam int PlaceWidth = $clog2(Clocks),
   localparam int LaneWidth = Lanes > 1 ? $clog2(Lanes) : 1
@@ -35,13 +35,13 @@ module fv_frame_stack #(
   logic in_start, in_frame_start, active, last_row;
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row;
-  burst_source #(.Size(Size), .Rows(Rows)) u_source (
+  burst_source #(.Columns(Columns), .Rows(Rows)) u_source (
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
   logic [Lanes-1:0] out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
-  frame_stack #(.Width(Width), .Rows(Rows), .Size(Size), .Lanes(Lanes), .WordsPerRow(WordsPerRow)) dut (
+  frame_stack #(.Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .WordsPerRow(WordsPerRow)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
 
@@ -58,7 +58,7 @@ module fv_frame_stack #(
   );
   logic [Lanes-1:0] starts, frame_starts;
   for (genvar e = 0; e < Lanes; e++) begin : g_lane
-    assign starts[e] = present && 32'(place) / Step < Rows && 32'(place) % Size == e * Step;
+    assign starts[e] = present && 32'(place) / Step < Rows && 32'(place) % Columns == e * Step;
     assign frame_starts[e] = starts[e] && 32'(place) == e * Step;
   end
   always_comb begin

@@ -6,9 +6,9 @@
 `default_nettype none
 
 module fv_spectral_divide #(
-  parameter int Size = 4,
-  localparam int PositionWidth = $clog2(Size),
-  localparam int RowWidth = $clog2(Size + 1)
+  parameter int Columns = 4,
+  localparam int PositionWidth = $clog2(Columns),
+  localparam int RowWidth = $clog2(Columns + 1)
 ) (
   input logic clk,
   input logic rst,
@@ -27,20 +27,20 @@ module fv_spectral_divide #(
   logic in_start, in_frame_start, active, last_row;
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row;
-  burst_source #(.Size(Size), .Rows(Size)) u_source (
+  burst_source #(.Columns(Columns), .Rows(Columns)) u_source (
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
   logic out_start, out_frame_start, saturations;
   logic signed [Width-1:0] out_data;
   spectral_divide #(
-    .Width(Width), .CoeffWidth(8), .Size(Size), .ShiftWidth(1), .Drop(0)
+    .Width(Width), .CoeffWidth(8), .Columns(Columns), .ShiftWidth(1), .Drop(0)
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data(Width'(1)),
     .out_start, .out_frame_start, .out_data, .saturations
   );
 
-  logic [Width-1:0] square[Size*Size];
+  logic [Width-1:0] square[Columns*Columns];
   initial $readmemh("square.hex", square);
 
   logic following, held;
@@ -63,7 +63,7 @@ module fv_spectral_divide #(
     if (rst) following <= 1'b0;
   end
 
-  burst_timing #(.Size(Size), .Latency(Latency)) u_timing (
+  burst_timing #(.Columns(Columns), .Latency(Latency)) u_timing (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
   always_comb begin
@@ -71,9 +71,9 @@ module fv_spectral_divide #(
       if (following && age == 3'(Latency)) own_reciprocal: assert (out_data == $signed(expected));
       if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
       none_clipped: assert (!saturations);
-      other_burst: cover (following && age == 3'(Latency) && expected == square[Size+1] && held);
-      if (Size <= 4) begin  // as far as a trace of a whole frame is quick to find
-        last_of_frame: cover (following && age == 3'(Latency) && expected == square[Size*Size-1]);
+      other_burst: cover (following && age == 3'(Latency) && expected == square[Columns+1] && held);
+      if (Columns <= 4) begin  // as far as a trace of a whole frame is quick to find
+        last_of_frame: cover (following && age == 3'(Latency) && expected == square[Columns*Columns-1]);
         second_frame: cover (following && age == 3'(Latency) && out_frame_start && expected == square[0] && held);
       end
     end

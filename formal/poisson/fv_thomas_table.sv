@@ -7,12 +7,12 @@
 
 module fv_thomas_table #(
   parameter int Rows           = 6,
-  parameter int Size           = 4,
+  parameter int Columns        = 4,
   parameter int Words          = 12,
   parameter int CoeffWidth     = 5,
   parameter int SettledWidth   = 3,
   parameter int LastShiftWidth = 2,
-  localparam int PositionWidth = $clog2(Size),
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows)
 ) (
   input logic                     clk,
@@ -29,13 +29,13 @@ module fv_thomas_table #(
   logic signed [CoeffWidth-1:0] coefficient;
   logic [LastShiftWidth-1:0] shift;
   thomas_table #(
-    .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(Words), .SettledWidth(SettledWidth),
+    .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(Words), .SettledWidth(SettledWidth),
     .LastShiftWidth(LastShiftWidth)
   ) dut (
     .clk, .en, .position, .row, .coefficient, .shift
   );
 
-  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Size];
+  logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);
 
   logic following = 1'b0;
@@ -49,7 +49,7 @@ module fv_thomas_table #(
       if (!following || age == 3'(Latency)) begin
         following <= pick;
         age <= 3'd1;
-        expected <= square[32'(row) * Size + 32'(position)];
+        expected <= square[32'(row) * Columns + 32'(position)];
       end else begin
         age <= age + 3'd1;
       end

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_back_substitution: bursts of Size words, the rows of a frame in the lanes in turn.
+// protocol_back_substitution: bursts of Columns words, the rows of a frame in the lanes in turn.
 //
-// With one lane a row may come at any time after the row before, with several exactly Size / Lanes enabled clocks behind
-// its start. in_frame_start is high with the first burst of a frame in each lane. A frame begins in lane 0, when no row
-// is coming in, after less than a frame too; after a reset none has begun. Inputs stay while en is low.
+// With one lane a row may come at any time after the row before, with several exactly Columns / Lanes enabled clocks
+// behind its start. in_frame_start is high with the first burst of a frame in each lane. A frame begins in lane 0, when
+// no row is coming in, after less than a frame too; after a reset none has begun. Inputs stay while en is low.
 
 `default_nettype none
 
 module protocol_back_substitution #(
-  parameter int Size  = 8,
-  parameter int Rows  = 3,
-  parameter int Lanes = 1,
-  parameter int Width = 3   // of a word
+  parameter int Columns = 8,
+  parameter int Rows    = 3,
+  parameter int Lanes   = 1,
+  parameter int Width   = 3  // of a word
 ) (
   input  logic             clk,
   input  logic             rst,
@@ -26,7 +26,7 @@ module protocol_back_substitution #(
   output logic             counts_saturations
 );
 
-  localparam int Step = Size / Lanes;
+  localparam int Step = Columns / Lanes;
 
   logic reset, live = 1'b0, still = 1'b0, due, in_turn, begins;
   logic [Lanes-1:0] next_lane = Lanes'(1), first_round = '0, start_before, frame_start_before;
@@ -57,13 +57,14 @@ module protocol_back_substitution #(
       in_left <= in_left - 16'(in_left != '0);
       if (in_start != '0) begin
         step_left <= 16'(Step - 1);
-        in_left <= 16'(Lanes == 1 ? Size - 1 : Size + Step - 1);  // with several lanes a step passes between frames
+        // With several lanes a step passes between frames.
+        in_left <= 16'(Lanes == 1 ? Columns - 1 : Columns + Step - 1);
         rows_left <= (begins ? 16'(Rows) : rows_left) - 16'd1;
         first_round <= (begins ? '1 : first_round) & ~in_start;
         next_lane <= Lanes'({in_start, in_start} >> (Lanes - 1));
       end else if (due && Lanes > 1) rows_left <= '0;  // a row that does not come ends the frame
       for (int lane = 0; lane < Lanes; lane++) begin
-        if (out_start[lane]) out_left[lane*16+:16] <= 16'(Size - 1);
+        if (out_start[lane]) out_left[lane*16+:16] <= 16'(Columns - 1);
         else if (out_left[lane*16+:16] != '0) out_left[lane*16+:16] <= out_left[lane*16+:16] - 16'd1;
       end
     end

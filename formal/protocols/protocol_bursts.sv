@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_bursts: Size words in successive enabled clocks, the first with in_start; the same going out.
+// protocol_bursts: Columns words in successive enabled clocks, the first with in_start; the same going out.
 //
 // A frame begins with in_frame_start, at any burst, after less than a frame too; after a reset none has begun. Rows is
 // the most bursts of a frame, 0 if they are not counted. Inputs stay while en is low.
@@ -7,8 +7,8 @@
 `default_nettype none
 
 module protocol_bursts #(
-  parameter int Size = 8,
-  parameter int Rows = 0
+  parameter int Columns = 8,
+  parameter int Rows    = 0
 ) (
   input  logic clk,
   input  logic rst,
@@ -41,8 +41,8 @@ module protocol_bursts #(
     start_before <= in_start;
     frame_start_before <= in_frame_start;
     if (en) begin
-      in_left <= in_start ? 16'(Size - 1) : in_left - 16'(in_left != '0);
-      out_left <= out_start ? 16'(Size - 1) : out_left - 16'(out_left != '0);
+      in_left <= in_start ? 16'(Columns - 1) : in_left - 16'(in_left != '0);
+      out_left <= out_start ? 16'(Columns - 1) : out_left - 16'(out_left != '0);
       if (in_frame_start) rows_left <= Rows == 0 ? 16'd1 : 16'(Rows - 1);
       else if (in_start && Rows != 0) rows_left <= rows_left - 16'd1;
     end

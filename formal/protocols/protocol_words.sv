@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_words: single words going in, bursts of Size words going out, Lanes words in a clock.
+// protocol_words: single words going in, bursts of Columns words going out, Lanes words in a clock.
 //
-// A frame begins with in_frame_start. It has Rows times Size words, and the next begins after it is whole; a frame may
-// begin at any word if Rows is 0. Inputs stay while en is low.
+// A frame begins with in_frame_start. It has Rows times Columns words, and the next begins after it is whole; a frame
+// may begin at any word if Rows is 0. Inputs stay while en is low.
 
 `default_nettype none
 
 module protocol_words #(
-  parameter int Size  = 8,
-  parameter int Rows  = 0,
-  parameter int Lanes = 1
+  parameter int Columns = 8,
+  parameter int Rows    = 0,
+  parameter int Lanes   = 1
 ) (
   input  logic clk,
   input  logic rst,
@@ -45,9 +45,9 @@ module protocol_words #(
     if (en) begin
       if (in_valid) begin
         begun <= 1'b1;
-        left <= in_frame_start ? 24'(Size * Rows - 1) : left - 24'd1;
+        left <= in_frame_start ? 24'(Columns * Rows - 1) : left - 24'd1;
       end
-      out_left <= out_start ? 16'(Size / Lanes - 1) : out_left - 16'(out_left != '0);
+      out_left <= out_start ? 16'(Columns / Lanes - 1) : out_left - 16'(out_left != '0);
     end
     if (reset) begin
       begun <= 1'b0;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_burst_counter: position of the word now present in a burst of Size words.
+// td_burst_counter: position of the word now present in a burst of Words words.
 //
-// A burst is Size words in successive enabled cycles; start comes with the first. position and active are combinational
-// with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
+// A burst is Words words in successive enabled cycles; start comes with the first. position and active are
+// combinational with start; bursts may follow each other without a pause. A start inside a burst begins again at 0.
 // Bit-accurate model: models/tactile_depth/common/td_burst_counter.py.
 
 `default_nettype none
 
 module td_burst_counter #(
-  parameter int Size = 128,
-  localparam int PositionWidth = $clog2(Size)
+  parameter int Words = 128,
+  localparam int PositionWidth = $clog2(Words)
 ) (
   input  wire                      clk,
   input  wire                      rst,
@@ -28,7 +28,7 @@ module td_burst_counter #(
   always_ff @(posedge clk) begin
     if (en && active) begin
       count <= position + PositionWidth'(1);
-      running <= position != PositionWidth'(Size - 1);
+      running <= position != PositionWidth'(Words - 1);
     end
     if (rst) begin
       count <= '0;
@@ -36,8 +36,8 @@ module td_burst_counter #(
     end
   end
 
-  if (Size < 2) begin : g_refused
-    Size_must_be_at_least_2 u_refused ();
+  if (Words < 2) begin : g_refused
+    Words_must_be_at_least_2 u_refused ();
   end
 
 endmodule

@@ -36,7 +36,7 @@ module frame_output
 
   logic [PositionWidth-1:0] position;
   logic bad, bad_q, row_due;
-  td_burst_counter #(.Size(Pixels)) u_counter (
+  td_burst_counter #(.Words(Pixels)) u_counter (
     .clk, .rst, .en, .start(in_due), .position, .active
   );
 

@@ -3,26 +3,25 @@
 //
 //   z[i] = d[i] - c[i] z[i+1],  z[Rows] = 0
 //
-// Stream in: bursts of Size words d, Rows of them a frame, last row first, to the lanes in turn; with more than one,
-// each row Size / Lanes clocks after the row before. Stream out: the same bursts of z, Width bits. Latency: 8 cycles;
-// en low: nothing moves.
-// The lanes are a ring: each takes z of the row below from the lane before it, the first from the last. z waits in a
-// memory; where a row is 4 clocks behind the row before, it goes straight into the next product. One multiplier for
-// each lane. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
+// Stream in: bursts of Columns words d, Rows of them a frame, last row first, to the lanes in turn; with more than one,
+// each row Columns / Lanes clocks after the row before. Stream out: the same bursts of z, Width bits. Latency: 8
+// cycles; en low: nothing moves. The lanes are a ring: each takes z of the row below from the lane before it, the first
+// from the last. z waits in a memory; where a row is 4 clocks behind the row before, it goes straight into the next
+// product. One multiplier for each lane. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
 
 `default_nettype none
 
 module back_substitution #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Width          = 27,
-  parameter int CoeffWidth     = 18,
-  parameter int Rows           = 128,
-  parameter int Size           = 128,
-  parameter int Lanes          = 1,
-  parameter int InWidth        = 24,
-  parameter int Lift           = 3,  // fraction bits of z beyond those of d
-  parameter int TableWords     = 1379,
-  parameter int SettledWidth   = 7,
+  parameter int Width        = 27,
+  parameter int CoeffWidth   = 18,
+  parameter int Rows         = 128,
+  parameter int Columns      = 128,
+  parameter int Lanes        = 1,
+  parameter int InWidth      = 24,
+  parameter int Lift         = 3,  // fraction bits of z beyond those of d
+  parameter int TableWords   = 1379,
+  parameter int SettledWidth = 7,
   localparam int ClippedWidth = $clog2(Lanes + 1)
 ) (
   input  wire                      clk,
@@ -37,9 +36,9 @@ module back_substitution #(
   output logic [ClippedWidth-1:0]  saturations      // values clipped in a cycle
 );
 
-  localparam int PositionWidth = $clog2(Size);
+  localparam int PositionWidth = $clog2(Columns);
   localparam int RowWidth = $clog2(Rows);
-  localparam int Step = Size / Lanes;  // clocks from a row to the row above
+  localparam int Step = Columns / Lanes;  // clocks from a row to the row above
   localparam int StepWidth = $clog2(Step);
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int Align = Lift + CoeffWidth - 1;
@@ -56,14 +55,14 @@ module back_substitution #(
     logic [RowWidth-1:0] row, row_q;
     logic active;
     assign row = in_frame_start[lane] ? RowWidth'(Rows - 1 - lane) : row_q;
-    td_burst_counter #(.Size(Size)) u_counter (
+    td_burst_counter #(.Words(Columns)) u_counter (
       .clk, .rst, .en, .start(in_start[lane]), .position, .active
     );
 
     logic signed [CoeffWidth-1:0] coefficient;
     logic unused_shift;
     thomas_table #(
-      .TableFolder(TableFolder), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(TableWords),
+      .TableFolder(TableFolder), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(TableWords),
       .SettledWidth(SettledWidth), .HasLastRow(1'b0)  // z[Rows] = 0: the last row multiplies nothing
     ) u_table (
       .clk, .en, .position, .row, .coefficient, .shift(unused_shift)
@@ -91,7 +90,7 @@ module back_substitution #(
         first_q <= lane == 0 && row == RowWidth'(Rows - 1);
         first_q2 <= first_q;
         first_q3 <= first_q2;
-        row_q <= row - (active && position == PositionWidth'(Size - 1) ? RowWidth'(Lanes) : '0);
+        row_q <= row - (active && position == PositionWidth'(Columns - 1) ? RowWidth'(Lanes) : '0);
         data_q <= in_data[lane*InWidth+:InWidth];
         data_q2 <= data_q;
         data_q3 <= data_q2;
@@ -155,8 +154,8 @@ module back_substitution #(
     for (int lane = 0; lane < Lanes; lane++) saturations = saturations + ClippedWidth'(clipped_q[lane]);
   end
 
-  if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || (Lanes > 1 && Size / Lanes < Direct)) begin : g_refused
-    Lanes_must_be_a_power_of_two_and_at_most_Size_by_4 u_refused ();
+  if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || (Lanes > 1 && Columns / Lanes < Direct)) begin : g_refused
+    Lanes_must_be_a_power_of_two_and_at_most_Columns_by_4 u_refused ();
   end
 
 endmodule

@@ -5,10 +5,10 @@
 //   Neumann: the column of position 0 is singular; its last row is minus the mean sum over i of (i + 1) d[i] / Rows,
 //   which gives it zero mean after the substitution.
 //
-// Stream in: bursts of Size modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts of
-// d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier, with Neumann
-// two more for the mean; between dependent values lie at least Size cycles, so it pipelines freely. Bit-accurate model:
-// models/tactile_depth/poisson/forward_elimination.py.
+// Stream in: bursts of Columns modes, Rows of them a frame, gaps between bursts anywhere. Stream out: the same bursts
+// of d, rounded to the stored word. Latency: 9 cycles. The running row keeps Width bits. One multiplier, with Neumann
+// two more for the mean; between dependent values lie at least Columns cycles, so it pipelines freely. Bit-accurate
+// model: models/tactile_depth/poisson/forward_elimination.py.
 
 `default_nettype none
 
@@ -17,8 +17,8 @@ module forward_elimination #(
   parameter int Width          = 27,
   parameter int CoeffWidth     = 18,
   parameter int Rows           = 128,
-  parameter int Size           = 128,
-  parameter int StoreDrop      = 3,   // fraction bits dropped on the way out
+  parameter int Columns        = 128,
+  parameter int StoreDrop      = 3,  // fraction bits dropped on the way out
   parameter int OutWidth       = 24,
   parameter int Neumann        = 0,
   parameter int TableWords     = 1379,
@@ -40,7 +40,7 @@ module forward_elimination #(
   output logic [2:0]                 saturations      // values clipped in a cycle, a little ago
 );
 
-  localparam int PositionWidth = $clog2(Size);
+  localparam int PositionWidth = $clog2(Columns);
   localparam int RowWidth = $clog2(Rows);
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int ShiftedWidth = ProductWidth + (1 << LastShiftWidth) - 1;
@@ -50,14 +50,14 @@ module forward_elimination #(
   logic [RowWidth-1:0] row, row_q;
   logic active;
   assign row = in_frame_start ? '0 : row_q;
-  td_burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Words(Columns)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
 
   logic signed [CoeffWidth-1:0] coefficient;
   logic [LastShiftWidth-1:0] shift, shift_q;
   thomas_table #(
-    .TableFolder(TableFolder), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Words(TableWords),
+    .TableFolder(TableFolder), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(TableWords),
     .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth)
   ) u_table (
     .clk, .en, .position, .row, .coefficient, .shift
@@ -81,7 +81,7 @@ module forward_elimination #(
       data_q <= in_data;
       data_q2 <= data_q;
       data_q3 <= data_q2;
-      row_q <= row + RowWidth'(active & (position == PositionWidth'(Size - 1)));
+      row_q <= row + RowWidth'(active & (position == PositionWidth'(Columns - 1)));
     end
     if (rst) begin
       start_q <= '0;
@@ -132,8 +132,8 @@ module forward_elimination #(
 
   td_ram #(
     .Width(Width),
-    .Depth(Size),
-    .Style((Width * Size > 4096) ? 1 : 0)
+    .Depth(Columns),
+    .Style((Width * Columns > 4096) ? 1 : 0)
   ) u_state_row (
     .clk,
     .write_en     (en & active_q[ToState-1]),
@@ -146,8 +146,8 @@ module forward_elimination #(
 
   logic [1:0] clipped_mean;
   if (Neumann != 0) begin : g_mean
-    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Size clocks lie between the last addend and its
-    // use.
+    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Columns clocks lie between the last addend and
+    // its use.
     localparam int MomentWidth = Width + 2 * RowWidth + 2;
     logic [RowWidth:0] weight;  // of d, row + 1
     logic signed [Width+RowWidth+1:0] addend;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // frame_stack: rows of a frame in, last row first out, through one memory that holds a frame, to one or more lanes.
 //
-// Stream in: bursts of Size words, Rows of them a frame, gaps between bursts anywhere; rows count from a frame's start.
-// Stream out: the rows in turn to the lanes, the last row to lane 0; every lane begins Size / Lanes clocks after the
-// lane before it and has its bursts without a pause. Latency: 3 cycles from the first word of the last row to the first
-// word out of lane 0; nothing need follow, the readers run by themselves.
+// Stream in: bursts of Columns words, Rows of them a frame, gaps between bursts anywhere; rows count from a frame's
+// start. Stream out: the rows in turn to the lanes, the last row to lane 0; every lane begins Columns / Lanes clocks
+// after the lane before it and has its bursts without a pause. Latency: 3 cycles from the first word of the last row to
+// the first word out of lane 0; nothing need follow, the readers run by themselves.
 //
 // Each lane has a bank of the memory, with all its rows. The last row goes past the memory. In place: while a row is
 // read, the row of the next frame that takes its place cannot have begun. So the writer of a frame goes the way that
 // the readers of the frame before go: upwards and downwards in a bank in turn.
 //
 // WordsPerRow words lie side by side in a row of the memory, collected before the write and taken apart after the read.
-// Where Size is no multiple of it the first row of a burst has fewer, so that a burst ends with a full one.
+// Where Columns is no multiple of it the first row of a burst has fewer, so that a burst ends with a full one.
 // Bit-accurate model: models/tactile_depth/poisson/frame_stack.py.
 
 `default_nettype none
@@ -19,10 +19,10 @@
 module frame_stack #(
   parameter int Width       = 24,
   parameter int Rows        = 128,
-  parameter int Size        = 128,
+  parameter int Columns     = 128,
   parameter int Lanes       = 1,
   parameter int WordsPerRow = 1,
-  parameter int Style       = 1   // of the memory, hdl/common/td_ram.sv
+  parameter int Style       = 1  // of the memory, hdl/common/td_ram.sv
 ) (
   input  wire                    clk,
   input  wire                    rst,
@@ -35,10 +35,10 @@ module frame_stack #(
   output logic [Lanes*Width-1:0] out_data
 );
 
-  localparam int PositionWidth = $clog2(Size);
-  localparam int Step = Size / Lanes;  // clocks from the start of a lane to that of the next one
+  localparam int PositionWidth = $clog2(Columns);
+  localparam int Step = Columns / Lanes;  // clocks from the start of a lane to that of the next one
   localparam int Levels = (Rows + Lanes - 1) / Lanes;  // bursts in a bank
-  localparam int Burst = (Size + WordsPerRow - 1) / WordsPerRow;  // memory rows of a burst
+  localparam int Burst = (Columns + WordsPerRow - 1) / WordsPerRow;  // memory rows of a burst
   localparam int Depth = Levels * Burst;
   localparam int AddressWidth = $clog2(Depth);
   localparam int BankWidth = Lanes > 1 ? $clog2(Lanes) : 1;
@@ -48,9 +48,9 @@ module frame_stack #(
   localparam int BeforeLastDown = Lanes > 1 ? Burst - 1 : 2 * Burst - 1;
   localparam int LeftWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
   localparam int Kept = WordsPerRow > 2 ? WordsPerRow - 1 : 1;
-  localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Size - 1);
+  localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Columns - 1);
   // Words of a memory row that are still to come: of a burst's first, and of any other.
-  localparam logic [LeftWidth-1:0] FirstLeft = LeftWidth'((Size - 1) % WordsPerRow);
+  localparam logic [LeftWidth-1:0] FirstLeft = LeftWidth'((Columns - 1) % WordsPerRow);
   localparam logic [LeftWidth-1:0] FullLeft = LeftWidth'(WordsPerRow - 1);
 
   function automatic logic [LeftWidth-1:0] left_after(input logic [LeftWidth-1:0] left);
@@ -82,7 +82,7 @@ module frame_stack #(
   logic write_active, write_end, write_last_q, write_row;
   logic [Kept*Width-1:0] kept;  // words before in_data, the latest in the lowest bits
   logic [Width-1:0] kept_q;
-  td_burst_counter #(.Size(Size)) u_write (
+  td_burst_counter #(.Words(Columns)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
   assign write_end = write_active & (write_position == LastPosition);
@@ -123,7 +123,7 @@ module frame_stack #(
     logic read_past_q, read_past_q2, start_q, start_q2, frame_start_q, frame_start_q2;
     logic [Width-1:0] word_q;  // the word that is read stands in a register before it goes on
     logic [WordsPerRow*Width-1:0] read_data;
-    td_burst_counter #(.Size(Size)) u_read (
+    td_burst_counter #(.Words(Columns)) u_read (
       .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
     );
     assign read_start = read_begin[lane] | read_more;
@@ -194,8 +194,8 @@ module frame_stack #(
     end
   end
 
-  if (Size < 2) begin : g_refused_0
-    Size_must_be_at_least_2 u_refused ();
+  if (Columns < 2) begin : g_refused_0
+    Columns_must_be_at_least_2 u_refused ();
   end
   if (Rows < 2) begin : g_refused_1
     Rows_must_be_at_least_2 u_refused ();
@@ -203,8 +203,8 @@ module frame_stack #(
   if (WordsPerRow < 1) begin : g_refused_2
     WordsPerRow_must_be_at_least_1 u_refused ();
   end
-  if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || Size % Lanes != 0 || Size / Lanes < 2) begin : g_refused_3
-    Lanes_must_be_a_power_of_two_and_divide_Size_into_steps_of_at_least_2 u_refused ();
+  if (Lanes < 1 || Lanes != (1 << $clog2(Lanes)) || Columns % Lanes != 0 || Columns / Lanes < 2) begin : g_refused_3
+    Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2 u_refused ();
   end
 
 endmodule

@@ -66,9 +66,9 @@ module poisson_unit
 
   if (Tridiagonal != 0) begin : g_tridiagonal
     tridiagonal_solver #(
-      .TableFolder(TableFolder), .Rows(Rows), .Size(Columns), .Lanes(Lanes), .InWidth(InWidth), .DataWidth(DataWidth),
-      .Width(Width), .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut), .StoreDrop(GuardBits),
-      .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
+      .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .InWidth(InWidth),
+      .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut),
+      .StoreDrop(GuardBits), .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
       .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
       .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .StoreStyle(StoreStyle), .WordsPerRow(WordsPerRow)
     ) u_solver (
@@ -79,7 +79,7 @@ module poisson_unit
   end else begin : g_spectral
     spectral_solver #(
       .TableFolder(TableFolder),
-      .Size(Columns), .InWidth(InWidth), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
+      .Columns(Columns), .InWidth(InWidth), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
       .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
       .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
       .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann), .StoreStyle(StoreStyle)

@@ -4,9 +4,9 @@
 //   out = sat( round( in M 2^S / 2^Drop ) ),  M 2^S / 2^Drop = c / (lambda_k + lambda_l) from a ROM
 //   c takes back the gain of all transforms and turns pixels into full scales of the depth code
 //
-// Stream in: bursts of Size modes, Size of them a frame, both directions in bit-reversed order. Stream out: the same.
-// Latency: 6 cycles; en low: nothing moves. The table is symmetric: the ROM holds the lower triangle, p (p + 1) / 2 + t
-// for t <= p, and its address is kept by adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
+// Stream in: bursts of Columns modes, Columns of them a frame, both directions in bit-reversed order. Stream out: the
+// same. Latency: 6 cycles; en low: nothing moves. The table is symmetric: the ROM holds the lower triangle, p (p + 1) /
+// 2 + t for t <= p, and its address is kept by adding. Mantissa M has CoeffWidth bits at every size of the reciprocal.
 // Bit-accurate model: models/tactile_depth/poisson/spectral_divide.py, which also writes the ROM.
 
 `default_nettype none
@@ -14,10 +14,10 @@
 module spectral_divide #(
   parameter int Width      = 27,
   parameter int CoeffWidth = 18,
-  parameter int Size       = 128,
+  parameter int Columns    = 128,
   parameter int ShiftWidth = 4,
   parameter int Drop       = 23,
-  parameter     File       = "reciprocal.hex"  // Size (Size + 1) / 2 words {S, M}
+  parameter     File       = "reciprocal.hex"  // Columns (Columns + 1) / 2 words {S, M}
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -31,8 +31,8 @@ module spectral_divide #(
   output logic                    saturations      // values clipped in this cycle
 );
 
-  localparam int PositionWidth = $clog2(Size);
-  localparam int Words = Size * (Size + 1) / 2;
+  localparam int PositionWidth = $clog2(Columns);
+  localparam int Words = Columns * (Columns + 1) / 2;
   localparam int AddressWidth = $clog2(Words);
   localparam int ProductWidth = Width + CoeffWidth;
   localparam int ShiftedWidth = ProductWidth + (1 << ShiftWidth) - 1;
@@ -42,7 +42,7 @@ module spectral_divide #(
   logic [PositionWidth-1:0] p_q, p, t;
   logic [AddressWidth-1:0] tri_p_q, tri_p, tri_t_q, tri_t, address;
   logic active;
-  td_burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Words(Columns)) u_counter (
     .clk, .rst, .en, .start(in_start), .position(t), .active
   );
   assign tri_t = in_start ? '0 : tri_t_q;
@@ -50,7 +50,7 @@ module spectral_divide #(
   assign tri_p = in_frame_start ? '0 : tri_p_q;
 
   logic burst_ends;
-  assign burst_ends = active & (t == PositionWidth'(Size - 1));
+  assign burst_ends = active & (t == PositionWidth'(Columns - 1));
 
   always_ff @(posedge clk) begin
     if (en) begin
@@ -107,8 +107,8 @@ module spectral_divide #(
     end
   end
 
-  if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused
-    Size_must_be_a_power_of_two_at_least_2 u_refused ();
+  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused
+    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
   end
 
 endmodule

@@ -7,7 +7,7 @@
 //               -> dst_inverse -> transpose -> dst_inverse -> row_reorder
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
-// one burst of Size words a row. Latency: fixed; models/tactile_depth/latency.py. Formats:
+// one burst of Columns words a row. Latency: fixed; models/tactile_depth/latency.py. Formats:
 // models/tactile_depth/configuration.py.
 // Bit-accurate model: models/tactile_depth/poisson/spectral_solver.py.
 
@@ -15,7 +15,7 @@
 
 module spectral_solver #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Size             = 128,
+  parameter int Columns          = 128,
   parameter int InWidth          = 23,
   parameter int DataWidth        = 24,  // of a stored word, and of a depth code
   parameter int Width            = 27,  // of the arithmetic
@@ -55,26 +55,26 @@ module spectral_solver #(
   logic [7:0] clipped_a, clipped_b, clipped_c, clipped_d;
   logic clipped_divide;
 
-  row_reorder #(.Width(InWidth), .Size(Size), .ToBurst(1)) u_row_in (
+  row_reorder #(.Width(InWidth), .Columns(Columns), .ToBurst(1)) u_row_in (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
     .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
   );
 
   dst_forward #(
-    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
     .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes), .saturations(clipped_a)
   );
 
-  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle)) u_to_columns (
+  transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle)) u_to_columns (
     .clk, .rst, .en, .in_start(row_modes_start), .in_frame_start(row_modes_frame_start), .in_data(row_modes),
     .out_start(column_start), .out_frame_start(column_frame_start), .out_data(column_data)
   );
 
   dst_forward #(
-    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
   ) u_column_forward (
     .clk, .rst, .en, .in_start(column_start), .in_frame_start(column_frame_start), .in_data(column_data),
@@ -82,7 +82,7 @@ module spectral_solver #(
   );
 
   spectral_divide #(
-    .File({TableFolder, "reciprocal.hex"}), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size),
+    .File({TableFolder, "reciprocal.hex"}), .Width(Width), .CoeffWidth(CoeffWidth), .Columns(Columns),
     .ShiftWidth(DivideShiftWidth), .Drop(DivideDrop)
   ) u_divide (
     .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
@@ -90,7 +90,7 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
   ) u_column_inverse (
     .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_data(divided),
@@ -98,24 +98,24 @@ module spectral_solver #(
     .saturations(clipped_c)
   );
 
-  transpose #(.Width(DataWidth), .Size(Size), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
+  transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
     .clk, .rst, .en, .in_start(column_out_start), .in_frame_start(column_out_frame_start), .in_data(column_out),
     .out_start(depth_row_start), .out_frame_start(depth_row_frame_start), .out_data(depth_row_data)
   );
 
   dst_inverse #(
-    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
     .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_data(depth_row_data),
     .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_d)
   );
 
-  logic [$clog2(Size)-1:0] unused_position;
-  td_burst_counter #(.Size(Size)) u_depth_valid (
+  logic [$clog2(Columns)-1:0] unused_position;
+  td_burst_counter #(.Words(Columns)) u_depth_valid (
     .clk, .rst, .en, .start(depth_start), .position(unused_position), .active(depth_valid)
   );
-  row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
+  row_reorder #(.Width(DataWidth), .Columns(Columns), .ToBurst(0)) u_row_out (
     .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start), .in_data(depth),
     .out_start, .out_frame_start, .out_data(depth_reordered)
   );

@@ -14,12 +14,12 @@ module thomas_table #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int CoeffWidth     = 18,
   parameter int Rows           = 128,
-  parameter int Size           = 128,  // modes in a row
+  parameter int Columns        = 128,   // modes in a row
   parameter int Words          = 1379,
   parameter int SettledWidth   = 7,
   parameter bit HasLastRow     = 1'b1,  // 0: what is read for the last row has no meaning
   parameter int LastShiftWidth = 1,
-  localparam int PositionWidth = $clog2(Size),
+  localparam int PositionWidth = $clog2(Columns),
   localparam int RowWidth = $clog2(Rows),
   localparam int AddressWidth = $clog2(Words)
 ) (
@@ -37,7 +37,7 @@ module thomas_table #(
   logic [RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
-  td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Size), .File({TableFolder, "thomas_index.hex"})) u_index (
+  td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Columns), .File({TableFolder, "thomas_index.hex"})) u_index (
     .clk, .en, .address(position_q), .data({base, settled})
   );
 
@@ -62,7 +62,7 @@ module thomas_table #(
     logic last_q3, last_q4;
     logic signed [CoeffWidth-1:0] last;
     logic [LastShiftWidth-1:0] last_shift;
-    td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Size), .File({TableFolder, "thomas_last.hex"})) u_last (
+    td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, "thomas_last.hex"})) u_last (
       .clk, .en, .address(position_q3), .data({last_shift, last})
     );
     always_ff @(posedge clk) begin
@@ -80,8 +80,8 @@ module thomas_table #(
     always_ff @(posedge clk) if (en) coefficient <= inner;
   end
 
-  if (Size < 2 || Size != (1 << $clog2(Size))) begin : g_refused_0
-    Size_must_be_a_power_of_two_at_least_2 u_refused ();
+  if (Columns < 2 || Columns != (1 << $clog2(Columns))) begin : g_refused_0
+    Columns_must_be_a_power_of_two_at_least_2 u_refused ();
   end
   if (Rows < 2) begin : g_refused_1
     Rows_must_be_at_least_2 u_refused ();

@@ -8,17 +8,16 @@
 //
 // The second line: with more than one lane, each with its own part of the chain, a row each.
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
-// one burst of Size / Lanes clocks a row, Lanes codes a clock, the first in the lowest bits. Latency: fixed, 3.5 Size
-// and a few registers behind the last pixel; models/tactile_depth/latency.py.
-// Formats: models/tactile_depth/configuration.py. Bit-accurate model:
-// models/tactile_depth/poisson/tridiagonal_solver.py.
+// one burst of Columns / Lanes clocks a row, Lanes codes a clock, the first in the lowest bits. Latency: fixed, 3.5
+// Columns and a few registers behind the last pixel; models/tactile_depth/latency.py. Formats:
+// models/tactile_depth/configuration.py. Bit-accurate model: models/tactile_depth/poisson/tridiagonal_solver.py.
 
 `default_nettype none
 
 module tridiagonal_solver #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Rows           = 128,
-  parameter int Size           = 128,  // columns, a power of two
+  parameter int Columns        = 128,  // columns, a power of two
   parameter int Lanes          = 1,    // rows at a time on the way up, depth codes in a clock
   parameter int InWidth        = 23,
   parameter int DataWidth      = 24,   // of a stored word, and of a depth code
@@ -66,13 +65,13 @@ module tridiagonal_solver #(
   logic [2:0] clipped_down;
   logic [$clog2(Lanes+1)-1:0] clipped_up;
 
-  row_reorder #(.Width(InWidth), .Size(Size), .ToBurst(1)) u_row_in (
+  row_reorder #(.Width(InWidth), .Columns(Columns), .ToBurst(1)) u_row_in (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data(in_data),
     .out_start(row_start), .out_frame_start(row_frame_start), .out_data(row_data)
   );
 
   dst_forward #(
-    .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(Width), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
@@ -80,10 +79,10 @@ module tridiagonal_solver #(
   );
 
   forward_elimination #(
-    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .StoreDrop(StoreDrop),
-    .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(TableWords), .SettledWidth(SettledWidth),
-    .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal),
-    .MeanDrop(MeanDrop)
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns),
+    .StoreDrop(StoreDrop), .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(TableWords),
+    .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
+    .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
   ) u_down (
     .clk, .rst, .en, .in_start(modes_start), .in_frame_start(modes_frame_start), .in_data(modes),
     .out_start(eliminated_start), .out_frame_start(eliminated_frame_start), .out_data(eliminated),
@@ -91,14 +90,14 @@ module tridiagonal_solver #(
   );
 
   frame_stack #(
-    .Width(DataWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
+    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .WordsPerRow(WordsPerRow), .Style(StoreStyle)
   ) u_stack (
     .clk, .rst, .en, .in_start(eliminated_start), .in_frame_start(eliminated_frame_start), .in_data(eliminated),
     .out_start(stacked_start), .out_frame_start(stacked_frame_start), .out_data(stacked)
   );
 
   back_substitution #(
-    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Size(Size), .Lanes(Lanes),
+    .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes),
     .InWidth(DataWidth), .Lift(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
@@ -107,7 +106,7 @@ module tridiagonal_solver #(
 
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     dst_inverse #(
-      .TableFolder(TableFolder), .Size(Size), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+      .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
       .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
     ) u_row_inverse (
       .clk, .rst, .en, .in_start(solved_start[lane]), .in_frame_start(solved_frame_start[lane]),
@@ -118,16 +117,16 @@ module tridiagonal_solver #(
 
   if (Lanes == 1) begin : g_one_lane
     logic depth_valid;
-    logic [$clog2(Size)-1:0] unused_position;
-    td_burst_counter #(.Size(Size)) u_depth_valid (
+    logic [$clog2(Columns)-1:0] unused_position;
+    td_burst_counter #(.Words(Columns)) u_depth_valid (
       .clk, .rst, .en, .start(depth_start[0]), .position(unused_position), .active(depth_valid)
     );
-    row_reorder #(.Width(DataWidth), .Size(Size), .ToBurst(0)) u_row_out (
+    row_reorder #(.Width(DataWidth), .Columns(Columns), .ToBurst(0)) u_row_out (
       .clk, .rst, .en, .in_valid(depth_valid), .in_frame_start(depth_frame_start[0]), .in_data(depth),
       .out_start, .out_frame_start, .out_data
     );
   end else begin : g_lanes
-    corner_turn #(.Width(DataWidth), .Size(Size), .Lanes(Lanes)) u_row_out (
+    corner_turn #(.Width(DataWidth), .Columns(Columns), .Lanes(Lanes)) u_row_out (
       .clk, .rst, .en, .in_start(depth_start), .in_frame_start(depth_frame_start[0]), .in_data(depth),
       .out_start, .out_frame_start, .out_data
     );

@@ -359,8 +359,8 @@ class Configuration:
     # HDL parameters.
 
     def transform_parameters(self) -> dict[str, int]:
-        """Return the HDL parameters that all transforms share."""
-        return {"Size": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
+        """Return the HDL parameters that both solvers share."""
+        return {"Columns": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
 
     def stream_parameters(self) -> dict[str, int]:
         """Return the parameters of spectral_solver.sv; poisson/spectral_solver.py adds those of its divide."""

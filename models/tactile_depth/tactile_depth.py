@@ -178,7 +178,8 @@ def top_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[s
     """Return the parameters of hdl/tactile_depth.sv; the device tells its host the pitch of the grid, 0: unknown."""
     tridiagonal = config.solver == "tridiagonal"
     solver = tridiagonal_solver if tridiagonal else spectral_solver
-    parameters = solver.solver_parameters(config)
+    parameters = {"Size": config.columns, **solver.solver_parameters(config)}
+    del parameters["Columns"]
     return {
         **{name: value for name, value in parameters.items() if name not in DERIVED},
         "Rows": config.rows,

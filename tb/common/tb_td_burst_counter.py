@@ -10,24 +10,24 @@ from tactile_depth.common.td_burst_counter import burst_counter
 from tb.stream import drive, parameters
 
 
-def starts(size: int, chance: random.Random) -> list[Any]:
+def starts(words: int, chance: random.Random) -> list[Any]:
     """Return `start` of each cycle: two bursts back to back, one apart, one restarted, random ones, silence."""
-    burst = [1] + [0] * (size - 1)
-    random_ones = [int(chance.random() < 2 / size) for _ in range(10 * size)]
-    return [*burst, *burst, *[0] * 5, *burst, *burst[:3], *burst, *random_ones, *[0] * (size + 3)]
+    burst = [1] + [0] * (words - 1)
+    random_ones = [int(chance.random() < 2 / words) for _ in range(10 * words)]
+    return [*burst, *burst, *[0] * 5, *burst, *burst[:3], *burst, *random_ones, *[0] * (words + 3)]
 
 
 async def check(dut: Any, pause: float, before: int) -> None:
     """Send bursts after `before` cycles of another one and a reset, and compare the positions with the model."""
-    (size,) = parameters(dut, "Size")
+    (words,) = parameters(dut, "Words")
     chance = random.Random(cocotb.RANDOM_SEED)
     lost = [{"rst": 0, "start": int(n == 0)} for n in range(before)] + [{"rst": 1, "start": 0}]
-    kept = [{"rst": 0, "start": start} for start in (0, *starts(size, chance))]
+    kept = [{"rst": 0, "start": start} for start in (0, *starts(words, chance))]
     pins = await drive(dut, [*lost, *kept], ["position", "active"], pause)
     begun = [bool(start) for start in pins["start"][len(lost) :]]
     pairs = zip(pins["position"][len(lost) :], pins["active"][len(lost) :], strict=True)
     got = [int(position) if active else None for position, active in pairs]
-    assert got == burst_counter(begun, size)
+    assert got == burst_counter(begun, words)
 
 
 @cocotb.test()

@@ -14,11 +14,11 @@ FRAMES = 4  # in place, the order of rows in the memory flips with every frame
 
 
 async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
-    size, width, rows, lanes = parameters(dut, "Size", "Width", "Rows", "Lanes")
+    columns, width, rows, lanes = parameters(dut, "Columns", "Width", "Rows", "Lanes")
     # One word per frame is left out, so that every bit of a position changes from frame to frame.
-    words = places(frames * (rows * size + 1), width).reshape(frames, -1)[:, 1:]
+    words = places(frames * (rows * columns + 1), width).reshape(frames, -1)[:, 1:]
     if lanes > 1:
-        behaviour["sink"] = LanesMonitor(dut, "out", size, lanes)
+        behaviour["sink"] = LanesMonitor(dut, "out", columns, lanes)
     await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, lanes=lanes, **behaviour)
 
 
@@ -31,16 +31,16 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(halves=[1, 3, 5])
 async def reset_in_mid_frame(dut: Any, halves: int) -> None:
-    size, rows = parameters(dut, "Size", "Rows")
-    await check(dut, frames=2, interrupts=[halves * size * rows // 2 + size // 2])
+    columns, rows = parameters(dut, "Columns", "Rows")
+    await check(dut, frames=2, interrupts=[halves * columns * rows // 2 + columns // 2])
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def resets_as_a_frame_begins_to_leave(dut: Any) -> None:
     """Reset at the first words of the last row and around its end, where each register of the reading side is set."""
-    size, rows = parameters(dut, "Size", "Rows")
-    clocks = (1, 2, 3, size, size + 1, size + 2)
-    await check(dut, frames=2, interrupts=[(rows - 1) * size + clock for clock in clocks])
+    columns, rows = parameters(dut, "Columns", "Rows")
+    clocks = (1, 2, 3, columns, columns + 1, columns + 2)
+    await check(dut, frames=2, interrupts=[(rows - 1) * columns + clock for clock in clocks])
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")

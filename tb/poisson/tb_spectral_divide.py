@@ -25,39 +25,39 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize((("gap", "pause"), sample([(0, 0.0), (9, 0.0), (9, 0.3)])), ("amplitude", [0.001, 1.0]))
 async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
-    size, width = parameters(dut, "Size", "Width")
-    await check(dut, uniform((3 * size, size, 1), width, amplitude), gap=gap, pause=pause)
+    columns, width = parameters(dut, "Columns", "Width")
+    await check(dut, uniform((3 * columns, columns, 1), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 @cocotb.parametrize(amplitude=[0.01, 0.2, None])
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of the rounding, and values that just clip."""
-    size, width = parameters(dut, "Size", "Width")
-    shape = (MANY * size, size, 1)
+    columns, width = parameters(dut, "Columns", "Width")
+    shape = (MANY * columns, columns, 1)
     await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def limits(dut: Any) -> None:
     """Fill a frame with each kind of burst, so that it reaches every position and the lowest modes clip."""
-    size, width = parameters(dut, "Size", "Width")
-    _, sink = await check(dut, np.repeat(extremes(size, width), size, axis=0))
-    assert not np.any(sink.words[: size * size]), "zero in, but not zero out"
+    columns, width = parameters(dut, "Columns", "Width")
+    _, sink = await check(dut, np.repeat(extremes(columns, width), columns, axis=0))
+    assert not np.any(sink.words[: columns * columns]), "zero in, but not zero out"
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """Reset as the first words enter and leave, and in the middle of the second frame."""
-    size, width = parameters(dut, "Size", "Width")
-    first = 3 * size * size // 2 + size // 2 if late else 1
-    await check(dut, uniform((size, size, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))
+    columns, width = parameters(dut, "Columns", "Width")
+    first = 3 * columns * columns // 2 + columns // 2 if late else 1
+    await check(dut, uniform((columns, columns, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")
 @cocotb.parametrize(strays=[1, 2, 11])
 async def a_frame_begins_afresh(dut: Any, strays: int) -> None:
     """Start a frame after part of another one, and after more than one without a start of frame in between."""
-    size, width = parameters(dut, "Size", "Width")
-    await check(dut, uniform((size, size, 1), width), strays=strays)
+    columns, width = parameters(dut, "Columns", "Width")
+    await check(dut, uniform((columns, columns, 1), width), strays=strays)

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from tactile_depth.common.td_burst_counter import burst_counter
 
 
-@pytest.mark.structures("size", verilator=[(16,)], icarus=[(8,)], regress=[(64,), (16,)])
-def test_rtl(run_tb: Callable[..., None], size: int) -> None:
-    run_tb("td_burst_counter", {"Size": size})
+@pytest.mark.structures("words", verilator=[(16,)], icarus=[(8,)], regress=[(64,), (16,)])
+def test_rtl(run_tb: Callable[..., None], words: int) -> None:
+    run_tb("td_burst_counter", {"Words": words})
 
 
 def test_bursts_apart_back_to_back_and_begun_again() -> None:
@@ -22,7 +22,7 @@ def test_bursts_apart_back_to_back_and_begun_again() -> None:
 
 
 @given(st.lists(st.booleans()), st.integers(2, 9))
-def test_the_position_counts_clocks_since_the_last_start(starts: Any, size: int) -> None:
-    for clock, position in enumerate(burst_counter(starts, size)):
-        since = next((n for n in range(min(size, clock + 1)) if starts[clock - n]), None)
+def test_the_position_counts_clocks_since_the_last_start(starts: Any, words: int) -> None:
+    for clock, position in enumerate(burst_counter(starts, words)):
+        since = next((n for n in range(min(words, clock + 1)) if starts[clock - n]), None)
         assert position == since

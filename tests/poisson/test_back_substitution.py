@@ -11,7 +11,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
 
-NAMES = ("Width", "CoeffWidth", "Rows", "Size", "TableWords", "SettledWidth")
+NAMES = ("Width", "CoeffWidth", "Rows", "Columns", "TableWords", "SettledWidth")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 LANES = {"columns": 32, "rows": 11, "solver": "tridiagonal", "lanes": 4}
 MOST = CHOICES | {"lanes": 4}  # z of the row below does not wait

@@ -11,7 +11,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
 
-NAMES = ["Width", "CoeffWidth", "Rows", "Size", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
+NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
 NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 

@@ -7,7 +7,7 @@ import pytest
 
 
 @pytest.mark.structures(
-    "size width rows words_per_row lanes",
+    "columns width rows words_per_row lanes",
     verilator=[(16, 24, 8, 3, 1), (16, 24, 9, 3, 4)],
     icarus=[(8, 16, 3, 1, 1), (4, 4, 3, 1, 1), (8, 16, 3, 2, 1), (4, 4, 4, 3, 1), (8, 12, 5, 1, 2), (16, 12, 8, 1, 4)],
     regress=[
@@ -26,5 +26,6 @@ import pytest
         (64, 12, 21, 3, 8),
     ],
 )
-def test_rtl(run_tb: Callable[..., None], size: int, width: int, rows: int, words_per_row: int, lanes: int) -> None:
-    run_tb("frame_stack", {"Size": size, "Width": width, "Rows": rows, "WordsPerRow": words_per_row, "Lanes": lanes})
+def test_rtl(run_tb: Callable[..., None], columns: int, width: int, rows: int, words_per_row: int, lanes: int) -> None:
+    parameters = {"Columns": columns, "Width": width, "Rows": rows, "WordsPerRow": words_per_row, "Lanes": lanes}
+    run_tb("frame_stack", parameters)

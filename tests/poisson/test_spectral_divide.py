@@ -37,7 +37,7 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     run_tb(
         "spectral_divide",
         {
-            "Size": config.columns,
+            "Columns": config.columns,
             "Width": config.arithmetic_width,
             "CoeffWidth": config.coefficient_width,
             "ShiftWidth": table.shift_width,

@@ -27,7 +27,7 @@ CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     config = Configuration(**choices)
     parameters = solver_parameters(config)
-    taken = ("CoeffWidth", "Rows", "Size", "SettledWidth", "LastShiftWidth")
+    taken = ("CoeffWidth", "Rows", "Columns", "SettledWidth", "LastShiftWidth")
     run_tb(
         "thomas_table",
         {name: parameters[name] for name in taken} | {"Words": parameters["TableWords"]},

@@ -5,11 +5,11 @@
 `default_nettype none
 
 module fv_corner_turn #(
-  parameter int Width = 1,
-  parameter int Size  = 8,
-  parameter int Lanes = 4,
-  parameter int Rows  = 2 * Lanes,  // as many as make all addresses occur
-  localparam int PositionWidth = $clog2(Size),
+  parameter int Width   = 1,
+  parameter int Columns = 8,
+  parameter int Lanes   = 4,
+  parameter int Rows    = 2 * Lanes,  // as many as make all addresses occur
+  localparam int PositionWidth = $clog2(Columns),
   localparam int LaneWidth = $clog2(Lanes),
   localparam int RowWidth = $clog2(Rows + 1)
 ) (
@@ -23,7 +23,7 @@ module fv_corner_turn #(
 );
 
   localparam int Latency = 3;
-  localparam int Longest = Latency + Size - 1 + Size / Lanes;
+  localparam int Longest = Latency + Columns - 1 + Columns / Lanes;
   localparam int LeftWidth = $clog2(Longest + 1);
 
   logic started = 1'b0;
@@ -32,13 +32,13 @@ module fv_corner_turn #(
   logic [Lanes-1:0] in_start, frame_start, active;
   logic [Lanes*PositionWidth-1:0] position;
   logic [Lanes*RowWidth-1:0] row;
-  lane_source #(.Size(Size), .Rows(Rows), .Lanes(Lanes)) u_source (
+  lane_source #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_source (
     .clk, .rst, .en, .go, .start(in_start), .frame_start, .active, .position, .row
   );
 
   logic out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
-  corner_turn #(.Width(Width), .Size(Size), .Lanes(Lanes)) dut (
+  corner_turn #(.Width(Width), .Columns(Columns), .Lanes(Lanes)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start(frame_start[0]), .in_data, .out_start, .out_frame_start, .out_data
   );
 
@@ -50,11 +50,11 @@ module fv_corner_turn #(
       if (chosen == LaneWidth'(lane)) place = position[lane*PositionWidth+:PositionWidth];
     end
   end
-  assign sample = 32'(place) < Size / 2 ? place * 2 : PositionWidth'(2 * (Size - 1 - 32'(place)) + 1);
+  assign sample = 32'(place) < Columns / 2 ? place * 2 : PositionWidth'(2 * (Columns - 1 - 32'(place)) + 1);
 
   logic [Lanes-1:0] last_word, last_of_frame;
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
-    assign last_word[lane] = active[lane] && position[lane*PositionWidth+:PositionWidth] == PositionWidth'(Size - 1);
+    assign last_word[lane] = active[lane] && position[lane*PositionWidth+:PositionWidth] == PositionWidth'(Columns - 1);
     assign last_of_frame[lane] = last_word[lane] && row[lane*RowWidth+:RowWidth] == RowWidth'(Rows - 1);
   end
 
@@ -75,7 +75,7 @@ module fv_corner_turn #(
       frame_ends <= Latency'({frame_ends, |last_of_frame});
       if (!following) begin
         following <= pick & active[chosen];
-        left <= LeftWidth'(Latency - 1 + Size - 1 - 32'(place) + 32'(sample) / Lanes);
+        left <= LeftWidth'(Latency - 1 + Columns - 1 - 32'(place) + 32'(sample) / Lanes);
         slot <= LaneWidth'(32'(sample) % Lanes);
         value <= in_data[chosen*Width+:Width];
       end else begin

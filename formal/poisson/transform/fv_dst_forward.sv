@@ -26,7 +26,7 @@ module fv_dst_forward #(
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
 
-  timed_bursts #(.Size(Size), .Latency(Latency)) u_bursts (
+  timed_bursts #(.Columns(Size), .Latency(Latency)) u_bursts (
     .clk, .rst, .en, .go, .restart, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
 

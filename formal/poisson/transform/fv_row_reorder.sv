@@ -6,9 +6,9 @@
 
 module fv_row_reorder #(
   parameter int Width   = 1,
-  parameter int Size    = 8,
+  parameter int Columns = 8,
   parameter int ToBurst = 1,
-  localparam int PositionWidth = $clog2(Size)
+  localparam int PositionWidth = $clog2(Columns)
 ) (
   input logic             clk,
   input logic             rst,
@@ -24,7 +24,7 @@ module fv_row_reorder #(
 
   logic out_start, out_frame_start, in_frame_start;
   logic [Width-1:0] out_data;
-  row_reorder #(.Width(Width), .Size(Size), .ToBurst(ToBurst)) dut (
+  row_reorder #(.Width(Width), .Columns(Columns), .ToBurst(ToBurst)) dut (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
 
@@ -35,7 +35,7 @@ module fv_row_reorder #(
   assign position = in_frame_start ? '0 : next_position;
   assign of_first_row = in_frame_start | (of_first_row_q & (position != '0));
   logic row_end;
-  assign row_end = in_valid & (position == PositionWidth'(Size - 1));
+  assign row_end = in_valid & (position == PositionWidth'(Columns - 1));
   always_ff @(posedge clk) begin
     started <= 1'b1;
     if (en && in_valid) begin
@@ -48,13 +48,14 @@ module fv_row_reorder #(
 
   // Makhoul's order: even samples upwards, then odd samples downwards.
   logic [PositionWidth-1:0] place_of_sample, sample_at_place;
-  assign place_of_sample = position % 2 == 0 ? position / 2 : PositionWidth'(Size - 1) - position / 2;
-  assign sample_at_place = 32'(position) < Size / 2 ? position * 2 : PositionWidth'(2 * (Size - 1 - 32'(position)) + 1);
+  assign place_of_sample = position % 2 == 0 ? position / 2 : PositionWidth'(Columns - 1) - position / 2;
+  assign sample_at_place = 32'(position) < Columns / 2 ? position * 2
+      : PositionWidth'(2 * (Columns - 1 - 32'(position)) + 1);
 
   logic due, present, watched;
   logic [PositionWidth-1:0] place;
   logic [Width-1:0] value;
-  follow_word #(.Width(Width), .Words(Size), .Latency(2)) u_follow (
+  follow_word #(.Width(Width), .Words(Columns), .Latency(2)) u_follow (
     .clk, .rst, .en, .pick, .in_word(in_valid), .in_first(in_valid & (position == '0)), .in_closed(1'b0),
     .in_place(ToBurst != 0 ? place_of_sample : sample_at_place), .in_data, .close(row_end),
     .due, .present, .place, .watched, .value
@@ -75,7 +76,7 @@ module fv_row_reorder #(
       frame_start_when_due: assert (out_frame_start == first_row_ends[1]);
       if (watched) in_place: assert (out_data == value);
       if (held) holds: assert (out_data == out_data_q);
-      last_word: cover (watched && place == PositionWidth'(Size - 1));
+      last_word: cover (watched && place == PositionWidth'(Columns - 1));
       behind_restart: cover (watched && out_frame_start && restart && in_valid);
       back_to_back: cover (due && next_position == '0 && in_valid && held);
     end

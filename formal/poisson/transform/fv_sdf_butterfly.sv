@@ -32,7 +32,7 @@ module fv_sdf_butterfly #(
   logic in_start, in_frame_start, active, last_row;
   logic [PositionWidth-1:0] position;
   logic [1:0] row;
-  burst_source #(.Size(Size), .Rows(2)) u_source (
+  burst_source #(.Columns(Size), .Rows(2)) u_source (
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
@@ -114,7 +114,7 @@ module fv_sdf_butterfly #(
   logic none_leaves;  // nothing was rounded in the clock before
   always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
 
-  burst_timing #(.Size(Size), .Latency(Delay + 2)) u_timing (
+  burst_timing #(.Columns(Size), .Latency(Delay + 2)) u_timing (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
   always_comb begin

@@ -27,7 +27,7 @@ module fv_sdf_fft #(
     .out_start, .out_frame_start, .out_re, .out_im, .saturations
   );
 
-  timed_bursts #(.Size(Size), .Latency(Latency)) u_bursts (
+  timed_bursts #(.Columns(Size), .Latency(Latency)) u_bursts (
     .clk, .rst, .en, .go, .restart, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
 

@@ -7,10 +7,10 @@
 
 module fv_transpose #(
   parameter int Width      = 1,
-  parameter int Size       = 4,
+  parameter int Columns    = 4,
   parameter int MakhoulIn  = 0,
   parameter int MakhoulOut = 0,
-  localparam int IndexWidth = $clog2(Size)
+  localparam int IndexWidth = $clog2(Columns)
 ) (
   input logic             clk,
   input logic             rst,
@@ -27,23 +27,23 @@ module fv_transpose #(
 
   logic in_start, in_frame_start, active, last_row;
   logic [IndexWidth-1:0] position;
-  logic [$clog2(Size+1)-1:0] row;
-  burst_source #(.Size(Size), .Rows(Size)) u_source (
+  logic [$clog2(Columns+1)-1:0] row;
+  burst_source #(.Columns(Columns), .Rows(Columns)) u_source (
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
   logic out_start, out_frame_start;
   logic [Width-1:0] out_data;
-  transpose #(.Width(Width), .Size(Size), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (
+  transpose #(.Width(Width), .Columns(Columns), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
 
   // Makhoul's order: even samples upwards, then odd samples downwards.
   function automatic logic [IndexWidth-1:0] place_of_sample(input logic [IndexWidth-1:0] n);
-    return n % 2 == 0 ? n / 2 : IndexWidth'(Size - 1) - n / 2;
+    return n % 2 == 0 ? n / 2 : IndexWidth'(Columns - 1) - n / 2;
   endfunction
   function automatic logic [IndexWidth-1:0] sample_at_place(input logic [IndexWidth-1:0] p);
-    return 32'(p) < Size / 2 ? p * 2 : IndexWidth'(2 * (Size - 1 - 32'(p)) + 1);
+    return 32'(p) < Columns / 2 ? p * 2 : IndexWidth'(2 * (Columns - 1 - 32'(p)) + 1);
   endfunction
   logic [IndexWidth-1:0] column, row_place;
   assign column = MakhoulIn != 0 ? sample_at_place(position) : position;
@@ -52,7 +52,7 @@ module fv_transpose #(
   logic due, present, watched;
   logic [2*IndexWidth-1:0] place;
   logic [Width-1:0] value;
-  follow_word #(.Width(Width), .Words(Size * Size), .Latency(2)) u_follow (
+  follow_word #(.Width(Width), .Words(Columns * Columns), .Latency(2)) u_follow (
     .clk, .rst, .en, .pick, .in_word(active), .in_first(in_frame_start), .in_closed(last_row & ~in_start),
     .in_place({column, row_place}), .in_data, .close(in_start & last_row), .due, .present, .place, .watched, .value
   );

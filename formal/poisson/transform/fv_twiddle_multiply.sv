@@ -30,7 +30,7 @@ module fv_twiddle_multiply #(
   logic in_start, in_frame_start, active, last_row;
   logic [PositionWidth-1:0] position;
   logic [1:0] row;
-  burst_source #(.Size(Size), .Rows(2)) u_source (
+  burst_source #(.Columns(Size), .Rows(2)) u_source (
     .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
   );
 
@@ -71,7 +71,7 @@ module fv_twiddle_multiply #(
     if (rst) following <= 1'b0;
   end
 
-  burst_timing #(.Size(Size), .Latency(Latency)) u_timing (
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
   always_comb begin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_corner_turn: rows of Size words in the lanes in turn, each Size / Lanes enabled clocks behind the row before.
+// protocol_corner_turn: rows of Columns words in the lanes in turn, each Columns / Lanes enabled clocks behind the row
+// before.
 //
 // A frame begins with in_frame_start in lane 0, when no row of the frame before is coming in; after a reset none has
 // begun. It ends with the first step in which no row begins. Inputs stay while en is low.
@@ -7,8 +8,8 @@
 `default_nettype none
 
 module protocol_corner_turn #(
-  parameter int Size  = 8,
-  parameter int Lanes = 2
+  parameter int Columns = 8,
+  parameter int Lanes   = 2
 ) (
   input  logic             clk,
   input  logic             rst,
@@ -22,7 +23,7 @@ module protocol_corner_turn #(
   output logic             counts
 );
 
-  localparam int Step = Size / Lanes;
+  localparam int Step = Columns / Lanes;
 
   logic reset, live = 1'b0, still = 1'b0, running = 1'b0, due, allowed, frame_start_before;
   logic [Lanes-1:0] next_lane = '0, start_before;
@@ -49,7 +50,7 @@ module protocol_corner_turn #(
       if (in_start != '0) begin
         running <= 1'b1;
         step_left <= 16'(Step - 1);
-        in_left <= 16'(Size + Step - 1);
+        in_left <= 16'(Columns + Step - 1);
         next_lane <= {in_start[Lanes-2:0], in_start[Lanes-1]};
       end else begin
         if (due) running <= 1'b0;

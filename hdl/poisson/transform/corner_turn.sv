@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // corner_turn: rows that come side by side, one word of each per clock, leave in turn, several words of one per clock.
 //
-// Stream in: bursts of Size words in Makhoul order (0, 2, 4, .., 5, 3, 1); the lanes have the rows of a frame in turn,
-// each Size / Lanes clocks behind the row before, without a pause. Stream out: the same rows in the same order, each a
-// burst of Size / Lanes clocks with Lanes words in natural order, the first word in the lowest bits. Latency: 3 cycles
-// from the last word of a row to its first words out.
+// Stream in: bursts of Columns words in Makhoul order (0, 2, 4, .., 5, 3, 1); the lanes have the rows of a frame in
+// turn, each Columns / Lanes clocks behind the row before, without a pause. Stream out: the same rows in the same
+// order, each a burst of Columns / Lanes clocks with Lanes words in natural order, the first word in the lowest bits.
+// Latency: 3 cycles from the last word of a row to its first words out.
 //
 // In every clock each lane writes a word, and Lanes words of one row are read, so there are Lanes memories. The words
 // that leave together are neighbours in the first half of the burst (even words) and in the second half (odd words).
 // Two lanes that are Lanes / 2 apart are half a burst apart. So half of the memories hold first halves; there, position
-// p of lane e is in memory p + e (Size / Lanes + 1), modulo Lanes / 2. The others hold second halves in the same way.
-// The address is the time of the write, modulo two bursts.
-// Bit-accurate model: models/tactile_depth/poisson/transform/corner_turn.py.
+// p of lane e is in memory p + e (Columns / Lanes + 1), modulo Lanes / 2. The others hold second halves in the same
+// way. The address is the time of the write, modulo two bursts. Bit-accurate model:
+// models/tactile_depth/poisson/transform/corner_turn.py.
 
 `default_nettype none
 
 module corner_turn #(
-  parameter int Width = 24,
-  parameter int Size  = 128,
-  parameter int Lanes = 8
+  parameter int Width   = 24,
+  parameter int Columns = 128,
+  parameter int Lanes   = 8
 ) (
   input  wire                    clk,
   input  wire                    rst,
@@ -31,14 +31,14 @@ module corner_turn #(
   output logic [Lanes*Width-1:0] out_data
 );
 
-  localparam int Step = Size / Lanes;  // clocks from a row to the next
+  localparam int Step = Columns / Lanes;  // clocks from a row to the next
   localparam int Half = Lanes / 2;
   localparam int IndexWidth = Half > 1 ? $clog2(Half) : 1;
   localparam int LaneWidth = $clog2(Lanes);
   localparam int StepWidth = $clog2(Step);
   localparam int AddressWidth = StepWidth + LaneWidth + 1;
   localparam logic [AddressWidth-1:0] Stride = AddressWidth'(Half);  // positions that a clock reads in half a burst
-  localparam logic [AddressWidth-1:0] Last = AddressWidth'(Size - 1);
+  localparam logic [AddressWidth-1:0] Last = AddressWidth'(Columns - 1);
   localparam logic [IndexWidth-1:0] LaneOffset = IndexWidth'(Step + 1);
 
   // Word m of the result is word m + amount, modulo Half.
@@ -93,7 +93,7 @@ module corner_turn #(
     logic [IndexWidth-1:0] even, odd;  // of the words that leave together, the one in this memory
     assign even = Half > 1 ? IndexWidth'(index) - offset : '0;
     assign odd = Half > 1 ? offset - IndexWidth'(index + 1) : '0;
-    td_ram #(.Width(Width), .Depth(2 * Size), .Style((2 * Size * Width > 4096) ? 1 : 0)) u_first (
+    td_ram #(.Width(Width), .Depth(2 * Columns), .Style((2 * Columns * Width > 4096) ? 1 : 0)) u_first (
       .clk,
       .write_en     (en & (|active)),
       .write_address(now),
@@ -102,7 +102,7 @@ module corner_turn #(
       .read_address (begun + ahead + AddressWidth'(even)),
       .read_data    (read_first[index*Width+:Width])
     );
-    td_ram #(.Width(Width), .Depth(2 * Size), .Style((2 * Size * Width > 4096) ? 1 : 0)) u_second (
+    td_ram #(.Width(Width), .Depth(2 * Columns), .Style((2 * Columns * Width > 4096) ? 1 : 0)) u_second (
       .clk,
       .write_en     (en & (|active)),
       .write_address(now),
@@ -146,8 +146,9 @@ module corner_turn #(
     end
   end
 
-  if (Lanes < 2 || Lanes != (1 << $clog2(Lanes)) || Size < 2 * Lanes || Size != (1 << $clog2(Size))) begin : g_refused
-    Lanes_and_Size_must_be_powers_of_two_of_at_least_2_and_2_Lanes u_refused ();
+  if (Lanes < 2 || Lanes != (1 << $clog2(Lanes)) || Columns < 2 * Lanes || Columns != (1 << $clog2(Columns)))
+  begin : g_refused
+    Lanes_and_Columns_must_be_powers_of_two_of_at_least_2_and_2_Lanes u_refused ();
   end
 
 endmodule

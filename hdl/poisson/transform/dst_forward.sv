@@ -39,7 +39,7 @@ module dst_forward #(
   // Samples of odd index are the second half of the burst.
   logic [$clog2(Size)-1:0] position;
   logic active;
-  td_burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Words(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
   logic signed [InWidth:0] signed_in;

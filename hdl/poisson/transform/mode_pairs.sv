@@ -31,11 +31,11 @@ module mode_pairs #(
 
   logic [PositionWidth-1:0] write_position, read_position, mirrored_position;
   logic write_active, read_active, read_start;
-  td_burst_counter #(.Size(Size)) u_write (
+  td_burst_counter #(.Words(Size)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
   assign read_start = write_active & (write_position == PositionWidth'(Size / 2));
-  td_burst_counter #(.Size(Size)) u_read (
+  td_burst_counter #(.Words(Size)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
   );
 

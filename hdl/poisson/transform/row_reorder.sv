@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // row_reorder: collect a row, then send it as one burst in another order.
 //
-// Stream in: words with gaps anywhere; a row begins afresh at a frame's first word. Stream out: bursts of Size words,
-// one a row, begun when the row is complete, so what follows never sees a gap.
+// Stream in: words with gaps anywhere; a row begins afresh at a frame's first word. Stream out: bursts of Columns
+// words, one a row, begun when the row is complete, so what follows never sees a gap.
 //   ToBurst = 1: natural order in, Makhoul order out (0, 2, 4, .., 5, 3, 1).  ToBurst = 0: the reverse.
 // Latency: 2 cycles from the last word of a row to its first word out. Two rows of memory, written and read in turn.
 // Bit-accurate model: models/tactile_depth/poisson/transform/row_reorder.py.
@@ -11,7 +11,7 @@
 
 module row_reorder #(
   parameter int Width   = 24,
-  parameter int Size    = 128,
+  parameter int Columns = 128,
   parameter int ToBurst = 1
 ) (
   input  wire              clk,
@@ -25,16 +25,16 @@ module row_reorder #(
   output logic [Width-1:0] out_data
 );
 
-  localparam int PositionWidth = $clog2(Size);
+  localparam int PositionWidth = $clog2(Columns);
 
-  // Sample at position p of a burst: 2 p in the first half, counted back from Size - 1 in the second.
+  // Sample at position p of a burst: 2 p in the first half, counted back from Columns - 1 in the second.
   function automatic logic [PositionWidth-1:0] makhoul(input logic [PositionWidth-1:0] p);
     makhoul = {p[PositionWidth-2:0] ^ {(PositionWidth - 1){p[PositionWidth-1]}}, p[PositionWidth-1]};
   endfunction
 
   logic write_bank, read_bank, read_start, read_active, frame_start, frame_start_q, read_frame_start;
   logic [PositionWidth-1:0] write_position, write_position_q, read_position, write_place, read_place;
-  td_burst_counter #(.Size(Size)) u_read (
+  td_burst_counter #(.Words(Columns)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
   );
   assign write_position = in_frame_start ? '0 : write_position_q;
@@ -43,8 +43,8 @@ module row_reorder #(
 
   td_ram #(
     .Width(Width),
-    .Depth(2 * Size),
-    .Style((2 * Size * Width > 4096) ? 1 : 0)
+    .Depth(2 * Columns),
+    .Style((2 * Columns * Width > 4096) ? 1 : 0)
   ) u_ram (
     .clk,
     .write_en     (en & in_valid),
@@ -59,7 +59,7 @@ module row_reorder #(
   assign frame_start = write_position == '0 ? in_frame_start : frame_start_q;
 
   logic row_end;
-  assign row_end = in_valid & (write_position == PositionWidth'(Size - 1));
+  assign row_end = in_valid & (write_position == PositionWidth'(Columns - 1));
 
   always_ff @(posedge clk) begin
     if (en) begin
@@ -86,8 +86,8 @@ module row_reorder #(
     end
   end
 
-  if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
-    Size_must_be_a_power_of_two_at_least_4 u_refused ();
+  if (Columns < 4 || Columns != (1 << $clog2(Columns))) begin : g_refused
+    Columns_must_be_a_power_of_two_at_least_4 u_refused ();
   end
 
 endmodule

@@ -37,7 +37,7 @@ module sdf_butterfly #(
 
   logic [PositionWidth-1:0] position;
   logic active;
-  td_burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Words(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
 
@@ -101,7 +101,7 @@ module sdf_butterfly #(
 
   logic leaving;
   logic [PositionWidth-1:0] unused_position;
-  td_burst_counter #(.Size(Size)) u_leaving (
+  td_burst_counter #(.Words(Size)) u_leaving (
     .clk, .rst, .en, .start(leaves_first_q), .position(unused_position), .active(leaving)
   );
   logic signed [Width-1:0] rounded_re, rounded_im;

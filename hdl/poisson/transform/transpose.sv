@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// transpose: rows of a frame in, columns out, through one memory of exactly Size x Size words.
+// transpose: rows of a frame in, columns out, through one memory of exactly Columns x Columns words.
 //
-// Stream in: bursts of Size words, Size of them a frame, gaps between bursts anywhere; rows count from a frame's start.
-// Stream out: Size bursts without a pause, one a column. Latency: 2 cycles from the first word of the last row to the
-// first word of the first column; nothing need follow, the reader runs by itself.
+// Stream in: bursts of Columns words, Columns of them a frame, gaps between bursts anywhere; rows count from a frame's
+// start. Stream out: Columns bursts without a pause, one a column. Latency: 2 cycles from the first word of the last
+// row to the first word of the first column; nothing need follow, the reader runs by itself.
 //   MakhoulIn = 1:  the words of a row come in Makhoul order (0, 2, 4, .., 5, 3, 1)
 //   MakhoulOut = 1: the words of a column leave in Makhoul order
 //
-// In place: column c of a frame is read in the Size cycles before row c of the next frame can arrive, which is written
-// into the positions just read. So rows and columns of the memory change roles from the frame read last. A column is
-// read out wholly before the first word is written over it, so the order inside a column is free.
+// In place: column c of a frame is read in the Columns cycles before row c of the next frame can arrive, which is
+// written into the positions just read. So rows and columns of the memory change roles from the frame read last. A
+// column is read out wholly before the first word is written over it, so the order inside a column is free.
 // Bit-accurate model: models/tactile_depth/poisson/transform/transpose.py.
 
 `default_nettype none
 
 module transpose #(
   parameter int Width      = 24,
-  parameter int Size       = 128,
+  parameter int Columns    = 128,
   parameter int MakhoulIn  = 0,
   parameter int MakhoulOut = 1,
-  parameter int Style      = 1   // of the memory, hdl/common/td_ram.sv
+  parameter int Style      = 1  // of the memory, hdl/common/td_ram.sv
 ) (
   input  wire              clk,
   input  wire              rst,
@@ -32,7 +32,7 @@ module transpose #(
   output logic [Width-1:0] out_data
 );
 
-  localparam int IndexWidth = $clog2(Size);
+  localparam int IndexWidth = $clog2(Columns);
 
   function automatic logic [IndexWidth-1:0] makhoul(input logic [IndexWidth-1:0] p);
     makhoul = {p[IndexWidth-2:0] ^ {(IndexWidth - 1){p[IndexWidth-1]}}, p[IndexWidth-1]};
@@ -41,19 +41,19 @@ module transpose #(
   // Writer: row counts bursts, turned says whether rows of this frame lie along the memory's columns.
   logic [IndexWidth-1:0] row, row_q, write_position, write_column;
   logic write_active, write_turned, write_turned_q, read_turned, last_row_start;
-  td_burst_counter #(.Size(Size)) u_write (
+  td_burst_counter #(.Words(Columns)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
   assign row = in_frame_start ? '0 : row_q;
   assign write_turned = in_frame_start ? ~read_turned : write_turned_q;
   assign write_column = MakhoulIn != 0 ? makhoul(write_position) : write_position;
-  assign last_row_start = in_start & (row == IndexWidth'(Size - 1));
+  assign last_row_start = in_start & (row == IndexWidth'(Columns - 1));
 
-  // Reader: one burst of Size^2 from the cycle after the last row begins.
+  // Reader: one burst of Columns^2 from the cycle after the last row begins.
   logic read_start, read_active;
   logic [2*IndexWidth-1:0] read_position;
   logic [IndexWidth-1:0] column, read_row;
-  td_burst_counter #(.Size(Size * Size)) u_read (
+  td_burst_counter #(.Words(Columns * Columns)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
   );
   assign column = read_position[2*IndexWidth-1:IndexWidth];
@@ -61,7 +61,7 @@ module transpose #(
 
   td_ram #(
     .Width(Width),
-    .Depth(Size * Size),
+    .Depth(Columns * Columns),
     .Style(Style)
   ) u_ram (
     .clk,
@@ -75,7 +75,7 @@ module transpose #(
 
   always_ff @(posedge clk) begin
     if (en) begin
-      row_q <= row + IndexWidth'(write_active & (write_position == IndexWidth'(Size - 1)));
+      row_q <= row + IndexWidth'(write_active & (write_position == IndexWidth'(Columns - 1)));
       write_turned_q <= write_turned;
       if (last_row_start) read_turned <= write_turned;
       read_start <= last_row_start;
@@ -90,8 +90,8 @@ module transpose #(
     end
   end
 
-  if (Size < 4 || Size != (1 << $clog2(Size))) begin : g_refused
-    Size_must_be_a_power_of_two_at_least_4 u_refused ();
+  if (Columns < 4 || Columns != (1 << $clog2(Columns))) begin : g_refused
+    Columns_must_be_a_power_of_two_at_least_4 u_refused ();
   end
 
 endmodule

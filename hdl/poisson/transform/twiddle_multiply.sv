@@ -41,7 +41,7 @@ module twiddle_multiply #(
 
   logic [PositionWidth-1:0] position;
   logic active;
-  td_burst_counter #(.Size(Size)) u_counter (
+  td_burst_counter #(.Words(Size)) u_counter (
     .clk, .rst, .en, .start(in_start), .position, .active
   );
 

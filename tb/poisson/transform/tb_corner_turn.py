@@ -14,10 +14,10 @@ FRAMES, ROWS = 3, 7
 
 
 async def check(dut: Any, rows: int = ROWS, **behaviour: Any) -> None:
-    size, width, lanes = parameters(dut, "Size", "Width", "Lanes")
-    frames = places(FRAMES * rows * size, width).reshape(FRAMES, rows, size)
-    behaviour |= {"lanes": lanes, "sink": BeatMonitor(dut, "out", size // lanes, lanes)}
-    await check_lanes(dut, frames, lambda rows, _: corner_turn(rows, lanes), size - 1 + CORNER_TURN, **behaviour)
+    columns, width, lanes = parameters(dut, "Columns", "Width", "Lanes")
+    frames = places(FRAMES * rows * columns, width).reshape(FRAMES, rows, columns)
+    behaviour |= {"lanes": lanes, "sink": BeatMonitor(dut, "out", columns // lanes, lanes)}
+    await check_lanes(dut, frames, lambda rows, _: corner_turn(rows, lanes), columns - 1 + CORNER_TURN, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
@@ -35,9 +35,9 @@ async def any_number_of_rows(dut: Any, rows: int) -> None:
 @cocotb.test(timeout_time=2, timeout_unit="ms")
 async def reset_in_mid_frame(dut: Any) -> None:
     """Reset in each cycle of a step as rows begin to enter, and as they leave."""
-    size, lanes = parameters(dut, "Size", "Lanes")
-    step = size // lanes
-    await check(dut, interrupts=with_and_without_en([*range(1, step + 1), *range(size, size + step + 4)]))
+    columns, lanes = parameters(dut, "Columns", "Lanes")
+    step = columns // lanes
+    await check(dut, interrupts=with_and_without_en([*range(1, step + 1), *range(columns, columns + step + 4)]))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

@@ -25,30 +25,30 @@ FRAME = 3  # rows
 
 
 async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> None:
-    size, width, to_burst = parameters(dut, "Size", "Width", "ToBurst")
+    columns, width, to_burst = parameters(dut, "Columns", "Width", "ToBurst")
     bench = Bench(dut, pause)
     driver = StreamDriver(dut, "in", "valid", ["data"])
     source = StreamMonitor(dut, "in", "valid", ["data"])
-    sink = StreamMonitor(dut, "out", "start", ["data"], length=size)
+    sink = StreamMonitor(dut, "out", "start", ["data"], length=columns)
     await bench.start()
-    words = places(ROWS * size, width).reshape(-1, 1).tolist()
+    words = places(ROWS * columns, width).reshape(-1, 1).tolist()
 
     async def send(count: int) -> None:
-        await send_apart(bench, driver, words[-count:], gap, FRAME * size)
+        await send_apart(bench, driver, words[-count:], gap, FRAME * columns)
 
     await interrupt(bench, send, interrupts, (source, sink), quiet=ROW_REORDER + 2)
-    await send_apart(bench, driver, words[:strays], gap, FRAME * size)
-    await send_apart(bench, driver, words, gap, FRAME * size)
-    await bench.clocks(ROW_REORDER + size + 4)
+    await send_apart(bench, driver, words[:strays], gap, FRAME * columns)
+    await send_apart(bench, driver, words, gap, FRAME * columns)
+    await bench.clocks(ROW_REORDER + columns + 4)
     source.forget_but(len(words))
     sink.forget_but(ROWS)
 
     assert source.words == [tuple(word) for word in words], "the driver sent other words than the test gave it"
-    rows = np.array(source.words).reshape(ROWS, size)
-    check_words(np.array(sink.words).reshape(-1, 1), row_reorder(rows, bool(to_burst)).reshape(-1, 1), size, FRAME)
-    check_frame_starts([source], FRAME * size)
+    rows = np.array(source.words).reshape(ROWS, columns)
+    check_words(np.array(sink.words).reshape(-1, 1), row_reorder(rows, bool(to_burst)).reshape(-1, 1), columns, FRAME)
+    check_frame_starts([source], FRAME * columns)
     check_frame_starts([sink], FRAME)
-    ends = source.starts[size - 1 :: size]
+    ends = source.starts[columns - 1 :: columns]
     assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [ROW_REORDER] * ROWS
 
 
@@ -61,13 +61,13 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 async def reset_in_mid_row(dut: Any) -> None:
     """Reset at each word of a row, and while the row leaves."""
-    (size,) = parameters(dut, "Size")
-    await check(dut, interrupts=range(1, size + size // 2))
+    (columns,) = parameters(dut, "Columns")
+    await check(dut, interrupts=range(1, columns + columns // 2))
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
 @cocotb.parametrize((("rows", "words"), [(0, 1), (1, -1), (1, 1)]))
 async def a_frame_begins_afresh(dut: Any, rows: int, words: Any) -> None:
     """Start a frame after `rows` rows and `words` words of an incomplete frame."""
-    (size,) = parameters(dut, "Size")
-    await check(dut, strays=rows * size + words)
+    (columns,) = parameters(dut, "Columns")
+    await check(dut, strays=rows * columns + words)

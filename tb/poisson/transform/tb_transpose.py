@@ -13,13 +13,13 @@ FRAMES = 4  # in place, rows and columns of the memory change roles with every f
 
 
 async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
-    size, width, makhoul_in, makhoul_out = parameters(dut, "Size", "Width", "MakhoulIn", "MakhoulOut")
+    columns, width, makhoul_in, makhoul_out = parameters(dut, "Columns", "Width", "MakhoulIn", "MakhoulOut")
 
     def model(words: Any) -> Any:
         return transpose(words, bool(makhoul_in), bool(makhoul_out))
 
-    words = places(frames * size * size, width).reshape(frames, -1)
-    await check_frame_memory(dut, words, model, TRANSPOSE, rows=size, **behaviour)
+    words = places(frames * columns * columns, width).reshape(frames, -1)
+    await check_frame_memory(dut, words, model, TRANSPOSE, rows=columns, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
@@ -32,9 +32,9 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
 @cocotb.parametrize(late=[False, True])
 async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """Reset as the first words enter, as the last row enters, as reading begins, and in the middle of a third frame."""
-    (size,) = parameters(dut, "Size")
-    first = (size - 1) * size if late else 1
-    await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * size * size // 2])
+    (columns,) = parameters(dut, "Columns")
+    first = (columns - 1) * columns if late else 1
+    await check(dut, frames=2, interrupts=[*range(first, first + 5), 5 * columns * columns // 2])
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")

@@ -10,21 +10,21 @@ from tactile_depth.poisson.transform.row_reorder import row_reorder
 
 
 @pytest.mark.structures(
-    "size width to_burst",
+    "columns width to_burst",
     verilator=[(16, 24, 1)],
     icarus=[(16, 24, 0), (8, 12, 1)],
     regress=[(8, 12, 0), (64, 35, 1), (64, 35, 0), (16, 24, 1)],
 )
-def test_rtl(run_tb: Callable[..., None], size: int, width: int, to_burst: bool) -> None:
-    run_tb("row_reorder", {"Size": size, "Width": width, "ToBurst": to_burst})
+def test_rtl(run_tb: Callable[..., None], columns: int, width: int, to_burst: bool) -> None:
+    run_tb("row_reorder", {"Columns": columns, "Width": width, "ToBurst": to_burst})
 
 
 def test_makhoul_order_is_even_samples_up_then_odd_ones_down() -> None:
     assert row_reorder(np.arange(8), to_burst=True).tolist() == [0, 2, 4, 6, 7, 5, 3, 1]
 
 
-@pytest.mark.parametrize("size", [8, 128, 512])
-def test_there_and_back_is_the_row(size: int) -> None:
-    rows = np.arange(3 * size).reshape(3, size)
+@pytest.mark.parametrize("columns", [8, 128, 512])
+def test_there_and_back_is_the_row(columns: int) -> None:
+    rows = np.arange(3 * columns).reshape(3, columns)
     for first in (True, False):
         np.testing.assert_array_equal(row_reorder(row_reorder(rows, first), not first), rows)

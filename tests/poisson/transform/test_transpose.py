@@ -12,7 +12,7 @@ from tactile_depth.poisson.transform.transpose import transpose
 
 
 @pytest.mark.structures(
-    "size width makhoul_in makhoul_out",
+    "columns width makhoul_in makhoul_out",
     verilator=[(16, 24, 0, 1)],
     icarus=[
         (8, 16, 0, 0),
@@ -25,23 +25,23 @@ from tactile_depth.poisson.transform.transpose import transpose
         (16, 24, 0, 1),
     ],
 )
-def test_rtl(run_tb: Callable[..., None], size: int, width: int, makhoul_in: int, makhoul_out: int) -> None:
-    parameters = {"Size": size, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
+def test_rtl(run_tb: Callable[..., None], columns: int, width: int, makhoul_in: int, makhoul_out: int) -> None:
+    parameters = {"Columns": columns, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
     run_tb("transpose", parameters)
 
 
 @pytest.mark.parametrize("makhoul_out", [False, True])
 @pytest.mark.parametrize("makhoul_in", [False, True])
 def test_rows_become_columns(makhoul_in: Any, makhoul_out: Any) -> None:
-    size = 16
-    frames = np.arange(3 * size * size).reshape(3, size, size)
-    order = makhoul(size)
+    columns = 16
+    frames = np.arange(3 * columns * columns).reshape(3, columns, columns)
+    order = makhoul(columns)
     sent = frames[..., order] if makhoul_in else frames
     out = transpose(sent, makhoul_in, makhoul_out)
-    for frame, columns in zip(frames, out, strict=True):
-        for c in range(size):
+    for frame, bursts in zip(frames, out, strict=True):
+        for c, burst in enumerate(bursts):
             column = frame[:, c]
-            np.testing.assert_array_equal(columns[c], column[order] if makhoul_out else column)
+            np.testing.assert_array_equal(burst, column[order] if makhoul_out else column)
 
 
 def test_twice_is_the_frame() -> None:
