@@ -24,8 +24,8 @@ package td_types_pkg;
     logic row_short;
   } faults_t;
 
-  // Settings of hdl/camera/camera_front_end.sv, for the next picture: its size, the first pixel of the window, and what
-  // channel_gain does to samples; a gain has 12 fraction bits.
+  // Settings of hdl/camera/camera_front_end.sv, for the next picture: its size, the first pixel of the window, black level
+  // and gains of the colours; a gain has 12 fraction bits.
   typedef struct packed {
     logic [12:0] columns;
     logic [12:0] rows;

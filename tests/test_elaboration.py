@@ -43,7 +43,7 @@ INVALID = {
     "block_weights": ["Denominator=0", "Numerator=3"],
     "row_sums": ["Bayer=2", "Numerator=7"],
     "block_totals": ["Columns=3"],
-    "round_divide": ["TotalWidth=9", "WeightWidth=0", "Drop=-1"],
+    "round_divide": ["TotalWidth=9", "WeightWidth=0", "Drop=1"],
     "area_average": ["Bits=7", "Rows=1", "Columns=3", "Numerator=7"],
     "pixel_format": ["Format=4", "Phase=4", "Bits=11", "Format=1 Bits=10", "Format=3 Bits=8"],
     "camera_window": ["WindowColumns=1", "WindowRows=8192", "WordsPerPixel=3"],

@@ -93,7 +93,7 @@ CORES = {
     "row_sums": Core((2, 3)),
     "block_totals": Core((1, 2)),
     "area_average": Core((2, 4), repeats=2, flat=False),
-    "channel_gain": Core((1, 2), repeats=2),
+    "black_level": Core((1, 2), repeats=2),
     "pixel_format": Core((2, 3, 4), repeats=2),
     "camera_setup": Core((1,), "after_reset"),
     "camera_window": Core((1, 2), repeats=2),

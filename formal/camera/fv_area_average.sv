@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_area_average: a word leaves 10 enabled clocks behind each block that is complete, and 16 behind each break; it has
+// fv_area_average: a word leaves 12 enabled clocks behind each block that is complete, and 18 behind each break; it has
 // the marks of its position, and a break ends a frame with the mark of a row's end the wrong way round.
 //
 // Whatever block_totals completes (`complete` is free): that it does so with a block's last pixel, and no break in the
@@ -23,15 +23,15 @@ module fv_area_average #(
   logic out_valid, out_last, out_user;
   logic [23:0] out_pixel;
   area_average #(.Rows(Rows), .Columns(Columns), .Numerator(1), .Denominator(1), .Bits(8), .Bayer(0)) dut (
-    .clk, .rst, .en, .in_valid, .in_samples('0), .in_colour('0), .in_row_start, .in_frame_start, .in_abort, .out_valid,
+    .clk, .rst, .en, .in_valid, .in_samples('0), .in_colour('0), .in_row_start, .in_frame_start, .in_abort, .in_gains('0), .out_valid,
     .out_pixel, .out_last, .out_user
   );
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
 
-  localparam int Break = 16;
-  localparam int Mean = 10;
+  localparam int Break = 18;
+  localparam int Mean = 12;
   logic complete;
   logic [Break-1:0] breaks;
   logic [Mean-1:0] means;

@@ -4,9 +4,9 @@
 `default_nettype none
 
 module fv_round_divide #(
-  parameter int TotalWidth  = 12,
+  parameter int TotalWidth  = 13,
   parameter int WeightWidth = 2,
-  parameter int Drop        = 1
+  parameter int Drop        = 3
 ) (
   input logic                          clk,
   input logic                          en,

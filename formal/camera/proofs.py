@@ -26,7 +26,7 @@ CAMERA_PROOFS: tuple[Proof, ...] = (
         "round_divide",
         "the nearest integer, ties to even, clipped to 0..255; latency 10",
         "a stage for each bit of the quotient, the same at every width of the divisor",
-        {"TotalWidth": 12, "WeightWidth": 2, "Drop": 1},
+        {"TotalWidth": 13, "WeightWidth": 2, "Drop": 3},
     ),
     *(
         Proof(
@@ -54,7 +54,7 @@ CAMERA_PROOFS: tuple[Proof, ...] = (
     *(
         Proof(
             "area_average",
-            "a word 10 clocks behind each complete block and 16 behind each break, with the marks of its position",
+            "a word 12 clocks behind each complete block and 18 behind each break, with the marks of its position",
             "rows and columns are only counted; what is complete is proven of row_sums and block_totals",
             {"Rows": rows, "Columns": columns},
             depth=50,
@@ -64,12 +64,12 @@ CAMERA_PROOFS: tuple[Proof, ...] = (
     ),
     *(
         Proof(
-            "channel_gain",
-            "the sample less the black level times its gain, of the frame's own settings; latency 3",
-            f"products are exact at any width; {ROUNDING}",
-            {"Bayer": bayer},
+            "black_level",
+            "the sample less the black level, beside the gains, of the frame's own settings; latency 1",
+            FULL_WIDTH,
+            {"Bits": bits, "Channels": channels},
         )
-        for bayer in (0, 1)
+        for bits, channels in ((10, 1), (8, 3))
     ),
     *(
         Proof(

@@ -17,7 +17,7 @@ module block_totals #(
   parameter int Denominator = 4,
   parameter int Width       = 12,  // of a sample
   parameter int Bayer       = 1,
-  localparam int Lanes = Bayer != 0 ? 2 : 3,
+  localparam int Sums = Bayer != 0 ? 2 : 3,
   localparam int BlockWidth = $clog2(Numerator + 1),
   localparam int SumWidth = Width + $clog2(Numerator),
   localparam int AreaWidth = $clog2(Numerator * Numerator + 1),
@@ -30,7 +30,7 @@ module block_totals #(
   input  wire                       in_frame_start,
   input  wire                       in_blue_row,  // Bayer
   input  wire                       in_ends,      // a block's columns end; the inputs below belong to them
-  input  wire [Lanes*SumWidth-1:0]  in_sums,      // signed
+  input  wire [Sums*SumWidth-1:0]   in_sums,      // signed
   input  wire [BlockWidth-1:0]      in_red_columns,
   output logic                      out_valid,
   output logic [3*TotalWidth-1:0]   out_totals,  // signed, red lowest
@@ -72,7 +72,7 @@ module block_totals #(
   logic ends_q, ends_q2, ends_q3, complete_q, complete_q2, first_q, blue_q, blue_q2;
   logic [ColumnWidth-1:0] column_q, column_q2, column_q3;
   logic [WeightWidth-1:0] weight_q;
-  logic [Lanes*SumWidth-1:0] sums_q;
+  logic [Sums*SumWidth-1:0] sums_q;
   logic [3*TotalWidth-1:0] earlier, earlier_q, stored;
   always_ff @(posedge clk) begin
     if (en) begin
@@ -95,17 +95,17 @@ module block_totals #(
     .read_en(en & in_ends & ~in_first_row), .read_address(column), .read_data(earlier)
   );
 
-  logic [Lanes*TotalWidth-1:0] parts, wholes;
-  for (genvar l = 0; l < Lanes; l++) begin : g_product
+  logic [Sums*TotalWidth-1:0] parts, wholes;
+  for (genvar n = 0; n < Sums; n++) begin : g_product
     logic signed [SumWidth+WeightWidth:0] part, whole;
     td_multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_part (
-      .clk, .en, .a(sums_q[l*SumWidth+:SumWidth]), .b({1'b0, weight_q}), .product(part)
+      .clk, .en, .a(sums_q[n*SumWidth+:SumWidth]), .b({1'b0, weight_q}), .product(part)
     );
     td_multiply #(.AWidth(SumWidth), .BWidth(WeightWidth + 1)) u_whole (
-      .clk, .en, .a(sums_q[l*SumWidth+:SumWidth]), .b({1'b0, Pixel}), .product(whole)
+      .clk, .en, .a(sums_q[n*SumWidth+:SumWidth]), .b({1'b0, Pixel}), .product(whole)
     );
-    assign parts[l*TotalWidth+:TotalWidth] = TotalWidth'(part);
-    assign wholes[l*TotalWidth+:TotalWidth] = TotalWidth'(whole);
+    assign parts[n*TotalWidth+:TotalWidth] = TotalWidth'(part);
+    assign wholes[n*TotalWidth+:TotalWidth] = TotalWidth'(whole);
     logic unused_top;  // bits that repeat the sign, at ratios below 2
     assign unused_top = ^{part, whole};
   end

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // camera_front_end: the pixels of the grid from the words of a camera.
 //
-//   s_axis -> td_axis_skid -> camera_window -> pixel_format -> channel_gain -> area_average -> td_axis_skid -> m_axis
+//   s_axis -> td_axis_skid -> camera_window -> pixel_format -> black_level -> area_average -> td_axis_skid -> m_axis
 //
 // Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv); WordsPerPixel 2: single bytes.
 // Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel per clock.
@@ -51,6 +51,7 @@ module camera_front_end
   localparam int Raw = 0;
   localparam int Yuyv = 3;
   localparam int Bayer = Format == Raw ? 1 : 0;
+  localparam int GainWidth = 16;
   localparam int SamplesWidth = (Bayer != 0 ? 1 : 3) * (Bits + 2);
 
   logic en;  // all of it moves, or nothing: low while the output is full
@@ -76,7 +77,11 @@ module camera_front_end
     .out_odd_column(odd_column), .out_row_start(word_row_start), .out_frame_start(word_frame_start),
     .out_abort(word_abort), .row_short, .row_long, .start_missing, .start_early, .window_outside
   );
-  assign faults = {window_outside, start_early, start_missing, row_long, row_short};
+  assign faults.row_short = row_short;
+  assign faults.row_long = row_long;
+  assign faults.start_missing = start_missing;
+  assign faults.start_early = start_early;
+  assign faults.window_outside = window_outside;
 
   logic sample_valid, sample_row_start, sample_frame_start, sample_abort;
   logic [1:0] sample_colour;
@@ -94,12 +99,13 @@ module camera_front_end
   logic colour_valid, colour_row_start, colour_frame_start, colour_abort;
   logic [1:0] colour_site;
   logic [SamplesWidth-1:0] colours;
-  channel_gain #(.Bits(Bits), .Bayer(Bayer)) u_gain (
-    .clk, .rst, .en, .black_level(settings.black_level[Bits-1:0]), .red_gain(settings.red_gain),
-    .green_gain(settings.green_gain), .blue_gain(settings.blue_gain), .in_valid(sample_valid), .in_samples(samples),
+  logic [3*GainWidth-1:0] gains;
+  black_level #(.Bits(Bits), .Channels(Bayer != 0 ? 1 : 3), .GainsWidth(3 * GainWidth)) u_black (
+    .clk, .rst, .en, .level(settings.black_level[Bits-1:0]),
+    .gains({settings.blue_gain, settings.green_gain, settings.red_gain}), .in_valid(sample_valid), .in_samples(samples),
     .in_colour(sample_colour), .in_row_start(sample_row_start), .in_frame_start(sample_frame_start),
     .in_abort(sample_abort), .out_valid(colour_valid), .out_samples(colours), .out_colour(colour_site),
-    .out_row_start(colour_row_start), .out_frame_start(colour_frame_start), .out_abort(colour_abort)
+    .out_row_start(colour_row_start), .out_frame_start(colour_frame_start), .out_abort(colour_abort), .out_gains(gains)
   );
 
   logic pixel_valid, pixel_last, pixel_user;
@@ -108,7 +114,7 @@ module camera_front_end
     .Rows(Rows), .Columns(Columns), .Numerator(Numerator), .Denominator(Denominator), .Bits(Bits), .Bayer(Bayer)
   ) u_average (
     .clk, .rst, .en, .in_valid(colour_valid), .in_samples(colours), .in_colour(colour_site),
-    .in_row_start(colour_row_start), .in_frame_start(colour_frame_start), .in_abort(colour_abort),
+    .in_row_start(colour_row_start), .in_frame_start(colour_frame_start), .in_abort(colour_abort), .in_gains(gains),
     .out_valid(pixel_valid), .out_pixel(pixel), .out_last(pixel_last), .out_user(pixel_user)
   );
 

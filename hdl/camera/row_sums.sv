@@ -3,8 +3,8 @@
 //
 //   sum = sum w s,  w the width of the pixel in the block in units of 1 / Denominator (block_weights)
 //
-// RGB (Bayer 0): a lane for each colour. Bayer 1: a sample is one colour; lane 0 sums the columns of red, lane 1 those
-// of blue, and red_columns is sum w of the columns of red.
+// RGB (Bayer 0): a sum for each colour. Bayer 1: a sample is one colour; sum 0 runs over the columns of red, sum 1 over
+// those of blue, and red_columns is sum w of the columns of red.
 // Stream in: the pixels of a row, in_row_start with the first; gaps anywhere. Stream out: a word with the last pixel of
 // each block. Latency: 3 cycles with en; en low: nothing moves.
 // Bit-accurate model: models/tactile_depth/camera/row_sums.py.
@@ -17,7 +17,7 @@ module row_sums #(
   parameter int Width       = 12,  // of a sample
   parameter int Bayer       = 1,
   localparam int Channels = Bayer != 0 ? 1 : 3,
-  localparam int Lanes = Bayer != 0 ? 2 : 3,
+  localparam int Sums = Bayer != 0 ? 2 : 3,
   localparam int SumWidth = Width + $clog2(Numerator),
   localparam int BlockWidth = $clog2(Numerator + 1)
 ) (
@@ -29,7 +29,7 @@ module row_sums #(
   input  wire                       in_blue_column,  // Bayer
   input  wire                       in_row_start,
   output logic                      out_ends,  // the block ends with this pixel; the outputs below belong to it
-  output logic [Lanes*SumWidth-1:0] out_sums,  // signed
+  output logic [Sums*SumWidth-1:0] out_sums,  // signed
   output logic [BlockWidth-1:0]     out_red_columns
 );
 
@@ -83,18 +83,18 @@ module row_sums #(
     assign unused_top = ^{part, whole};
   end
 
-  for (genvar l = 0; l < Lanes; l++) begin : g_lane
-    localparam int Channel = Bayer != 0 ? 0 : l;
+  for (genvar n = 0; n < Sums; n++) begin : g_sum
+    localparam int Channel = Bayer != 0 ? 0 : n;
     logic [SumWidth-1:0] sum, sum_now, part, rest;  // of the present block; of the pixel in it and in the next
     logic counts;
-    assign counts = Bayer == 0 | blue_q2 == (l != 0);
+    assign counts = Bayer == 0 | blue_q2 == (n != 0);
     assign part = counts ? parts[Channel*SumWidth+:SumWidth] : '0;
     assign rest = counts ? wholes[Channel*SumWidth+:SumWidth] - part : '0;
     assign sum_now = (row_start_q2 ? '0 : sum) + part;
     always_ff @(posedge clk) begin
       if (en && valid_q2) begin
         sum <= ends_q2 ? rest : sum_now;
-        out_sums[l*SumWidth+:SumWidth] <= sum_now;
+        out_sums[n*SumWidth+:SumWidth] <= sum_now;
       end
     end
   end

@@ -32,8 +32,9 @@ BACK_SUBSTITUTION = 8
 ROW_SUMS = 3
 BLOCK_TOTALS = 3
 ROUND_DIVIDE = 10
-AREA_AVERAGE = ROW_SUMS + BLOCK_TOTALS + ROUND_DIVIDE
-CHANNEL_GAIN = 3
+GAINS = 2
+AREA_AVERAGE = ROW_SUMS + BLOCK_TOTALS + GAINS + ROUND_DIVIDE
+BLACK_LEVEL = 1
 CAMERA_WINDOW = 1
 CONTACT = 1  # from the depth value that raises contact
 
@@ -89,7 +90,7 @@ def camera_front_end_latency(camera: CameraConfiguration) -> int:
     """Return the cycles from the camera's `last_word` to the last pixel of the grid, for any gaps."""
     x, _, width, _ = camera.crop
     first_of_pair = camera.pixel_format == "yuyv" and (x + width) % 2 == 1
-    cores = CAMERA_WINDOW + pixel_format_latency(camera) - first_of_pair + CHANNEL_GAIN + AREA_AVERAGE
+    cores = CAMERA_WINDOW + pixel_format_latency(camera) - first_of_pair + BLACK_LEVEL + AREA_AVERAGE
     return AXIS_SKID + cores + AXIS_SKID
 
 

@@ -6,7 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.area_average import area_average
+from tactile_depth.camera.area_average import UNITY, area_average
+from tactile_depth.camera_configuration import GAIN_WIDTH
 from tactile_depth.latency import AREA_AVERAGE
 from tb.camera.slots import Slot, Slots, Window, packed
 from tb.stream import MANY, check_words, drive, parameters
@@ -26,6 +27,7 @@ class Bench:
         self.shape = (self.window.height, self.window.width, *([] if self.bayer else [3]))
         pins = {"in_samples": self.channels * self.width, "in_colour": 2, "in_row_start": 1, "in_frame_start": 1}
         self.slots = Slots(pins)
+        self.gains = UNITY
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
         self.stimuli: list[Slot] = []
         self.expected: list[Any] = []
@@ -48,7 +50,7 @@ class Bench:
         """Append a frame, of which only the first `pixels` pixels are sent."""
         blue_row, blue_column = (self.slots.random.getrandbits(1) for _ in range(2))
         colour = (blue_row, blue_column) if self.bayer else None
-        means = area_average(samples, self.bits, self.numerator, self.denominator, colour).reshape(-1, 3)
+        means = area_average(samples, self.bits, self.numerator, self.denominator, colour, self.gains).reshape(-1, 3)
         completes = self.window.completes().reshape(-1)
         words = []
         for place, marks in enumerate(self.window.marks()):
@@ -61,7 +63,11 @@ class Bench:
             place += slot["in_valid"]
             if slot["in_valid"] and completes[place]:
                 self.leaves(means[self.place].tolist())
-            self.stimuli.append(slot)
+            self.append(slot)
+
+    def append(self, slot: Slot) -> None:
+        """Append a slot, with the gains of its frame."""
+        self.stimuli.append(slot | {"in_gains": packed(self.gains, GAIN_WIDTH)})
 
     def leaves(self, colours: list[int], abort: int = 0) -> None:
         last = int((self.place + 1) % self.columns == 0) ^ abort
@@ -70,17 +76,18 @@ class Bench:
 
     def abort(self) -> None:
         self.leaves([-1, -1, -1], abort=1)
-        self.stimuli.append(self.slots.idle(in_abort=1))
+        self.append(self.slots.idle(in_abort=1))
 
     def reset(self) -> None:
         """A reset drops every block inside."""
         reset = len(self.stimuli)
         self.expected = [word for word in self.expected if word[0] + AREA_AVERAGE <= reset]
-        self.stimuli.append(self.slots.idle(rst=1))
+        self.append(self.slots.idle(rst=1))
         self.place = 0
 
     async def check(self, pause: float = 0.0) -> None:
-        self.stimuli += [self.slots.idle() for _ in range(AREA_AVERAGE + 1)]
+        for _ in range(AREA_AVERAGE + 1):
+            self.append(self.slots.idle())
         outputs = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         aborts = {word[0] for word in self.expected if word[1] < 0}
         got = []
@@ -99,6 +106,34 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
     for kind in ("black", "white", "lowest", "highest", *["range", "picture", "ties"] * MANY):
         bench.frame(bench.samples(kind), gap)
     await bench.check(pause)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+@cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.2)]))
+async def gains(dut: Any, gap: float, pause: float) -> None:
+    """Change the gains with every frame: 0, 1, the largest, each bit, and random ones."""
+    bench = Bench(dut)
+    chance, largest = bench.slots.random, (1 << GAIN_WIDTH) - 1
+    for bit in range(GAIN_WIDTH):
+        of = [1 << bit, chance.choice((0, largest)), chance.getrandbits(GAIN_WIDTH)]
+        for kind in chance.sample(["range", "picture", "ties", "white"], 2):
+            chance.shuffle(of)
+            bench.gains = (of[0], of[1], of[2])
+            bench.frame(bench.samples(kind), gap)
+    await bench.check(pause)
+
+
+@cocotb.test(timeout_time=20, timeout_unit="ms")
+async def a_gain_of_8_clips_the_mean_alone(dut: Any) -> None:
+    """A quarter of each block is white: times 8 the mean is white, although a pixel alone would exceed the scale."""
+    bench = Bench(dut)
+    bench.gains = (8 * UNITY[0],) * 3
+    height, width = bench.shape[:2]
+    white = np.zeros(bench.shape, np.int64)
+    white[: height // 2, : width // 2] = (1 << bench.bits) - 1
+    bench.frame(white)
+    bench.frame(white // 16)
+    await bench.check()
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
@@ -134,7 +169,8 @@ async def resets(dut: Any) -> None:
         else:
             bench.frame(bench.samples("picture"))
             bench.abort()
-        bench.stimuli += [bench.slots.idle() for _ in range(age)]
+        for _ in range(age):
+            bench.append(bench.slots.idle())
         bench.reset()
         if age % 3:
             bench.abort()

@@ -62,3 +62,19 @@ def test_a_pattern_is_averaged_colour_by_colour(numerator: int, denominator: int
                 total += height * width * int(samples[row, column])
                 area += height * width
         assert means[i, j, of] == min(round(Fraction(total, 4 * area)), 255)
+
+
+@given(st.integers(8, 12), st.integers(0, 2**16 - 1), st.integers(0, 2**32 - 1))
+def test_a_gain_is_that_of_fractions_rounded_once(bits: int, gain: int, seed: int) -> None:
+    samples = np.random.default_rng(seed).integers(-(1 << bits), 1 << bits, (2, 2, 3))
+    mean = area_average(samples, bits, 2, 1, gains=(gain,) * 3)[0, 0]
+    for of in range(3):
+        colour = round(Fraction(int(samples[..., of].sum()) * gain, 4 << bits - 8 + 12))
+        assert mean[of] == min(max(colour, 0), 255)
+
+
+def test_nothing_is_clipped_before_the_average() -> None:
+    """Average 0, 0, 0 and 255 with a gain of 8: 510, clipped to 255."""
+    samples = np.zeros((2, 2, 3), np.int64)
+    samples[1, 1] = 255
+    assert area_average(samples, 8, 2, 1, gains=(8 << 12, 1 << 12, 0)).tolist() == [[[255, 64, 0]]]

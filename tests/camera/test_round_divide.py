@@ -14,10 +14,10 @@ from tactile_depth.camera.round_divide import WHITE, round_divide
 
 @pytest.mark.structures(
     "total_width weight_width drop",
-    verilator=[(20, 8, 2)],
-    icarus=[(20, 8, 2), (12, 1, 0), (17, 7, 0)],
-    regress=[(18, 3, 4), (38, 25, 4)],
-    regress_verilator=[(12, 1, 0)],
+    verilator=[(36, 8, 14)],
+    icarus=[(36, 8, 14), (12, 1, 2), (17, 7, 2)],
+    regress=[(20, 3, 4), (50, 25, 16)],
+    regress_verilator=[(12, 1, 2)],
 )
 def test_rtl(run_tb: Callable[..., None], total_width: int, weight_width: int, drop: int) -> None:
     run_tb("round_divide", {"TotalWidth": total_width, "WeightWidth": weight_width, "Drop": drop})

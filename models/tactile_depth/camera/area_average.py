@@ -3,20 +3,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tactile_depth.camera.block_totals import block_areas, block_totals
 from tactile_depth.camera.round_divide import round_divide
 from tactile_depth.camera.row_sums import red_columns, row_sums
+from tactile_depth.camera_configuration import GAIN_FRACTION
 
 FULL_SCALE = 8
 """Bits of a colour of the grid."""
+UNITY = (1 << GAIN_FRACTION,) * 3
+"""Codes of gains of 1."""
 
 
 def area_average(
-    samples: np.ndarray, bits: int, numerator: int, denominator: int, colour: tuple[int, int] | None = None
+    samples: np.ndarray,
+    bits: int,
+    numerator: int,
+    denominator: int,
+    colour: tuple[int, int] | None = None,
+    gains: Sequence[int] = UNITY,
 ) -> np.ndarray:
-    """Return the mean colours of blocks of numerator / denominator pixels, rounded once.
+    """Return the mean colours of blocks of numerator / denominator pixels times their gains, rounded once.
 
     Parameters
     ----------
@@ -24,6 +34,8 @@ def area_average(
         2**bits is full scale.
     colour : (int, int)
         Bayer: is the first row one of blue, is the first column? None for RGB.
+    gains : three int
+        Of red, green and blue, in units of 2**-12.
 
     Returns
     -------
@@ -41,4 +53,4 @@ def area_average(
         )
     sums = row_sums(samples, blue_columns, numerator, denominator)
     totals = block_totals(sums, blue_rows, numerator, denominator)
-    return round_divide(totals, area, bits - FULL_SCALE)
+    return round_divide(totals * np.array(gains, np.int64), area, bits - FULL_SCALE + GAIN_FRACTION)

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.camera.area_average import area_average
-from tactile_depth.camera.channel_gain import channel_gain
-from tactile_depth.camera.pixel_format import colours, pixel_format, pixel_format_parameters
+from tactile_depth.camera.black_level import black_level
+from tactile_depth.camera.pixel_format import pixel_format, pixel_format_parameters
 from tactile_depth.camera_configuration import GAIN_WIDTH, CameraConfiguration
 
 SETTINGS = {"columns": 13, "rows": 13, "window_x": 13, "window_y": 13, "black_level": 12}
@@ -58,13 +58,11 @@ def camera_front_end(words: np.ndarray, camera: CameraConfiguration) -> np.ndarr
     uint8 array (grid rows, grid columns, 3), RGB
     """
     x, y, width, height = camera.crop
-    gains: np.ndarray = np.array(camera.gain_codes)
     colour = None
     if camera.format.bayer:
-        gains = gains[colours(camera)][y : y + height, x : x + width]
         colour = (y + (camera.phase_code >> 1)) % 2, (x + camera.phase_code) % 2
-    samples = pixel_format(words, camera)[y : y + height, x : x + width]
-    samples = channel_gain(samples, camera.black_level, gains, camera.sample_width)
+    samples = black_level(pixel_format(words, camera)[y : y + height, x : x + width], camera.black_level)
     rows, columns = camera.grid
-    means = area_average(samples, camera.bits, camera.ratio.numerator, camera.ratio.denominator, colour)
+    ratio = camera.ratio
+    means = area_average(samples, camera.bits, ratio.numerator, ratio.denominator, colour, camera.gain_codes)
     return means[:rows, :columns]

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_channel_gain: after a reset the first pixel begins a frame; samples and marks count with out_valid.
+// protocol_black_level: after a reset the first pixel begins a frame; samples, marks and gains count with out_valid.
 
 `default_nettype none
 
-module protocol_channel_gain (
+module protocol_black_level (
   input  logic clk,
   input  logic rst,
   input  logic en,
@@ -15,6 +15,7 @@ module protocol_channel_gain (
   output logic counts_out_colour,
   output logic counts_out_row_start,
   output logic counts_out_frame_start,
+  output logic counts_out_gains,
   output logic counts
 );
 
@@ -28,6 +29,7 @@ module protocol_channel_gain (
   assign counts = live & ~reset;
   assign pixel = counts & out_valid;
   assign {counts_out_samples, counts_out_colour, counts_out_row_start, counts_out_frame_start} = {4{pixel}};
+  assign counts_out_gains = pixel;
 
 endmodule
 
