@@ -104,7 +104,7 @@ certify: $(STAMP)
 extremes: $(STAMP)
 	@exec $(PY) -m commands extremes $(given)
 
-# Prove properties of the cores without a bound on time. CORE=a,b
+# Prove properties of the cores without a bound on time. CORE=a,b. LIST=1: print them, and prove nothing.
 formal: $(TOOLS)
 	@exec $(PY) -m commands formal $(given)
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make formal`: unbounded proofs of the cores in hdl/ by SymbiYosys, with the benches in formal/.
 
-Each entry of PROOFS runs twice: in mode prove (abc pdr, no bound on time), and in mode cover, which must reach every
-cover statement of the bench, so that no proof is void. Any result other than PASS is a failure.
+Each proof runs twice: in mode prove (abc pdr, no bound on time), and in mode cover, which must reach every cover
+statement of the bench, so that no proof is void. Any result other than PASS is a failure. pytest runs them, as items of
+formal/test_proofs.py. CORE=a,b: these cores alone. LIST=1: print what is proven at which sizes, and prove nothing.
 """
 
 import os
@@ -13,13 +14,12 @@ import sys
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 from commands.common import markdown, variables
 from commands.common.repository import ROOT, chosen, cores, sources, tested
-from commands.common.signals import threads
 from commands.hardware.yosys import in_wheel
 from formal.entries import Proof, Structure
 from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
@@ -29,15 +29,13 @@ from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"
+ITEMS = BENCHES / "test_proofs.py"
 BUILD = ROOT / "build" / "formal"
+RESULTS = ROOT / "build" / "formal.xml"
 JOBS = 2
 TIMEOUT = 900  # time-out of one run of SymbiYosys in seconds
 MODES = ("prove", "cover")
 COVER_ENGINE = "smtbmc bitwuzla -- --noincr"
-HELPERS = (
-    *("ram_check", "burst_source", "burst_timing", "timed_bursts", "fixed_delay", "lane_source", "code_wires"),
-    *("follow_word", "raster_counter", "raster_source"),
-)
 
 
 @dataclass(frozen=True)
@@ -51,10 +49,6 @@ HANDSHAKES = (
     "irq",
     *("s_axil_awready", "s_axil_wready", "s_axil_bvalid", "s_axil_bresp", "s_axil_arready", "s_axil_rvalid"),
 )
-
-DOCUMENT = ROOT / "docs" / "formal.md"
-BEGIN = "<!-- tables: python -m commands.verify.formal --document, from formal/proofs.py -->"
-END = "<!-- end of the tables -->"
 
 
 def environment() -> dict[str, str]:
@@ -76,7 +70,8 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
     assert file is not None, proof.core
     bench = file.stem
     parameters = " ".join(f"-G{name}={value}" for name, value in proof.parameters.items())
-    files = [*sources(), *(BENCHES / f"{name}.sv" for name in HELPERS), file]
+    shared = [path for path in sorted(BENCHES.rglob("*.sv")) if not path.name.startswith("fv_")]
+    files = [*sources(), *shared, file]
     flavor = "assert" if mode == "prove" else "cover"
     lines = [
         "[options]",
@@ -164,7 +159,7 @@ def run(proof: Proof | Structure, mode: str) -> Outcome:
         return run_structure(proof, mode)
     folder = BUILD / proof.name
     folder.mkdir(parents=True, exist_ok=True)
-    roms = folder / "roms"
+    roms = folder / f"{mode}_roms"  # both modes may run at once
     roms.mkdir(exist_ok=True)
     if proof.roms:
         proof.roms(roms)
@@ -210,17 +205,36 @@ def selected(cores: str) -> list[Proof | Structure]:
     return [proof for proof in every if proof.core in names]
 
 
-def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
-    """Run every proof in every mode, JOBS at a time, and print a line as each ends."""
-    outcomes: dict[str, dict[str, Outcome]] = {proof.name: {} for proof in proofs}
-    with threads(JOBS) as pool:
-        pending = {pool.submit(run, proof, mode): (proof, mode) for proof in proofs for mode in modes(proof)}
-        for number, future in enumerate(as_completed(pending), 1):
-            proof, mode = pending[future]
-            outcome = outcomes[proof.name][mode] = future.result()
-            done = f"[{number}/{len(pending)}] {proof.name} {mode}"
-            print(f"{done}: {outcome.status}, {outcome.seconds:.1f} s", flush=True)
+def item(proof: Proof | Structure, mode: str) -> str:
+    """Return the name of a proof in a mode as pytest shows it."""
+    return f"{proof.name}-{mode}"
+
+
+def outcomes_in(results: Path) -> dict[str, Outcome]:
+    """Return the outcome of each item in a result file of pytest."""
+    outcomes = {}
+    for case in ElementTree.parse(results).getroot().iter("testcase"):
+        noted = {entry.get("name"): entry.get("value", "") for entry in case.iter("property")}
+        name = (case.get("name") or "").partition("[")[2].removesuffix("]")
+        outcomes[name] = Outcome(noted.get("status", "ERROR"), float(noted.get("cpu_seconds", 0)))
     return outcomes
+
+
+def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
+    """Run every proof in every mode as an item of pytest, JOBS at a time.
+
+    Raises RuntimeError: pytest could not run them."""
+    wanted = [
+        f"{ITEMS.relative_to(ROOT)}::test_proof[{item(proof, mode)}]" for proof in proofs for mode in modes(proof)
+    ]
+    RESULTS.unlink(missing_ok=True)
+    command = [sys.executable, "-m", "pytest", "-vv", "-n", str(JOBS), "--dist", "worksteal", "--tb", "line"]
+    ended = subprocess.run([*command, f"--junitxml={RESULTS}", *wanted], cwd=ROOT, check=False)
+    if ended.returncode not in (0, 1) or not RESULTS.is_file():
+        raise RuntimeError(f"pytest ended with status {ended.returncode}, see above")
+    outcomes = outcomes_in(RESULTS)
+    missing = Outcome("ERROR", 0.0)
+    return {proof.name: {mode: outcomes.get(item(proof, mode), missing) for mode in modes(proof)} for proof in proofs}
 
 
 def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
@@ -234,25 +248,27 @@ def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[st
     return markdown.table(head, rows)
 
 
-def document() -> str:
-    """Return docs/formal.md with fresh tables: properties proven, sizes, and why these sizes suffice."""
+def listing(proofs: Sequence[Proof | Structure], others: Mapping[str, str]) -> str:
+    """Return the tables of what is proven, at which sizes and why they suffice, and of cores without a proof."""
     entries: dict[tuple[str, str, str], list[str]] = {}
-    every: list[Proof | Structure] = [*PROOFS, *STRUCTURES]
-    for proof in sorted(every, key=lambda proof: proof.core):
+    for proof in sorted(proofs, key=lambda proof: proof.core):
         sizes = ", ".join(f"{key} {value}" for key, value in proof.parameters.items())
         entries.setdefault((proof.core, proof.claim, proof.sufficient), []).append(sizes)
     rows = [(core, claim, "; ".join(sizes) or "the defaults", why) for (core, claim, why), sizes in entries.items()]
     proven = markdown.compact(("core", "proven", "sizes", "why they suffice"), rows)
-    others = markdown.compact(("core", "why"), list(WITHOUT_CONTROL.items()))
-    return markdown.with_tables(DOCUMENT, BEGIN, END, f"{proven}\nCores without their own proof:\n\n{others}")
+    unproven = markdown.compact(("core", "no proof, because"), list(others.items()))
+    return f"{proven}\n{unproven}" if others else proven
 
 
 def main() -> None:
-    if sys.argv[1:] == ["--document"]:
-        DOCUMENT.write_text(document())
-        return
     with variables.reported("formal"):
-        sys.exit(prove(selected(variables.given(sys.argv[1:], ("CORE",)).get("CORE", ""))))
+        values = variables.given(sys.argv[1:], ("CORE", "LIST"))
+        core, only_list = values.get("CORE", ""), variables.choice(values, "LIST", ("0", "1")) == "1"
+        proofs = selected(core)
+        if only_list:
+            print(listing(proofs, {} if core else WITHOUT_CONTROL))
+        else:
+            sys.exit(prove(proofs))
 
 
 def prove(proofs: Sequence[Proof | Structure]) -> int:

@@ -22,8 +22,8 @@ module fv_td_axis_skid #(
   logic [Width-1:0] m_data;
   td_axis_skid #(.Width(Width)) dut (.clk, .rst, .s_valid, .s_ready, .s_data, .m_valid, .m_ready, .m_data);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   logic taken, left;
   assign taken = s_valid & s_ready;
@@ -35,7 +35,6 @@ module fv_td_axis_skid #(
   logic [Width-1:0] value, stalled_data;
   logic [2:0] passed;  // words that left, to show how far a trace goes
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     fresh <= rst;
     stalled <= m_valid & ~m_ready & ~rst;
     stalled_data <= m_data;

@@ -2,8 +2,7 @@
 // fv_td_banked_table: a frame reads the bank that was named when it began, from its change on; the free bank reads as it was
 // last written; table_in_use says which is which.
 //
-// An arbitrary address is watched. Assumed: `change` comes one enabled clock or more behind frame_start; nothing is
-// written while a change-over is due, and no word is read in the clock that writes it.
+// An arbitrary address is watched.
 
 `default_nettype none
 
@@ -28,9 +27,6 @@ module fv_td_banked_table #(
   input logic [AddressWidth-1:0] chosen
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst && !free_write && !free_read);
-
   logic table_in_use;
   logic [Width-1:0] read_word, free_word;
   td_banked_table #(.Width(Width), .Depth(Depth)) dut (
@@ -38,14 +34,21 @@ module fv_td_banked_table #(
     .free_write, .free_write_address, .free_write_word, .free_read, .free_read_address, .free_word
   );
 
+  logic allowed, started;
+  protocol_td_banked_table #(.Depth(Depth)) u_protocol (
+    .clk, .rst, .en, .table_bank, .table_in_use, .frame_start, .change, .read, .read_address, .free_write,
+    .free_write_address, .free_read, .free_read_address, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+  always_comb assume (32'(chosen) < Depth);
+
   logic [AddressWidth-1:0] watched;  // chosen in the first clock, then constant
   logic [1:0] known = '0, word;      // of each bank: what the watched address holds
-  logic bank, named, used, begun, changed;
+  logic bank, named, used, changed;
   assign used = en && change ? named : bank;
   logic shown, free_shown, stays;  // the watched word stands on the port; and has through a clock without en
   logic expected, free_expected;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (!started) watched <= chosen;
     else if (free_write && free_write_address == watched) begin
       known[~bank] <= 1'b1;
@@ -53,7 +56,6 @@ module fv_td_banked_table #(
     end
     bank <= rst ? table_bank : used;
     if (rst || (en && frame_start)) named <= table_bank;
-    begun <= ~rst & (en ? frame_start | (begun & ~change) : begun);
     changed <= ~rst & (changed | (en & change & named != bank));
     stays <= shown & ~en;
     if (en) begin
@@ -63,13 +65,6 @@ module fv_td_banked_table #(
     free_shown <= !rst && free_read && free_read_address == watched && known[~used];
     free_expected <= word[~used];
     if (rst) shown <= 1'b0;
-  end
-  always_comb begin
-    assume (32'(chosen) < Depth && 32'(read_address) < Depth);
-    assume (32'(free_write_address) < Depth && 32'(free_read_address) < Depth);
-    if (change) assume (begun);
-    if (free_write) assume (!rst && table_bank == table_in_use && (!begun || named == bank));
-    if (free_write && free_read) assume (free_write_address != free_read_address);
   end
 
   always_comb begin

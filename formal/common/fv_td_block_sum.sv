@@ -3,8 +3,6 @@
 // frame, and at no other time; an arbitrary word, the only one that is not zero since the first frame, is added once to
 // its block and to no other; what does nothing but add does so to all. No sum is read before it was written, or in the
 // clock that writes it.
-//
-// Assumed: frames in raster order, whole but for a reset; after a reset the first begins new sums.
 
 `default_nettype none
 
@@ -22,6 +20,7 @@ module fv_td_block_sum #(
   input logic                  clk,
   input logic                  rst,
   input logic                  in_valid,
+  input logic                  offered,  // frame_start
   input logic                  in_first_frame,
   input logic                  in_last_frame,
   input logic [Width-1:0]      in_data,
@@ -29,9 +28,6 @@ module fv_td_block_sum #(
 );
 
   localparam int ToSum = 5;
-
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
 
   logic read_en, write_en, write_complete, in_frame_start;
   logic [BlockWidth-1:0] read_block, write_block;
@@ -50,10 +46,16 @@ module fv_td_block_sum #(
     .clk, .write_en, .write_address(write_block), .read_en, .read_address(read_block)
   );
 
-  logic [3:0] row, column;
-  logic row_ends, block_ends, last_q, last, begun, fresh;
+  logic allowed, started;
+  logic [15:0] row, column;
+  protocol_td_block_sum #(.Rows(Rows), .Columns(Columns)) u_protocol (
+    .clk, .rst, .in_valid, .in_frame_start(offered), .in_first_frame, .read_en, .write_en,
+    .given_in_frame_start(in_frame_start), .row, .column, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+
+  logic row_ends, block_ends, last_q, last, fresh;
   logic [BlockWidth-1:0] watched, block;
-  assign in_frame_start = row == '0 && column == '0;
   assign last = in_frame_start ? in_last_frame : last_q;
   assign fresh = in_valid && in_frame_start && in_first_frame;
   assign block = BlockWidth'(32'(row) / 2 * (Columns / Wide) + 32'(column) / Wide);
@@ -67,13 +69,9 @@ module fv_td_block_sum #(
   assign in_watched = 32'(row) < Rows / 2 * 2 && block == watched;
   assign word = Signed != 0 ? SumWidth'($signed(in_data)) : SumWidth'(in_data);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (!started) watched <= chosen;
     if (in_valid) begin
-      column <= column == 4'(Columns - 1) ? '0 : column + 4'd1;
-      if (column == 4'(Columns - 1)) row <= row == 4'(Rows - 1) ? '0 : row + 4'd1;
       last_q <= last;
-      begun <= 1'b1;
       seen <= in_data != '0 || (seen && !fresh);
       if (fresh || (in_watched && in_data != '0)) total <= in_watched ? word : '0;
     end
@@ -82,17 +80,11 @@ module fv_td_block_sum #(
     completes_q <= {completes_q[ToSum-2:0], block_ends};
     block_q <= {block_q[BlockWidth*(ToSum-1)-1:0], block};
     if (rst) begin
-      row <= '0;
-      column <= '0;
       ends_q <= '0;
       completes_q <= '0;
-      begun <= 1'b0;
     end
   end
-  always_comb begin
-    if (in_valid && in_frame_start && !begun) assume (in_first_frame);
-    if (in_valid && seen && !fresh) assume (in_data == '0);
-  end
+  always_comb if (in_valid && seen && !fresh) assume (in_data == '0);
 
   // The sum of the watched block is in its place, but for words that are under way.
   logic [ToSum-1:0] under_way;

@@ -18,13 +18,12 @@ module fv_td_burst_counter #(
   logic active;
   td_burst_counter #(.Words(Words)) dut (.clk, .rst, .en, .start, .position, .active);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   logic [PositionWidth:0] since, age;  // enabled clocks from the last start to this clock; Words: none, or long ago
   assign age = start ? '0 : since;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (en) since <= age == (PositionWidth + 1)'(Words) ? age : age + (PositionWidth + 1)'(1);
     if (rst) since <= (PositionWidth + 1)'(Words);
   end

@@ -8,8 +8,7 @@
 
 module fv_td_delay_line #(
   parameter int Width = 1,
-  parameter int Delay = 5,
-  localparam int CountWidth = $clog2(Delay + 1)
+  parameter int Delay = 5
 ) (
   input logic             clk,
   input logic             rst,
@@ -21,34 +20,19 @@ module fv_td_delay_line #(
   logic [Width-1:0] out;
   td_delay_line #(.Width(Width), .Delay(Delay)) dut (.clk, .rst, .en, .in, .out);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
-  logic following, held;
-  logic [CountWidth-1:0] age;  // enabled clocks since the word followed was present
-  logic [Width-1:0] value, out_q;
-  always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en;
-    out_q <= out;
-    if (en) begin
-      if (!following || age == CountWidth'(Delay)) begin
-        following <= pick;
-        age <= CountWidth'(1);
-        value <= in;
-      end else begin
-        age <= age + CountWidth'(1);
-      end
-    end
-    if (rst) following <= 1'b0;
-  end
+  logic due, held;
+  logic [Width-1:0] value;
+  follow_delay #(.Width(Width), .Latency(Delay)) u_follow (.clk, .rst, .en, .pick, .in, .due, .word(value));
+  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out, .held);
 
   always_comb begin
     if (started) begin
-      if (following && age == CountWidth'(Delay)) delayed: assert (out == value);
-      if (held) holds: assert (out == out_q);
-      word_out: cover (following && age == CountWidth'(Delay) && value == '1);
-      word_out_paused: cover (following && age == CountWidth'(Delay) && held && value == '0);
+      if (due) delayed: assert (out == value);
+      word_out: cover (due && value == '1);
+      word_out_paused: cover (due && held && value == '0);
     end
   end
 

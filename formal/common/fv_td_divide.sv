@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_td_divide: done exactly Latency clocks after the last start; with it the quotient and the remainder, or overflow.
-//
-// Assumed: the divisor is held from start to done.
 
 `default_nettype none
 
@@ -25,8 +23,11 @@ module fv_td_divide #(
     .clk, .rst, .start, .numerator, .divisor, .done, .quotient, .remainder, .overflow
   );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic allowed, started;
+  protocol_td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) u_protocol (
+    .clk, .rst, .start, .divisor, .done, .overflow, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [Latency-1:0] due;  // bit n: done is due in n clocks
   logic [NumeratorWidth-1:0] numerator_q, product;
@@ -35,7 +36,6 @@ module fv_td_divide #(
   assign fits = numerator_q < {divisor_q, QuotientWidth'(0)};
   assign product = NumeratorWidth'(quotient) * NumeratorWidth'(divisor_q);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     due <= start ? Latency'(1) << (Latency - 1) : due >> 1;
     if (start) begin
       numerator_q <= numerator;
@@ -43,7 +43,6 @@ module fv_td_divide #(
     end
     if (rst) due <= '0;
   end
-  always_comb if (due != '0 && !start) assume (divisor == divisor_q);
 
   always_comb begin
     if (started) begin

@@ -21,27 +21,15 @@ module fv_td_dot_product #(
   logic signed [AWidth+BWidth:0] sum;
   td_dot_product #(.AWidth(AWidth), .BWidth(BWidth)) dut (.clk, .en, .a0, .b0, .a1, .b1, .sum);
 
-  logic following = 1'b0;
-  logic [2:0] age;
+  logic due;
   logic signed [AWidth-1:0] a0_picked, a1_picked;
   logic signed [BWidth-1:0] b0_picked, b1_picked;
-  always_ff @(posedge clk) begin
-    if (en) begin
-      if (!following || age == 3'(Latency)) begin
-        following <= pick;
-        age <= 3'd1;
-        a0_picked <= a0;
-        b0_picked <= b0;
-        a1_picked <= a1;
-        b1_picked <= b1;
-      end else begin
-        age <= age + 3'd1;
-      end
-    end
-  end
+  follow_delay #(.Width(2 * (AWidth + BWidth)), .Latency(Latency)) u_follow (
+    .clk, .rst(1'b0), .en, .pick, .in({a0, b0, a1, b1}), .due, .word({a0_picked, b0_picked, a1_picked, b1_picked})
+  );
 
   always_comb begin
-    if (following && age == 3'(Latency)) begin
+    if (due) begin
       exact: assert (32'(sum) == 32'(a0_picked) * 32'(b0_picked) + 32'(a1_picked) * 32'(b1_picked));
       largest: cover (sum == (AWidth + BWidth + 1)'(1 << (AWidth + BWidth - 1)));
     end

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_td_banked_table: `change` comes one enabled clock or more behind frame_start; nothing is written while a
-// change-over is due, no word is read in the clock that writes it; words count while they stand.
+// protocol_td_banked_table: `change` comes one enabled clock or more behind frame_start; nothing is written in a reset or
+// while a change-over is due, no word is read in the clock that writes it; words count while they stand.
 
 `default_nettype none
 
@@ -30,10 +30,10 @@ module protocol_td_banked_table #(
   localparam logic [AddressWidth:0] End = Depth;
   logic reset, live = 1'b0, begun = 1'b0, named = 1'b0, shown = 1'b0, free_shown = 1'b0;
   assign reset = rst | ~holds;
-  assign holds = rst | ((~change | begun)
-      & (~free_write | (table_bank == table_in_use & (~begun | named == table_in_use)))
+  assign holds = (rst | ~change | begun)
+      & (~free_write | (~rst & table_bank == table_in_use & (~begun | named == table_in_use)))
       & (~free_write | ~free_read | free_write_address != free_read_address)
-      & {1'b0, read_address} < End & {1'b0, free_write_address} < End & {1'b0, free_read_address} < End);
+      & {1'b0, read_address} < End & {1'b0, free_write_address} < End & {1'b0, free_read_address} < End;
   assign counts_table_in_use = live;
   assign counts_read_word = live & shown;
   assign counts_free_word = live & free_shown;
