@@ -12,9 +12,10 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.latency import first_depth_latency
-from tactile_depth.sensor import Sensor, synthetic
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
 from tb.axis import AxisMonitor, AxisSource, video
 from tb.pixels import unpack

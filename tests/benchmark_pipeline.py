@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tactile_depth.built_in import synthetic
 from tactile_depth.pipeline import Pipeline
 from tactile_depth.scenes import Press, render
-from tactile_depth.sensor import Camera, synthetic
+from tactile_depth.sensor import Camera
 
 CAMERA = (240, 320)  # picture size of a GelSight Mini
 

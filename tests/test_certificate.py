@@ -13,12 +13,13 @@ from commands.run import sim
 from commands.study import certify as command
 from tactile_depth import reference
 from tactile_depth.bounds import difference_bounds
+from tactile_depth.built_in import load
 from tactile_depth.certificate import certify, deepest, node_format, slope_response
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format
 from tactile_depth.errors import InputError
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.sensor import Camera, Sensor, load
+from tactile_depth.sensor import Camera, Sensor
 from tactile_depth.tactile_depth import solve
 
 WHOLE: list[dict[str, Any]] = [

@@ -10,10 +10,10 @@ import pytest
 
 from commands.common import repository
 from commands.hardware import yosys
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import CORES, KINDS, Multiplier, cost
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 CASES = [

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth import reference
+from tactile_depth.built_in import synthetic
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
 from tactile_depth.errors import InputError
@@ -23,7 +24,7 @@ from tactile_depth.gradient.flat_field import (
 )
 from tactile_depth.gradient.quadratic_gradient import DROPPED, coefficient_map, polynomial_words, quadratic_gradient
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.sensor import Sensor, synthetic
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import slope_codes, slope_tables, solve
 
 SHAPES = [

@@ -11,6 +11,7 @@ from scipy.fft import dctn, dstn
 from scipy.linalg import solve_banded
 
 from tactile_depth import latency, reference
+from tactile_depth.built_in import load, synthetic
 from tactile_depth.common.td_axis_skid import CAPACITY, AxisSkid
 from tactile_depth.common.td_rom import rom
 from tactile_depth.configuration import COLUMNS, Configuration
@@ -33,7 +34,7 @@ from tactile_depth.registers.axil_registers import AxilRegisters, Build, Events,
 from tactile_depth.registers.event_registers import COUNTERS
 from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, WORD
 from tactile_depth.rom_files import pack, write_words
-from tactile_depth.sensor import Sensor, load, synthetic
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import solve, tactile_depth, top_parameters
 from tactile_depth.video.frame_guard import Word, frame_guard
 

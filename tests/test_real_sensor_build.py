@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from commands.run import bench
+from tactile_depth.built_in import load
 from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
@@ -19,7 +20,7 @@ from tactile_depth.frames import read_picture
 from tactile_depth.grid_sampler import grid_sampler
 from tactile_depth.latency import last_word_to_first_depth
 from tactile_depth.presses import GridPresses, View, gather
-from tactile_depth.sensor import Sensor, load
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
 from tests.ball_presses import read, real_folder, write_folder
 

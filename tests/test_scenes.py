@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth import reference
+from tactile_depth.built_in import synthetic
 from tactile_depth.errors import InputError
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.scenes import (
@@ -23,7 +24,6 @@ from tactile_depth.scenes import (
     scene_pixel_pitch_mm,
     slopes_of,
 )
-from tactile_depth.sensor import synthetic
 
 SIZES = (16, 64, 128, 256)
 

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tactile_depth.built_in import identify, load, synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError, InputWarning
-from tactile_depth.frames import camera_scale, load_frames, read_picture
+from tactile_depth.frames import camera_scale, load_frames, on_grid, read_picture
 from tactile_depth.reference import slopes_of
 from tactile_depth.rom_files import pack, unsigned, write_words
 from tactile_depth.scenes import render
-from tactile_depth.sensor import Sensor, identify, lighting, load, synthetic
+from tactile_depth.sensor import Sensor, lighting
 from tactile_depth.tactile_depth import tactile_depth, write_roms
 from tests.real_data import FOLDER, needs_real_data
 
@@ -39,7 +40,7 @@ def test_a_larger_picture_is_scaled_with_its_pitch(tmp_path: Path, mini: Any) ->
     for zoom in (1, 2, 3):
         frames = load_frames(saved(tmp_path / "f.npy", (240 * zoom, 320 * zoom)), (96, 128))
         frames = replace(frames, reference=frames.pixels[0])
-        pitch = mini.on_grid(frames).pixel_pitch_mm
+        pitch = on_grid(mini, frames).pixel_pitch_mm
         assert pitch == pytest.approx(mini.pixel_pitch_mm * 2.5)
     assert picture.reference is not None
 
@@ -54,15 +55,15 @@ def test_pictures_of_another_aspect_ratio_are_refused(mini: Any) -> None:
 
 def test_a_scene_is_not_for_a_real_sensor(mini: Any) -> None:
     with pytest.raises(InputError, match="a scene is drawn for the synthetic sensor, not for gelsight-mini"):
-        mini.on_grid(load_frames("ball", (16, 16), "flat"))
+        on_grid(mini, load_frames("ball", (16, 16), "flat"))
 
 
 def test_a_real_sensor_needs_a_reference(tmp_path: Path, mini: Any) -> None:
     frames = load_frames(saved(tmp_path / "f.npy", (240, 320)), (96, 128))
     with pytest.raises(InputError, match="gelsight-mini needs a reference"):
-        mini.on_grid(frames)
+        on_grid(mini, frames)
     with pytest.raises(InputError, match="fitted to colours as sent: omit the reference"):
-        replace(mini, flat_field=False).on_grid(replace(frames, reference=GREY))
+        on_grid(replace(mini, flat_field=False), replace(frames, reference=GREY))
 
 
 def test_the_scale_of_whole_pictures(mini: Any) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import ULTRA, Configuration
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 from tb.stream import REGRESS
 

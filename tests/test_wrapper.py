@@ -14,10 +14,10 @@ import pytest
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.scenes import render
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
 from tb.tb_two_pipelines import calibration
 

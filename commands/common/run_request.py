@@ -14,13 +14,15 @@ from typing import Any
 
 from commands.common import simulator as simulation
 from commands.common import variables
+from tactile_depth.built_in import load
+from tactile_depth.calibration_file import BUILT_IN
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraChoice, CameraConfiguration
 from tactile_depth.certificate import deepest
 from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.npy import is_file
 from tactile_depth.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
-from tactile_depth.sensor import BUILT_IN, Sensor, load
+from tactile_depth.sensor import Sensor
 
 DEFAULT_SCENE = "ball"
 WORST = "worst"  # a depth range that no slopes can exceed

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from commands.common import repository, run_request
 from tactile_depth import files
+from tactile_depth.built_in import load
 from tactile_depth.configuration import Configuration
-from tactile_depth.frames import Frames, load_frames
-from tactile_depth.sensor import Sensor, load
+from tactile_depth.frames import Frames, load_frames, on_grid
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 # Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.
@@ -27,7 +28,7 @@ def design(request: run_request.Request, source: str | None = None) -> tuple[Fra
     size = (request.rows, request.columns)
     named = source or request.frames
     frames = load_frames(named, size, request.reference, request.seed, request.press, request.camera)
-    calibration = calibration.on_grid(frames)
+    calibration = on_grid(calibration, frames)
     return frames, calibration, run_request.configure(request, calibration)
 
 

@@ -14,8 +14,9 @@ from tqdm import tqdm
 from commands.common import published
 from commands.common.run_request import CONTACT_THRESHOLD
 from tactile_depth import reference
-from tactile_depth.scenes import Press, render, scene_pixel_pitch_mm
-from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor, load
+from tactile_depth.built_in import load
+from tactile_depth.scenes import SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import Sensor
 
 PIN = "ball"  # radius of its round tip, as in models/tactile_depth/scenes.py
 STOP_MM = 1.0  # depth at the end of the press

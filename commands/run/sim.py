@@ -31,7 +31,7 @@ from tactile_depth.camera_configuration import CameraChoice
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_offset import exact_zero
-from tactile_depth.frames import Frames, load_frames
+from tactile_depth.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
 
@@ -103,7 +103,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
     grid = (request.rows, request.columns)
     if frames is None:
         frames = load_frames(request.frames, grid, request.reference, request.seed, request.press, request.camera)
-    calibration = calibration.on_grid(frames)
+    calibration = on_grid(calibration, frames)
     config = configure(request, calibration)
     flagged = flags(frames.pixels, calibration, config, request.reference)
     no_contact = untouched(request, frames)
@@ -212,7 +212,7 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
     plain = replace(request, camera=CameraChoice("rgb888", window=camera.crop))
     size = (config.rows, config.columns)
     as_rgb = load_frames(request.frames, size, request.reference, request.seed, request.press, plain.camera)
-    calibration = load_sensor(request).on_grid(as_rgb)
+    calibration = on_grid(load_sensor(request), as_rgb)
     reference_px = exact_depth(as_rgb.pixels, untouched(plain, as_rgb), calibration, config)
     percent = errors(codes * config.depth_lsb_px, reference_px)
     lost = {f"camera_{key}": values * request.repeat for key, values in percent.items()}

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.fft
 
 from tactile_depth import files, reference
-from tactile_depth.sensor import synthetic
+from tactile_depth.built_in import synthetic
 
 matplotlib.use("Agg")
 

@@ -38,12 +38,12 @@ from tqdm import tqdm
 from commands.common import markdown, published, repository, variables
 from commands.common.machine import machine
 from tactile_depth import files, reference
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import COLUMNS, Configuration, most_lanes
 from tactile_depth.errors import InputError
 from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.scenes import render
-from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

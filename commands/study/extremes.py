@@ -24,12 +24,12 @@ from commands.study import transform_noise
 from commands.study.transform_noise import BIAS, Compliance, compliance
 from tactile_depth import files, reference
 from tactile_depth.accuracy import errors
+from tactile_depth.built_in import load
 from tactile_depth.certificate import certify
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import COLUMNS, ROWS, Configuration
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.scenes import REST, SENSOR_WIDTH_MM, Press, photograph, render
-from tactile_depth.sensor import load
 from tactile_depth.tactile_depth import tactile_depth
 
 RESULTS = ("extremes.json",)

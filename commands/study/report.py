@@ -26,10 +26,10 @@ from commands.run import reflex, reflex_tables, sim
 from commands.study import baselines, extremes, sweep, transform_noise
 from tactile_depth import files, reference
 from tactile_depth.accuracy import WORST
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
 from tactile_depth.scenes import BENCH, SENSOR_WIDTH_MM, render
-from tactile_depth.sensor import synthetic
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt

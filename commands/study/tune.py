@@ -29,7 +29,7 @@ from tactile_depth.accuracy import SMALLEST_PEAK_PX, depth_px, errors
 from tactile_depth.configuration import COEFFICIENT_WIDTHS, COLUMNS, DATA_WIDTHS, Configuration, most_lanes
 from tactile_depth.cost import Cost, cost
 from tactile_depth.errors import InputError
-from tactile_depth.frames import Frames, load_frames
+from tactile_depth.frames import Frames, load_frames, on_grid
 from tactile_depth.latency import last_pixel_to_last_depth
 from tactile_depth.sensor import Sensor
 
@@ -307,7 +307,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     _check_grid(request, solvers)
     shape = (request.rows, request.columns)
     frames = load_frames(request.frames, shape, request.reference, request.seed, request.press)
-    calibration = calibration.on_grid(frames)
+    calibration = on_grid(calibration, frames)
     built: dict[Widths, Configuration | None] = {}
     refusals: list[InputError] = []
 

@@ -23,9 +23,9 @@ from commands.common.repository import ROOT, chosen, cores, sources, tested
 from commands.hardware.yosys import in_wheel
 from formal.entries import Proof, Structure
 from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 BENCHES = ROOT / "formal"

@@ -23,12 +23,12 @@ from commands.common import simulator as simulation
 from commands.common.signals import threads
 from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
+from tactile_depth.built_in import load
 from tactile_depth.camera.register_lists import pins, write_list
 from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
 from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import unit_gains
 from tactile_depth.rom_files import write_gains, write_quadratic, write_words, write_zero
-from tactile_depth.sensor import load
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 GRIDS = (16, 128, 512)

@@ -23,8 +23,8 @@ from commands.common import simulator as simulation
 from commands.hardware import yosys
 from commands.verify import mutants, mutate
 from commands.verify.structures import Structure, structure
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 OUT = repository.ROOT / "build" / "netlists"

@@ -26,11 +26,11 @@ from tqdm import tqdm
 from commands.common import markdown, repository, variables
 from commands.run import bench
 from tactile_depth import files
+from tactile_depth.built_in import synthetic
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import SCENES, render
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth
 
 ROOT = repository.ROOT

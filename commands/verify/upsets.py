@@ -10,8 +10,8 @@ from typing import Any
 
 from commands.common import markdown, repository, variables
 from commands.common import simulator as simulation
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 CASES: dict[str, dict[str, Any]] = {

@@ -18,14 +18,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     __version__: str
+    from tactile_depth.ball_press import BallPress
+    from tactile_depth.built_in import identify, load
     from tactile_depth.errors import InputError, InputWarning
     from tactile_depth.evaluation import Evaluation, evaluate
     from tactile_depth.fitting import fit
     from tactile_depth.pipeline import Pipeline
-    from tactile_depth.presses import BallPress
     from tactile_depth.result import Contact, Result
     from tactile_depth.samples import Sample, sample
-    from tactile_depth.sensor import Camera, HeightError, Sensor, identify, load
+    from tactile_depth.sensor import Camera, HeightError, Sensor
 
 __all__ = [
     "BallPress",
@@ -47,14 +48,15 @@ __all__ = [
 ]
 
 _MODULES = {
+    "ball_press": ("BallPress",),
+    "built_in": ("identify", "load"),
     "errors": ("InputError", "InputWarning"),
     "evaluation": ("Evaluation", "evaluate"),
     "fitting": ("fit",),
     "pipeline": ("Pipeline",),
-    "presses": ("BallPress",),
     "result": ("Contact", "Result"),
     "samples": ("Sample", "sample"),
-    "sensor": ("Camera", "HeightError", "Sensor", "identify", "load"),
+    "sensor": ("Camera", "HeightError", "Sensor"),
 }
 _PLACES = {name: module for module, names in _MODULES.items() for name in names}
 

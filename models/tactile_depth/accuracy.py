@@ -16,13 +16,14 @@ from typing import Any
 import numpy as np
 
 from tactile_depth import reference
+from tactile_depth.built_in import synthetic
 from tactile_depth.certificate import deepest
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import cost
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import render, scene_pixel_pitch_mm
-from tactile_depth.sensor import Sensor, synthetic
+from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import slope_tables, tactile_depth
 
 SMALLEST_PEAK_PX = 0.1  # the error in % of the peak is not defined below this peak

@@ -17,7 +17,6 @@ from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.npy import is_file, read_header
 from tactile_depth.sensor import (
     BITS_PER_CHANNEL,
-    BUILT_IN,
     COEFFICIENTS,
     FORMAT_VERSION,
     LIGHTING_BLOCKS,
@@ -29,6 +28,8 @@ from tactile_depth.sensor import (
     Sensor,
 )
 
+FOLDER = Path(__file__).resolve().parent / "calibrations"
+BUILT_IN = ("synthetic", "gelsight-mini")
 LARGEST_COEFFICIENT = 1e6
 LARGEST_MEMBER = 2 * (1 << BITS_PER_CHANNEL[1]) ** 3 * np.dtype(np.longdouble).itemsize + 1024  # bytes, with a header
 PIXEL_PITCHES_MM = (1e-6, 1e3)

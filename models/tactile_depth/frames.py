@@ -20,8 +20,8 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.grid_sampler import grid_sampler
 from tactile_depth.npy import is_file, read_header
-from tactile_depth.scenes import AS_EVER, SCENES, Press, render, scene_pixel_pitch_mm
-from tactile_depth.sensor import SYNTHETIC_PIXEL_PITCH_MM, Sensor
+from tactile_depth.scenes import AS_EVER, SCENES, SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
+from tactile_depth.sensor import Sensor
 
 LARGEST_CAMERA = 4096  # largest rows and columns of a frame, so that a damaged header cannot take all memory
 PNG_SIGNATURE, JPEG_SIGNATURE = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
@@ -127,6 +127,31 @@ def _check_camera(name: str, height: int, width: int) -> None:
         raise InputError(
             f"{name}: frames of {height} x {width}: accepted are up to {LARGEST_CAMERA} x {LARGEST_CAMERA}"
         )
+
+
+def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
+    """Return a sensor on the grid of frames, with the frames' reference and the pitch of the grid.
+
+    Raises
+    ------
+    InputError
+        The frames do not fit this sensor's camera, or the reference that the sensor needs is missing.
+    """
+    if sensor.camera is not None and frames.picture_size is None:
+        raise InputError(
+            f"{frames.name}: a scene is drawn for the synthetic sensor, not for {sensor.name}: omit the calibration, "
+            "or give pictures of that sensor"
+        )
+    sensor.require_reference(frames.reference is not None)
+    zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name)
+    if frames.no_contact is not None:
+        sensor.check_lighting(frames.no_contact)
+    placed = sensor
+    if frames.camera is not None:
+        columns, rows = frames.camera.centre_shift
+        pitch_mm = sensor.pixel_pitch_mm / zoom
+        placed = sensor.centred_at(columns * pitch_mm, rows * pitch_mm)
+    return placed.scaled(frames.pixel_scale / zoom, frames.reference)
 
 
 def load_frames(

@@ -11,10 +11,10 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+from tactile_depth.ball_press import BallPress
 from tactile_depth.errors import InputError
 from tactile_depth.frames import PICTURE_SUFFIXES
 from tactile_depth.npy import is_file
-from tactile_depth.presses import BallPress
 
 TABLE, BACKGROUND = "presses.csv", "background"
 LARGEST_TABLE = 1 << 20  # bytes

@@ -7,11 +7,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from tactile_depth.ball_press import BallPress, Circle
 from tactile_depth.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.circles import find_circle, require_circle_finder
 from tactile_depth.configuration import Configuration
@@ -19,67 +19,15 @@ from tactile_depth.errors import InputError
 from tactile_depth.frames import read_picture
 from tactile_depth.gradient.flat_field import captured_gains, deviations, flat_codes, require_light
 from tactile_depth.grid_sampler import GridSampler, grid_sampler
+from tactile_depth.press_folder import background_path, read_presses
 
 LARGEST_GRID, SMALLEST_GRID = 128, 16
-LARGEST_NUMBER = 1e6  # millimetres or pixels
 PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
 FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves the ball
 NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
 LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
-
-
-class Circle(NamedTuple):
-    """Edge of a contact in camera pixels, x along the columns, y down the rows."""
-
-    x: float
-    y: float
-    radius: float
-
-
-@dataclass(frozen=True)
-class BallPress:
-    """Picture of a ball that is pressed into the gel.
-
-    Attributes
-    ----------
-    image : uint8 array (rows, columns, 3), RGB, or the path of a picture
-    diameter_mm : float
-        Diameter of the ball.
-    circle : (x, y, radius) in pixels of the picture, optional
-        Edge of the contact, x along the columns, y down the rows. None: the picture is searched for it.
-    name : str
-        Name in tables and messages; by default the path, or the number of the press.
-    ball_radius_px : float, optional
-        Radius of the ball in pixels of the picture, from which the pixel pitch follows.
-
-    Raises
-    ------
-    InputError
-        A number is not accepted.
-    """
-
-    image: np.ndarray | str | Path
-    diameter_mm: float
-    circle: tuple[float, float, float] | None = None
-    name: str = ""
-    ball_radius_px: float | None = None
-
-    def __post_init__(self) -> None:
-        for key, length in (("diameter_mm", self.diameter_mm), ("ball_radius_px", self.ball_radius_px)):
-            if length is not None and not 0 < length < LARGEST_NUMBER:
-                raise InputError(f"{key} is {length:g}: accepted is a number above 0")
-        if self.circle is None:
-            return
-        try:
-            x, y, radius = (float(value) for value in self.circle)
-        except (TypeError, ValueError) as error:
-            raise InputError(f"circle={self.circle!r}: accepted are x, y and radius in pixels") from error
-        if not (abs(x) < LARGEST_NUMBER and abs(y) < LARGEST_NUMBER and 0 < radius < LARGEST_NUMBER):
-            raise InputError(f"the circle has x={x:g}, y={y:g}, radius={radius:g}: accepted are pixels, radius above 0")
-        if self.ball_radius_px is not None and radius >= self.ball_radius_px:
-            raise InputError(f"a contact of {radius:g} pixels does not lie on a ball of {self.ball_radius_px:g}")
 
 
 @dataclass(frozen=True)
@@ -253,8 +201,6 @@ def gather(
     ------
     InputError
     """
-    from tactile_depth.press_folder import background_path, read_presses
-
     notes: list[str] = []
     if isinstance(presses, (str, Path)):
         folder = Path(presses)

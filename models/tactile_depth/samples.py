@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactile_depth.built_in import synthetic
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import BENCH, Press, render, scene_pixel_pitch_mm
-from tactile_depth.sensor import Camera, Sensor, synthetic
+from tactile_depth.sensor import Camera, Sensor
 
 CAMERA = Camera(240, 320)
 

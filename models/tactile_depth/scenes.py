@@ -78,6 +78,9 @@ def scene_pixel_pitch_mm(size: int) -> float:
     return SENSOR_WIDTH_MM / size
 
 
+SYNTHETIC_PIXEL_PITCH_MM = scene_pixel_pitch_mm(128)  # for a synthetic camera of 128 columns
+
+
 def render(name: str, rows: int, columns: int = 0, seed: int = 1, press: Press = AS_EVER) -> Scene:
     """Render a scene of the registry on a grid of `rows` by `columns` (0: square).
 

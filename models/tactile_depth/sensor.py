@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,21 +16,13 @@ from tactile_depth import files
 from tactile_depth.camera_configuration import FORMATS
 from tactile_depth.configuration import GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
 from tactile_depth.errors import InputError, InputWarning, is_number
-from tactile_depth.scenes import GAIN, LIGHTS, REST, scene_pixel_pitch_mm
 
-if TYPE_CHECKING:
-    from tactile_depth.frames import Frames
-
-FOLDER = Path(__file__).resolve().parent / "calibrations"
-BUILT_IN = ("synthetic", "gelsight-mini")
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 2
 PIXEL_FORMATS = tuple(FORMATS)
 BITS_PER_CHANNEL = (1, 6)
 COEFFICIENTS = (2, 3, 6)  # slope, colour, term
-SYNTHETIC_PIXEL_PITCH_MM = scene_pixel_pitch_mm(128)  # for a synthetic camera of 128 columns
 ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
-LARGEST_SLOPE = 0.99  # largest slope of the synthetic table, so that its gradient limit is 1
 ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
 LIGHTING_BLOCKS = (4, 4)  # rows and columns of `Sensor.lighting`
 # Largest RMS difference between two lightings of one sensor. On the presses of gelslam a contact changes it by 0.06
@@ -108,7 +100,7 @@ class Sensor:
     model : str
         The better of the two models.
     reference : uint8 array (rows, columns, 3) or (2**k, rows, columns, 3), or None
-        The sensor without contact, on the grid in use (see `on_grid`).
+        The sensor without contact, on the grid in use (see `frames.on_grid`).
     camera : Camera or None
         Camera of the pictures; None for the synthetic sensor, which takes pictures of any size.
     flat_field : bool or None
@@ -137,30 +129,6 @@ class Sensor:
     def scaled(self, pixel_scale: float, reference: np.ndarray | None = None) -> Sensor:
         """Return the sensor on a grid with pixels `pixel_scale` camera pixels wide, with the reference on that grid."""
         return replace(self, pixel_pitch_mm=self.pixel_pitch_mm * pixel_scale, reference=reference)
-
-    def on_grid(self, frames: Frames) -> Sensor:
-        """Return the sensor on the grid of frames, with the frames' reference and the pitch of the grid.
-
-        Raises
-        ------
-        InputError
-            The frames do not fit this sensor's camera, or the reference that the sensor needs is missing.
-        """
-        if self.camera is not None and frames.picture_size is None:
-            raise InputError(
-                f"{frames.name}: a scene is drawn for the synthetic sensor, not for {self.name}: omit the calibration, "
-                "or give pictures of that sensor"
-            )
-        self.require_reference(frames.reference is not None)
-        zoom = 1.0 if frames.picture_size is None else self.zoom(frames.picture_size, frames.name)
-        if frames.no_contact is not None:
-            self.check_lighting(frames.no_contact)
-        placed = self
-        if frames.camera is not None:
-            columns, rows = frames.camera.centre_shift
-            pitch_mm = self.pixel_pitch_mm / zoom
-            placed = self.centred_at(columns * pitch_mm, rows * pitch_mm)
-        return placed.scaled(frames.pixel_scale / zoom, frames.reference)
 
     def centred_at(self, x_mm: float, y_mm: float) -> Sensor:
         """Return the sensor for the part of its pictures around a position, in mm from the middle of a picture."""
@@ -281,7 +249,7 @@ class Sensor:
         if self.reference is not None and self.reference.shape[-3:-1] != grid:
             raise InputError(
                 f"the reference of {self.name} has {self.reference.shape[-3]} rows and {self.reference.shape[-2]} "
-                f"columns, the grid of the configuration has rows={grid[0]}, columns={grid[1]}: use Sensor.on_grid"
+                f"columns, the grid of the configuration has rows={grid[0]}, columns={grid[1]}: use frames.on_grid"
             )
         if self.reference is not None and not config.flat_field:
             raise InputError(
@@ -390,95 +358,3 @@ def lighting(picture: np.ndarray) -> np.ndarray:
     whole = picture[: rows * height, : columns * width].astype(np.float64)
     blocks = whole.reshape(rows, height, columns, width, 3).mean(axis=(1, 3))
     return blocks / max(float(blocks.mean()), 1.0)
-
-
-def load(name_or_path: str | Path, camera_size: tuple[int, int] | None = None) -> Sensor:
-    """Return a built-in calibration by its name, or one from an `.npz` file.
-
-    docs/calibration-file.md describes the format of the file. Files of version 0.1 hold only a pitch, `gradient` or
-    `coefficients`, and `largest_slope`; they are read with a warning.
-
-    Parameters
-    ----------
-    camera_size : (rows, columns), optional
-        Size of the pictures that a file of version 0.1 was made from, which the file does not hold.
-
-    Raises
-    ------
-    InputError
-    """
-    from tactile_depth.calibration_file import read_calibration
-
-    if not isinstance(name_or_path, str | Path):
-        raise InputError(f"a calibration is named by a {type(name_or_path).__name__}: accepted is a name or a path")
-    if name_or_path == "synthetic":
-        if camera_size is not None:
-            raise InputError(
-                f"camera_size={camera_size} with the synthetic sensor, which takes pictures of any size: omit "
-                "camera_size"
-            )
-        return synthetic()
-    if name_or_path in BUILT_IN:
-        return read_calibration(str(name_or_path), FOLDER / f"{name_or_path}.npz", camera_size)
-    return read_calibration(str(name_or_path), Path(name_or_path), camera_size)
-
-
-def identify(reference: np.ndarray) -> Sensor:
-    """Return the built-in calibration of the sensor that took a picture without contact, found by its lighting.
-
-    Parameters
-    ----------
-    reference : uint8 array (rows, columns, 3), RGB
-        Full picture of the sensor's camera.
-
-    Raises
-    ------
-    InputError
-        No built-in calibration has the aspect ratio and the lighting of the picture.
-    """
-    if not isinstance(reference, np.ndarray):
-        raise InputError(f"the reference is a {type(reference).__name__}: accepted is uint8 (rows, columns, 3), RGB")
-    if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
-        raise InputError(
-            f"the reference is {reference.dtype} {reference.shape}: accepted is uint8 (rows, columns, 3), RGB"
-        )
-    rows, columns = reference.shape[:2]
-    nearest, reasons = None, []
-    for sensor in map(load, BUILT_IN):
-        if sensor.camera is None or sensor.lighting is None:
-            continue
-        difference = sensor.lighting_difference(reference)
-        try:
-            sensor.zoom((rows, columns))
-        except InputError:
-            camera = sensor.camera
-            reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
-            continue
-        if difference > LIGHTING_AGREES:
-            reasons.append(
-                f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "
-                f"{100 * LIGHTING_AGREES:.0f} %"
-            )
-        elif nearest is None or difference < nearest[0]:
-            nearest = difference, sensor
-    if nearest is None:
-        raise InputError(
-            f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)}): name the "
-            "calibration of the sensor that took it"
-        )
-    return nearest[1]
-
-
-def synthetic(bits_per_channel: int = 4) -> Sensor:
-    """Return the synthetic sensor: the least-squares inverse of its colour model, as a table and as quadratics.
-
-    The light is uniform and the colours are linear in the slopes, so only the first term of each quadratic is not 0.
-    """
-    step = 256 >> bits_per_channel
-    centre = np.arange(0, 256, step) + (step - 1) / 2
-    colour = np.stack(np.meshgrid(centre, centre, centre, indexing="ij"), axis=-1)
-    gradient = (colour - REST) / GAIN @ np.linalg.pinv(LIGHTS).T
-    within = np.clip(gradient, -LARGEST_SLOPE, LARGEST_SLOPE)
-    coefficients = np.zeros(COEFFICIENTS)
-    coefficients[..., 0] = REST / GAIN * np.linalg.pinv(LIGHTS)
-    return Sensor("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM, coefficients, LARGEST_SLOPE)

@@ -26,10 +26,10 @@ from tactile_depth.boards.serial_link import (
     write_packet,
 )
 from tactile_depth.boards.uart import BITS, transmit
+from tactile_depth.built_in import synthetic
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.scenes import render
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import tactile_depth
 from tactile_depth.video.frame_guard import frame_guard
 from tb.pixels import unpack

@@ -10,10 +10,10 @@ import cocotb
 import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from tactile_depth.built_in import synthetic
 from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.latency import GRADIENT_LOOKUP
-from tactile_depth.sensor import synthetic
 from tb.pixels import pack, unpack
 from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
 

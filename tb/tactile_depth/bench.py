@@ -16,9 +16,9 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.registers.register_map import REGISTERS
-from tactile_depth.sensor import synthetic
 from tactile_depth.video.frame_guard import Word
 from tb import functional_coverage
 from tb.axil import Master, RegisterClient

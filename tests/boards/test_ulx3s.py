@@ -12,9 +12,9 @@ from commands.common import wrapper
 from commands.common.repository import ROOT
 from commands.common.run_request import threshold_code
 from commands.hardware.fpga import SOURCES
+from tactile_depth.built_in import synthetic
 from tactile_depth.camera.register_lists import setup_parameters, write_list
 from tactile_depth.configuration import Configuration
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 from tb.boards.tb_ulx3s_camera_bench import camera_of, sensor
 

@@ -16,10 +16,11 @@ import pytest
 from commands.common import repository, variables
 from commands.run import draw
 from commands.run.calibrate import parse, run
+from tactile_depth.built_in import load
+from tactile_depth.calibration_file import FOLDER
 from tactile_depth.errors import InputError
 from tactile_depth.fitting import fit_presses
 from tactile_depth.frames import read_picture
-from tactile_depth.sensor import FOLDER, load
 from tests.ball_presses import CAMERA, PITCH, read, real_folder, table_rows, write_folder, write_table
 
 

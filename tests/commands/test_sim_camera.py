@@ -13,13 +13,13 @@ from commands.common import run_request
 from commands.run import sim
 from tactile_depth import reference
 from tactile_depth.accuracy import errors
+from tactile_depth.built_in import load
 from tactile_depth.camera_configuration import FORMATS, CameraChoice, CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.frames import SCENE_PICTURE, load_frames
+from tactile_depth.frames import SCENE_PICTURE, load_frames, on_grid
 from tactile_depth.latency import CONTACT, last_word_to_first_depth
 from tactile_depth.scenes import render
-from tactile_depth.sensor import load
 
 PICTURE = (36, 48)  # rows and columns
 ARGUMENTS = ("SOLVER=tridiagonal", "N=16", "SIM=icarus", "CALIBRATION=synthetic")
@@ -106,7 +106,7 @@ def test_each_format_costs_little_depth() -> None:
     depth = {}
     for form in ("rgb888", "rgb565", "yuyv", "raw10"):
         frames = load_frames("bench", grid, camera=CameraChoice(form))
-        depth[form] = reference.depth_of(frames.pixels, load("synthetic").on_grid(frames), config)
+        depth[form] = reference.depth_of(frames.pixels, on_grid(load("synthetic"), frames), config)
     for form, ours in depth.items():
         lost = [value for value in errors(ours, depth["rgb888"])["rms_percent_of_peak"] if value is not None]
         assert np.mean(lost) <= BARS[form], form

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tactile_depth.built_in import load
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
-from tactile_depth.frames import load_frames
-from tactile_depth.sensor import load
+from tactile_depth.frames import load_frames, on_grid
 from tactile_depth.tactile_depth import tactile_depth
 
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
@@ -46,7 +46,7 @@ def test_a_record_tells_the_zero_of_a_frame_whose_mean_is_zero(solver: str) -> N
     """Compute the depth at rest under Neumann, where a mean is zero: depths not above have -volume / rest."""
     config = Configuration(columns=32, solver=solver, neumann=True)
     frames = load_frames("bench", (32, 32))
-    depths = tactile_depth(frames.pixels, load("synthetic").on_grid(frames), config)
+    depths = tactile_depth(frames.pixels, on_grid(load("synthetic"), frames), config)
     for depth in depths:
         threshold = int(depth.max() // 4)
         settings = Settings(threshold, threshold, 1, 1)

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from tactile_depth import reference
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.rom_files import write_gradient
-from tactile_depth.sensor import Sensor, synthetic
+from tactile_depth.sensor import Sensor
 
 
 @pytest.mark.structures("bits data_width", verilator=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24), (2, 24)])

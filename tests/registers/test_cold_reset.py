@@ -9,8 +9,8 @@ import pytest
 from commands.common import simulator
 from commands.verify import mutants
 from commands.verify.structures import Structure
+from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
-from tactile_depth.sensor import synthetic
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
 TRIDIAGONAL: dict[str, Any] = {

@@ -9,11 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_depth.built_in import identify, load
+from tactile_depth.calibration_file import BUILT_IN
 from tactile_depth.configuration import GRADIENT_MODELS
 from tactile_depth.errors import InputError
 from tactile_depth.frames import read_pictures
 from tactile_depth.pipeline import ARITHMETICS, Pipeline
-from tactile_depth.sensor import BUILT_IN, Sensor, identify, load
+from tactile_depth.sensor import Sensor
 
 
 def size(text: str) -> tuple[int, int]:

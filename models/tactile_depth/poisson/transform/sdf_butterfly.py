@@ -3,14 +3,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 
-if TYPE_CHECKING:
-    from tactile_depth.poisson.transform.sdf_fft import Stage
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage in stream order: a butterfly (`delay` > 0) or a twiddle multiplication."""
+
+    block: int  # points of the sub-transform that the stage belongs to
+    delay: int = 0  # butterfly: distance of its operands, and length of its delay line
+    rotate: bool = False  # butterfly: the last quarter of the block is first multiplied by -j (inverse: +j)
+    halve: bool = False  # butterfly: its results are halved
 
 
 def sdf_butterfly(

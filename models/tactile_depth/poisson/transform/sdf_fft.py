@@ -6,24 +6,13 @@ S. He, M. Torkelson, A new approach to pipeline FFT processor, IPPS 1996.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
 from tactile_depth.poisson.transform.twiddle_multiply import twiddle_factors, twiddle_multiply
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One stage in stream order: a butterfly (`delay` > 0) or a twiddle multiplication."""
-
-    block: int  # points of the sub-transform that the stage belongs to
-    delay: int = 0  # butterfly: distance of its operands, and length of its delay line
-    rotate: bool = False  # butterfly: the last quarter of the block is first multiplied by -j (inverse: +j)
-    halve: bool = False  # butterfly: its results are halved
 
 
 @cache

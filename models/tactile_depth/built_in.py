@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The built-in calibrations, by name or by a picture, and calibrations from files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tactile_depth.calibration_file import BUILT_IN, FOLDER, read_calibration
+from tactile_depth.errors import InputError
+from tactile_depth.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
+from tactile_depth.sensor import COEFFICIENTS, LIGHTING_AGREES, Sensor
+
+LARGEST_SLOPE = 0.99  # largest slope of the synthetic table, so that its gradient limit is 1
+
+
+def load(name_or_path: str | Path, camera_size: tuple[int, int] | None = None) -> Sensor:
+    """Return a built-in calibration by its name, or one from an `.npz` file.
+
+    docs/calibration-file.md describes the format of the file. Files of version 0.1 hold only a pitch, `gradient` or
+    `coefficients`, and `largest_slope`; they are read with a warning.
+
+    Parameters
+    ----------
+    camera_size : (rows, columns), optional
+        Size of the pictures that a file of version 0.1 was made from, which the file does not hold.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(name_or_path, str | Path):
+        raise InputError(f"a calibration is named by a {type(name_or_path).__name__}: accepted is a name or a path")
+    if name_or_path == "synthetic":
+        if camera_size is not None:
+            raise InputError(
+                f"camera_size={camera_size} with the synthetic sensor, which takes pictures of any size: omit "
+                "camera_size"
+            )
+        return synthetic()
+    if name_or_path in BUILT_IN:
+        return read_calibration(str(name_or_path), FOLDER / f"{name_or_path}.npz", camera_size)
+    return read_calibration(str(name_or_path), Path(name_or_path), camera_size)
+
+
+def identify(reference: np.ndarray) -> Sensor:
+    """Return the built-in calibration of the sensor that took a picture without contact, found by its lighting.
+
+    Parameters
+    ----------
+    reference : uint8 array (rows, columns, 3), RGB
+        Full picture of the sensor's camera.
+
+    Raises
+    ------
+    InputError
+        No built-in calibration has the aspect ratio and the lighting of the picture.
+    """
+    if not isinstance(reference, np.ndarray):
+        raise InputError(f"the reference is a {type(reference).__name__}: accepted is uint8 (rows, columns, 3), RGB")
+    if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
+        raise InputError(
+            f"the reference is {reference.dtype} {reference.shape}: accepted is uint8 (rows, columns, 3), RGB"
+        )
+    rows, columns = reference.shape[:2]
+    nearest, reasons = None, []
+    for sensor in map(load, BUILT_IN):
+        if sensor.camera is None or sensor.lighting is None:
+            continue
+        difference = sensor.lighting_difference(reference)
+        try:
+            sensor.zoom((rows, columns))
+        except InputError:
+            camera = sensor.camera
+            reasons.append(f"{sensor.name} takes {camera.columns} x {camera.rows}, this has {columns} x {rows} pixels")
+            continue
+        if difference > LIGHTING_AGREES:
+            reasons.append(
+                f"its lighting differs from {sensor.name} by {100 * difference:.0f} %, accepted are "
+                f"{100 * LIGHTING_AGREES:.0f} %"
+            )
+        elif nearest is None or difference < nearest[0]:
+            nearest = difference, sensor
+    if nearest is None:
+        raise InputError(
+            f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)}): name the "
+            "calibration of the sensor that took it"
+        )
+    return nearest[1]
+
+
+def synthetic(bits_per_channel: int = 4) -> Sensor:
+    """Return the synthetic sensor: the least-squares inverse of its colour model, as a table and as quadratics.
+
+    The light is uniform and the colours are linear in the slopes, so only the first term of each quadratic is not 0.
+    """
+    step = 256 >> bits_per_channel
+    centre = np.arange(0, 256, step) + (step - 1) / 2
+    colour = np.stack(np.meshgrid(centre, centre, centre, indexing="ij"), axis=-1)
+    gradient = (colour - REST) / GAIN @ np.linalg.pinv(LIGHTS).T
+    within = np.clip(gradient, -LARGEST_SLOPE, LARGEST_SLOPE)
+    coefficients = np.zeros(COEFFICIENTS)
+    coefficients[..., 0] = REST / GAIN * np.linalg.pinv(LIGHTS)
+    return Sensor("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM, coefficients, LARGEST_SLOPE)
