@@ -162,14 +162,7 @@ def _camera_size(values: dict[str, str]) -> tuple[int, int] | None:
 
 def load_sensor(request: Request) -> Sensor:
     """Return the calibration of a request. Raises InputError."""
-    try:
-        return load(request.calibration, request.camera_size)
-    except InputError as error:
-        if request.camera_size is None:
-            raise
-        rows, columns = request.camera_size
-        variable = f"CAMERA_SIZE={columns}x{rows}"
-        raise InputError(str(error).replace(f"camera_size={request.camera_size}", variable)) from error
+    return load(request.calibration, request.camera_size)
 
 
 def from_file(path: Path, explicit: dict[str, str], accepted: list[str]) -> dict[str, str]:

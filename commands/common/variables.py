@@ -26,6 +26,7 @@ SAME = (
 )
 VARIABLES = {
     r"\bcamera_size=\(rows, columns\)": "CAMERA_SIZE=<columns>x<rows>",
+    r"\bcamera_size=\((\d+), (\d+)\)": r"CAMERA_SIZE=\2x\1",
     r"\bcamera_size\b": "CAMERA_SIZE",
     r"\bomit the calibration\b": "omit CALIBRATION",
     r"\bpitch_mm\b": "PITCH",
