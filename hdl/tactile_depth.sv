@@ -19,34 +19,11 @@ module tactile_depth
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  // Tridiagonal 0: spectral solver; Neumann 1: zero slope at the edge, 0: zero depth; Size: columns; Lanes: depths in a
-  // beat; FrameLatency: cycles from the last pixel out of the guard to the first depth out of the solver.
-  parameter int Tridiagonal = DefaultTridiagonal, parameter int Neumann = DefaultNeumann,
-  parameter int Rows = DefaultRows, parameter int Size = DefaultSize, parameter int Lanes = DefaultLanes,
-  parameter int GradientWidth = DefaultGradientWidth, parameter int GradientFraction = DefaultGradientFraction,
-  parameter int DataWidth = DefaultDataWidth, parameter int CoeffWidth = DefaultCoeffWidth,
-  parameter int FrameLatency = DefaultFrameLatency,
-  parameter int RowForwardOut = DefaultRowForwardOut, parameter int ColumnForwardIn = DefaultColumnForwardIn,
-  parameter int ColumnInverseOut = DefaultColumnInverseOut, parameter int RowInverseIn = DefaultRowInverseIn,
-  parameter int RowInverseOut = DefaultRowInverseOut, parameter int StoreStyle = DefaultStoreStyle,
-  parameter int DivideShiftWidth = DefaultDivideShiftWidth, parameter int DivideDrop = DefaultDivideDrop,
-  // Of the tridiagonal solver.
-  parameter int WordsPerRow = DefaultWordsPerRow,
-  parameter int TableWords = DefaultTableWords, parameter int SettledWidth = DefaultSettledWidth,
-  parameter int LastShiftWidth = DefaultLastShiftWidth, parameter int MomentDrop = DefaultMomentDrop,
-  parameter int MeanReciprocal = DefaultMeanReciprocal, parameter int MeanDrop = DefaultMeanDrop,
-  // Slopes from a table or, Quadratic, by quadratics; FlatField: colours relative to a reference frame; ZeroOffset:
-  // depth less what it reads where nothing touches.
-  parameter int BitsPerChannel = DefaultBitsPerChannel, parameter int Quadratic = DefaultQuadratic,
-  parameter int FlatField = DefaultFlatField, parameter int ZeroOffset = DefaultZeroOffset,
-  parameter int BlockLog2 = DefaultBlockLog2, parameter int CaptureLog2 = DefaultCaptureLog2,
-  parameter int GainWidth = DefaultGainWidth,
-  parameter int ColourDrop = DefaultColourDrop, parameter int SlopeDrop = DefaultSlopeDrop,
-  // For the host alone: depth and slope of code 1, mantissa * 2^exponent; width of a pixel, 0: unknown.
-  parameter int DepthMantissa = DefaultDepthMantissa, parameter int DepthExponent = DefaultDepthExponent,
-  parameter int SlopeMantissa = DefaultSlopeMantissa, parameter int SlopeExponent = DefaultSlopeExponent,
-  parameter int PitchNm = DefaultPitchNm,
-  localparam int DepthBytes = Lanes * ((DataWidth + 7) / 8)  // of a beat
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,  // hdl/td_config_pkg.sv
+  localparam int Lanes         = value(Config, LanesField),  // depths in a beat
+  localparam int DataWidth     = value(Config, DataWidthField),
+  localparam int GradientWidth = value(Config, GradientWidthField),
+  localparam int DepthBytes    = Lanes * ((DataWidth + 7) / 8)  // of a beat
 ) (
   input  wire                     clk,
   input  wire                     rst,  // synchronous; resets valid, ready and state, never the data path
@@ -98,7 +75,7 @@ module tactile_depth
   logic [23:0] pixel_data;
   position_t pixel_position;
   faults_t faults;
-  video_unit #(.Rows(Rows), .Columns(Size)) u_video (
+  video_unit #(.Config(Config)) u_video (
     .clk, .rst, .en, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
     .timeout, .faults, .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position, .pixel_frame_start,
     .pixel_frame_end, .pixel_bad, .now, .frame_time
@@ -114,11 +91,7 @@ module tactile_depth
   logic dark, slope_valid;
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
-  gradient_unit #(
-    .TableFolder(TableFolder), .Rows(Rows), .Columns(Size), .GradientWidth(GradientWidth),
-    .BitsPerChannel(BitsPerChannel), .FlatField(FlatField), .Quadratic(Quadratic), .BlockLog2(BlockLog2),
-    .GainWidth(GainWidth), .CaptureLog2(CaptureLog2), .ColourDrop(ColourDrop), .SlopeDrop(SlopeDrop)
-  ) u_gradient (
+  gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
     .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
     .capture_command(reference_command), .capture_status(reference_status), .dark, .saturations(slope_saturations),
     .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .slope_valid, .slope_position, .slope_gx, .slope_gy
@@ -128,15 +101,7 @@ module tactile_depth
   logic [Lanes*DataWidth-1:0] solved_data;
   logic [7+$clog2(Lanes):0] solver_saturations;
   logic [$clog2(Lanes):0] depth_saturations;
-  poisson_unit #(
-    .TableFolder(TableFolder), .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size),
-    .GradientWidth(GradientWidth), .DataWidth(DataWidth), .CoeffWidth(CoeffWidth),
-    .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
-    .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .DivideShiftWidth(DivideShiftWidth),
-    .DivideDrop(DivideDrop), .StoreStyle(StoreStyle), .TableWords(TableWords),
-    .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
-    .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .WordsPerRow(WordsPerRow), .Lanes(Lanes)
-  ) u_poisson (
+  poisson_unit #(.TableFolder(TableFolder), .Config(Config)) u_poisson (
     .clk, .rst, .en, .slope_valid, .slope_position, .slope_gx, .slope_gy,
     .burst_start, .depth_frame_start(solved_frame_start), .depth_data(solved_data), .saturations(solver_saturations)
   );
@@ -145,10 +110,7 @@ module tactile_depth
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
   logic [31:0] depth_time;
-  depth_unit #(
-    .TableFolder(TableFolder), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .Lanes(Lanes),
-    .FrameLatency(FrameLatency), .ZeroOffset(ZeroOffset), .BlockLog2(BlockLog2)
-  ) u_depth (
+  depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
     .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
     .busy(depth_busy), .pixel_frame_end, .pixel_bad, .frame_time, .burst_start, .solved_frame_start, .solved_data,
@@ -159,9 +121,7 @@ module tactile_depth
   logic frame_leaves, depth_dropped, record_valid, record_lost, touching, first_depth_latency_valid;
   logic [31:0] first_depth_latency;
   logic [32*RecordWords-1:0] record;
-  contact_unit #(
-    .Rows(Rows), .Columns(Size), .DataWidth(DataWidth), .Lanes(Lanes), .BottomFirst(Tridiagonal)
-  ) u_contact (
+  contact_unit #(.Config(Config)) u_contact (
     .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves, .depth_dropped, .record_valid, .record_lost,
     .touching, .record, .first_depth_latency, .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data,
     .depth_time, .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact,
@@ -173,13 +133,7 @@ module tactile_depth
     faults, en & out_of_step, en & pixel_frame_end & ~pixel_bad, frame_leaves, dark, depth_dropped, record_lost,
     record_valid, 13'(solver_saturations) + 13'(slope_saturations) + 13'(depth_saturations)
   };
-  axil_registers #(
-    .Tridiagonal(Tridiagonal), .Neumann(Neumann), .Rows(Rows), .Columns(Size), .DataWidth(DataWidth),
-    .GradientWidth(GradientWidth), .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel),
-    .FlatField(FlatField), .Quadratic(Quadratic), .ZeroOffset(ZeroOffset), .Lanes(Lanes), .BlockLog2(BlockLog2),
-    .GainWidth(GainWidth), .DepthMantissa(DepthMantissa),
-    .DepthExponent(DepthExponent), .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
-  ) u_registers (
+  axil_registers #(.Config(Config)) u_registers (
     .clk, .rst, .cold_rst, .s_axil_awaddr, .s_axil_awprot, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata,
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,

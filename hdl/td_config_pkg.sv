@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_config_pkg: constants, parameters of the default configuration, and of options that it leaves out.
+// td_config_pkg: the configuration of a pipeline as one value, and constants that no configuration changes.
 //
-// Written by `make registers` from models/tactile_depth/configuration.py: change it there.
+// Written by `make registers` from models/tactile_depth/tactile_depth.py: change it there.
 
 `default_nettype none
 
@@ -18,45 +18,95 @@ package td_config_pkg;
   localparam int DarkestLog2 = 3;  // fraction bits of a gain beyond its width
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
-  localparam int DefaultSize = 128;
-  localparam int DefaultCoeffWidth = 18;
-  localparam int DefaultDataWidth = 24;
-  localparam int DefaultRowForwardOut = 3;
-  localparam int DefaultColumnForwardIn = 1;
-  localparam int DefaultColumnInverseOut = -1;
-  localparam int DefaultRowInverseIn = -3;
-  localparam int DefaultRowInverseOut = -1;
-  localparam int DefaultStoreStyle = 1;
-  localparam int DefaultDivideShiftWidth = 4;
-  localparam int DefaultDivideDrop = 23;
-  localparam int DefaultNeumann = 0;
-  localparam int DefaultRows = 128;
-  localparam int DefaultLanes = 1;
-  localparam int DefaultTridiagonal = 0;
-  localparam int DefaultBitsPerChannel = 4;
-  localparam int DefaultGradientWidth = 21;
-  localparam int DefaultGradientFraction = 20;
-  localparam int DefaultFrameLatency = 17221;
-  localparam int DefaultFlatField = 0;
-  localparam int DefaultQuadratic = 0;
-  localparam int DefaultBlockLog2 = 3;
-  localparam int DefaultColourDrop = 20;
-  localparam int DefaultGainWidth = 24;
-  localparam int DefaultCaptureLog2 = 8;
-  localparam int DefaultSlopeDrop = 6;
-  localparam int DefaultZeroOffset = 0;
-  localparam int DefaultDepthMantissa = 9437184;
-  localparam int DefaultDepthExponent = -41;
-  localparam int DefaultSlopeMantissa = 8388608;
-  localparam int DefaultSlopeExponent = -43;
-  localparam int DefaultPitchNm = 0;
-  localparam int DefaultTableWords = 1379;
-  localparam int DefaultSettledWidth = 7;
-  localparam int DefaultLastShiftWidth = 1;
-  localparam int DefaultMomentDrop = 7;
-  localparam int DefaultMeanReciprocal = 65536;
-  localparam int DefaultMeanDrop = 16;
-  localparam int DefaultWordsPerRow = 1;
+  // A configuration is one vector: 32 bits for each number, by its field.
+  localparam int ConfigBits = 1248;
+  localparam int ColumnsField = 0;
+  localparam int RowsField = 1;
+  localparam int LanesField = 2;
+  localparam int TridiagonalField = 3;
+  localparam int CoeffWidthField = 4;
+  localparam int DataWidthField = 5;
+  localparam int RowForwardOutField = 6;
+  localparam int ColumnForwardInField = 7;
+  localparam int ColumnInverseOutField = 8;
+  localparam int RowInverseInField = 9;
+  localparam int RowInverseOutField = 10;
+  localparam int StoreStyleField = 11;
+  localparam int DivideShiftWidthField = 12;
+  localparam int DivideDropField = 13;
+  localparam int NeumannField = 14;
+  localparam int BitsPerChannelField = 15;
+  localparam int GradientWidthField = 16;
+  localparam int GradientFractionField = 17;
+  localparam int FrameLatencyField = 18;
+  localparam int FlatFieldField = 19;
+  localparam int QuadraticField = 20;
+  localparam int BlockLog2Field = 21;
+  localparam int ColourDropField = 22;
+  localparam int GainWidthField = 23;
+  localparam int CaptureLog2Field = 24;
+  localparam int SlopeDropField = 25;
+  localparam int ZeroOffsetField = 26;
+  localparam int DepthMantissaField = 27;
+  localparam int DepthExponentField = 28;
+  localparam int SlopeMantissaField = 29;
+  localparam int SlopeExponentField = 30;
+  localparam int PitchNmField = 31;
+  localparam int TableWordsField = 32;
+  localparam int SettledWidthField = 33;
+  localparam int LastShiftWidthField = 34;
+  localparam int MomentDropField = 35;
+  localparam int MeanReciprocalField = 36;
+  localparam int MeanDropField = 37;
+  localparam int WordsPerRowField = 38;
+
+  // The default configuration; options that it leaves out have the numbers of a configuration with the option.
+  localparam logic [ConfigBits-1:0] DefaultConfig = {
+    32'd1,  // WordsPerRow
+    32'd16,  // MeanDrop
+    32'd65536,  // MeanReciprocal
+    32'd7,  // MomentDrop
+    32'd1,  // LastShiftWidth
+    32'd7,  // SettledWidth
+    32'd1379,  // TableWords
+    32'd0,  // PitchNm
+    -32'sd43,  // SlopeExponent
+    32'd8388608,  // SlopeMantissa
+    -32'sd41,  // DepthExponent
+    32'd9437184,  // DepthMantissa
+    32'd0,  // ZeroOffset
+    32'd6,  // SlopeDrop
+    32'd8,  // CaptureLog2
+    32'd24,  // GainWidth
+    32'd20,  // ColourDrop
+    32'd3,  // BlockLog2
+    32'd0,  // Quadratic
+    32'd0,  // FlatField
+    32'd17221,  // FrameLatency
+    32'd20,  // GradientFraction
+    32'd21,  // GradientWidth
+    32'd4,  // BitsPerChannel
+    32'd0,  // Neumann
+    32'd23,  // DivideDrop
+    32'd4,  // DivideShiftWidth
+    32'd1,  // StoreStyle
+    -32'sd1,  // RowInverseOut
+    -32'sd3,  // RowInverseIn
+    -32'sd1,  // ColumnInverseOut
+    32'd1,  // ColumnForwardIn
+    32'd3,  // RowForwardOut
+    32'd24,  // DataWidth
+    32'd18,  // CoeffWidth
+    32'd0,  // Tridiagonal
+    32'd1,  // Lanes
+    32'd128,  // Rows
+    32'd128  // Columns
+  };
+
+  // Return the number in a field of a configuration.
+  function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);
+    value = config_word[32*field+:32];
+  endfunction
 
 endpackage
 

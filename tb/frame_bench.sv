@@ -26,7 +26,7 @@ module frame_bench
   import td_register_map_pkg::*;
 #(
   parameter int Rows      = 128,  // of the wrapper
-  parameter int Size      = 128,
+  parameter int Columns   = 128,
   parameter int DataWidth = 24,
   parameter int Lanes     = 1
 ) (
@@ -59,7 +59,7 @@ module frame_bench
   input  wire                     s_axil_rready
 );
 
-  localparam int Beats = Rows * Size / Lanes;  // of a frame of depth
+  localparam int Beats = Rows * Columns / Lanes;  // of a frame of depth
   localparam int DepthWidth = 8 * ((DataWidth + 7) / 8);
 
   logic [23:0] s_axis_tdata;
@@ -232,7 +232,7 @@ module frame_bench
           codes <= codes + 32'(Lanes);
           beats <= beats == 32'(Beats - 1) ? 32'd0 : beats + 32'd1;
           if (beats == 32'(Beats - 1)) frames_received <= frames_received + 32'd1;
-          if (m_axis_tlast != ((beats + 32'd1) % 32'(Size / Lanes) == 32'd0) || m_axis_tuser != (beats == 32'd0))
+          if (m_axis_tlast != ((beats + 32'd1) % 32'(Columns / Lanes) == 32'd0) || m_axis_tuser != (beats == 32'd0))
             $fatal(1, "%m: a side-band signal is out of place");
         end
       end

@@ -14,7 +14,7 @@ from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.cost import CORES, KINDS, Multiplier, cost
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
 CASES = [
     {"columns": 16, "bits_per_channel": 2},
@@ -57,7 +57,7 @@ def elaborated(config: Configuration, folder: Path) -> Any:
     for path in repository.sources():
         (folder / path.name).write_text(path.read_text())
         names.append(path.name)
-    parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
+    parameters = " ".join(f"-G{name}={value}" for name, value in hdl_parameters(config).items())
     script = folder / "count.ys"
     script.write_text(
         f"read_slang --threads 1 --top tactile_depth {parameters} {' '.join(names)}\n"

@@ -6,7 +6,8 @@ import sys
 
 import pytest
 
-from commands.common import repository, simulator, wrapper
+from commands.common import repository, simulator
+from tactile_depth.tactile_depth import config_value, default_parameters
 from tb.stream import REGRESS
 
 INVALID = {
@@ -102,15 +103,23 @@ INVALID = {
 TOOLS = ("icarus", "slang", "verilator")
 
 
+def parameters(core: str, change: str) -> list[str]:
+    """Return a change as parameters of a core: that of a unit changes fields of the default configuration."""
+    if "Config = DefaultConfig" not in repository.cores()[core].hdl.read_text():
+        return change.split()
+    fields = {name: int(number) for name, number in (word.split("=") for word in change.split())}
+    return [f"Config={config_value(default_parameters() | fields)}"]
+
+
 def refused(tool: str, core: str, change: str) -> str:
     """Return the message with which a tool refuses to elaborate a core, "" if it accepts."""
-    sources = [str(path) for path in repository.sources()]
+    sources, changed = [str(path) for path in repository.sources()], parameters(core, change)
     if tool == "icarus":
-        command = ["iverilog", "-g2012", "-t", "null", "-s", core, *(f"-P{core}.{word}" for word in change.split())]
+        command = ["iverilog", "-g2012", "-t", "null", "-s", core, *(f"-P{core}.{word}" for word in changed)]
     elif tool == "verilator":
-        command = ["verilator", "--lint-only", "--top-module", core, *(f"-G{word}" for word in change.split())]
+        command = ["verilator", "--lint-only", "--top-module", core, *(f"-G{word}" for word in changed)]
     else:
-        command = [sys.executable, "-m", "commands.verify.slang_lint", core, *(f"-G{word}" for word in change.split())]
+        command = [sys.executable, "-m", "commands.verify.slang_lint", core, *(f"-G{word}" for word in changed)]
     result = subprocess.run([*command, *sources], capture_output=True, text=True, check=False, cwd=repository.ROOT)
     return (result.stdout + result.stderr) if result.returncode else ""
 
@@ -133,10 +142,9 @@ def test_an_invalid_parameter_is_refused(tool: str, core: str, change: str) -> N
     assert "unknown module" in output or "error" in output
 
 
-def test_every_parameter_of_the_top_has_a_value_that_is_refused() -> None:
+def test_every_field_of_the_configuration_has_a_value_that_is_refused() -> None:
     changed = {word.split("=")[0] for changes in INVALID.values() for change in changes for word in change.split()}
-    named = {"Size" if name == "Columns" else name for name in changed}
-    assert not wrapper.default_parameters().keys() - named
+    assert not default_parameters().keys() - changed
 
 
 VALID = [

@@ -15,7 +15,7 @@ from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.pipeline import default_grid
 from tactile_depth.resampling import resampling
 from tactile_depth.rom_files import write_words
-from tactile_depth.tactile_depth import tactile_depth, top_parameters
+from tactile_depth.tactile_depth import hdl_parameters, tactile_depth, top_parameters
 from tactile_depth.tactile_depth import write_roms as write_tables
 
 SMALL = (24, 32)
@@ -281,7 +281,8 @@ def test_the_error_of_the_calibration_comes_with_the_result() -> None:
 def test_hardware_writes_what_the_pipeline_computes_with(tmp_path: Path, small: Any) -> None:
     index = small.hardware(tmp_path / "hw")
     described = json.loads(index.read_text())
-    assert described["parameters"] == top_parameters(small.config, small.pixel_pitch_mm)
+    assert described["fields"] == top_parameters(small.config, small.pixel_pitch_mm)
+    assert described["parameters"] == hdl_parameters(small.config, small.pixel_pitch_mm)
     assert described["depth_lsb_mm"] == small.depth_lsb_mm
     (tmp_path / "again").mkdir()
     write_tables(tmp_path / "again", small.sensor, small.config, small._zero, small._gains)

@@ -10,7 +10,7 @@ import pytest
 
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import ULTRA, Configuration
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import config_value, top_parameters, write_roms
 from tb.stream import REGRESS
 
 ALL: dict[str, str] = {}  # every test, up to the level of the run
@@ -60,7 +60,7 @@ def run(
     config = Configuration(**choices)
     run_tb(
         "tactile_depth",
-        {**top_parameters(config), **parameters},
+        {"Config": config_value({**top_parameters(config), **parameters})},
         roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         environment={
             "CONFIGURATION": json.dumps(choices),

@@ -26,7 +26,7 @@ from commands.common.repository import ROOT
 from commands.run import bench
 from tactile_depth.frames import read_picture
 from tactile_depth.resampling import resampling
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.tactile_depth import hdl_parameters, top_parameters
 from tests import real_data
 
 VERSION = "9.8.7"  # a tag that only the copy has
@@ -286,6 +286,7 @@ def test_the_rtl_has_the_codes_of_the_wheel(
     )
     np.testing.assert_array_equal(played.codes.reshape(rows, columns)[::-1], codes)  # the bottom row leaves first
     described = json.loads((tmp_path / "hardware" / "parameters.json").read_text())
-    assert described["parameters"] == top_parameters(pipeline.config, pipeline.pixel_pitch_mm)
+    assert described["fields"] == top_parameters(pipeline.config, pipeline.pixel_pitch_mm)
+    assert described["parameters"] == hdl_parameters(pipeline.config, pipeline.pixel_pitch_mm)
     for name in described["tables"]:
         assert (tmp_path / "hardware" / name).read_text() == (work / name).read_text()

@@ -31,13 +31,16 @@ def test_the_package_has_the_default_configuration() -> None:
     assert wrapper.package() == wrapper.DEFAULTS.read_text(), "run `make registers`"
 
 
-def test_a_wrapper_has_every_port_and_parameter_of_the_top() -> None:
+def test_a_wrapper_has_every_port_of_the_top_and_every_field() -> None:
     declared, names = wrapper.ports()
     parameters = top_parameters(Configuration(**CONFIGURATIONS["left"]))
     text = wrapper.wrapper("left", parameters)
     assert declared in text
     assert all(f".{name}" in text for name in names)
-    assert all(f".{name}({value})," in text for name, value in parameters.items())
+    assert text.count("configuration[32*") == len(parameters)
+    assert all(
+        f"configuration[32*{name}Field+:32] = {wrapper.literal(value)};" in text for name, value in parameters.items()
+    )
     assert {"clk", "s_axis_tdata", "m_axis_tuser", "contact", "m_event_tready", "s_axil_rready"} <= set(names)
 
 
@@ -81,7 +84,7 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
     assert command("NAME=finger", f"OUT={tmp_path}", "TABLES=finger/", *choices)[0] == 0
     text = (tmp_path / "tactile_depth_finger.sv").read_text()
     assert 'parameter TableFolder = "finger/"' in text
-    assert ".Tridiagonal(1)," in text
+    assert "[32*TridiagonalField+:32] = 32'd1;" in text
     (tmp_path / "direct").mkdir()
     write_roms(tmp_path / "direct", synthetic(4), Configuration(columns=16, solver="tridiagonal"))
     written = {path.name: path.read_text() for path in tmp_path.glob("*.hex")}

@@ -11,7 +11,7 @@ module ulx3s #(
   parameter int Baud      = 3000000,
   parameter int Threshold = 65536,    // written to both thresholds after a reset
   parameter int Rows      = 128,      // of the wrapper
-  parameter int Size      = 128,
+  parameter int Columns   = 128,
   parameter int DataWidth = 24,
   parameter int Lanes     = 1
 ) (
@@ -31,7 +31,7 @@ module ulx3s #(
   logic contact, recorded, unused_ready, unused_rst, unused_irq;
   assign led = {locked, 5'd0, recorded, contact};
   ulx3s_system #(
-    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Size(Size), .DataWidth(DataWidth),
+    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
     .Lanes(Lanes)
   ) u_system (
     .clk, .ready(locked & ~btn[1]), .rst(unused_rst), .ftdi_txd, .ftdi_rxd,

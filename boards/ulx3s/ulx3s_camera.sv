@@ -18,7 +18,7 @@ module ulx3s_camera #(
   parameter int Baud              = 3000000,
   parameter int Threshold         = 65536,    // written to both thresholds after a reset
   parameter int Rows              = 128,      // of the wrapper
-  parameter int Size              = 128,
+  parameter int Columns           = 128,
   parameter int DataWidth         = 24,
   parameter int Lanes             = 1,
   parameter int Entries           = 16,       // of camera.hex, and below them what a camera's SCCB is like
@@ -77,7 +77,7 @@ module ulx3s_camera #(
   logic contact, recorded, irq, lost;
   assign led = {locked, 1'b0, irq, lost, failed, set_up, recorded, contact};
   ulx3s_system #(
-    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Size(Size), .DataWidth(DataWidth),
+    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
     .Lanes(Lanes), .Camera(1)
   ) u_system (
     .clk, .ready(locked & ~btn[1]), .rst, .ftdi_txd, .ftdi_rxd,

@@ -17,7 +17,7 @@ module ulx3s_system
   parameter int Baud      = 3000000,
   parameter int Threshold = 65536,    // written to both thresholds after a reset
   parameter int Rows      = 128,      // of the wrapper
-  parameter int Size      = 128,
+  parameter int Columns   = 128,
   parameter int DataWidth = 24,
   parameter int Lanes     = 1,
   parameter int Camera    = 0
@@ -75,7 +75,7 @@ module ulx3s_system
   assign araddr = '0;  // nothing is read
   logic [31:0] wdata;
   logic awvalid, awready, wvalid, wready;
-  serial_link #(.Rows(Rows), .Columns(Size), .Divider(Divider)) u_link (
+  serial_link #(.Rows(Rows), .Columns(Columns), .Divider(Divider)) u_link (
     .clk, .rst, .threshold(Threshold),
     .in_valid(byte_valid), .in_data(byte_data), .in_broken(broken),
     .out_valid(reply_valid), .out_ready(reply_ready), .out_data(reply_data),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrappers of hdl/tactile_depth.sv that set every parameter of a configuration, and its default parameters."""
+"""Wrappers of hdl/tactile_depth.sv with a configuration inside, and the package of the configuration."""
 
 import re
 from collections.abc import Mapping
@@ -8,11 +8,12 @@ from pathlib import Path
 from commands.common import repository
 from tactile_depth.camera.camera_front_end import SETTINGS, camera_front_end_parameters, camera_settings
 from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import CONSTANTS, top_parameters
+from tactile_depth.tactile_depth import CONSTANTS, default_parameters
 
 TOP = repository.HDL / "tactile_depth.sv"
 DEFAULTS = repository.HDL / "td_config_pkg.sv"
+NAME = re.compile(r"[a-z][a-z0-9_]*")
+NAMES = "accepted are small letters, digits and _, beginning with a letter"
 
 
 def ports() -> tuple[str, list[str]]:
@@ -23,28 +24,46 @@ def ports() -> tuple[str, list[str]]:
     return declared, re.findall(r"(\w+),?(?: *//.*)?$", declared, re.MULTILINE)
 
 
-def default_parameters() -> dict[str, int]:
-    """Return the parameters of the default configuration, and of options that it does not use."""
-    tridiagonal = Configuration(solver="tridiagonal")
-    flat = [Configuration(flat_field=True, gradient_model=model) for model in ("quadratic", "lut")]
-    merged: dict[str, int] = {}
-    for config in (*flat, Configuration(zero_offset=True), tridiagonal, Configuration()):
-        merged |= top_parameters(config)
-    return merged
+def literal(number: int) -> str:
+    """Return a number of 32 bits as SystemVerilog writes it."""
+    return f"-32'sd{-number}" if number < 0 else f"32'd{number}"
 
 
 def package() -> str:
     """Return the text of hdl/td_config_pkg.sv."""
+    fields = default_parameters()
     constants = "".join(f"  localparam int {name} = {value};  // {what}\n" for name, (value, what) in CONSTANTS.items())
-    defaults = "".join(f"  localparam int Default{name} = {value};\n" for name, value in default_parameters().items())
-    return (
-        "// SPDX-License-Identifier: Apache-2.0\n"
-        "// td_config_pkg: constants, parameters of the default configuration, and of options that it leaves out.\n"
-        "//\n"
-        "// Written by `make registers` from models/tactile_depth/configuration.py: change it there.\n\n"
-        f"`default_nettype none\n\npackage td_config_pkg;\n\n{constants}\n{defaults}\nendpackage\n\n"
-        "`default_nettype wire\n"
-    )
+    numbers = "".join(f"  localparam int {name}Field = {position};\n" for position, name in enumerate(fields))
+    listed = [(literal(number), name) for name, number in fields.items()][::-1]
+    words = "".join(f"    {word},  // {name}\n" for word, name in listed[:-1])
+    last, name = listed[-1]
+    return f"""// SPDX-License-Identifier: Apache-2.0
+// td_config_pkg: the configuration of a pipeline as one value, and constants that no configuration changes.
+//
+// Written by `make registers` from models/tactile_depth/tactile_depth.py: change it there.
+
+`default_nettype none
+
+package td_config_pkg;
+
+{constants}
+  // A configuration is one vector: 32 bits for each number, by its field.
+  localparam int ConfigBits = {32 * len(fields)};
+{numbers}
+  // The default configuration; options that it leaves out have the numbers of a configuration with the option.
+  localparam logic [ConfigBits-1:0] DefaultConfig = {{
+{words}    {last}  // {name}
+  }};
+
+  // Return the number in a field of a configuration.
+  function automatic int value(input logic [ConfigBits-1:0] config_word, input int field);
+    value = config_word[32*field+:32];
+  endfunction
+
+endpackage
+
+`default_nettype wire
+"""
 
 
 def wrapper(
@@ -55,18 +74,21 @@ def wrapper(
     With a `camera` its s_axis takes the stream of that camera.
     """
     declared, names = ports()
-    inside = "".join(f"    .{parameter}({value}),\n" for parameter, value in parameters.items())
+    fields = "".join(
+        f"    configuration[32*{field}Field+:32] = {literal(number)};\n" for field, number in parameters.items()
+    )
     connected = ", ".join(f".{port}" for port in names)
     if camera is not None:
         connected = connected.replace(", .s_axis_", ",\n    .s_axis_", 1)
         for port in (name for name in names if name.startswith("s_axis_")):
             connected = connected.replace(f".{port}", f".{port}({port.replace('s_axis', 'grid')})")
     depth_bytes = parameters["Lanes"] * -(-parameters["DataWidth"] // 8)
-    return f"""// tactile_depth_{name}: tactile_depth with the parameters of one configuration. Generated: do not edit.
+    return f"""// tactile_depth_{name}: tactile_depth with one configuration. Generated: do not edit.
 
 `default_nettype none
 
 module tactile_depth_{name}
+  import td_config_pkg::*;
   import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
@@ -74,10 +96,12 @@ module tactile_depth_{name}
   localparam int DepthBytes = {depth_bytes}
 ) (
 {declared});
+
+  function automatic logic [ConfigBits-1:0] configuration();
+{fields}  endfunction
+  localparam logic [ConfigBits-1:0] Config = configuration();
 {"" if camera is None else front_end(camera)}
-  tactile_depth #(
-{inside}    .TableFolder(TableFolder)
-  ) u_pipeline (
+  tactile_depth #(.TableFolder(TableFolder), .Config(Config)) u_pipeline (
     {connected}
   );
 
@@ -126,4 +150,4 @@ def write(
 
 def grid(parameters: Mapping[str, int]) -> dict[str, int]:
     """Return the parameters that a module around a wrapper needs itself."""
-    return {name: parameters[name] for name in ("Rows", "Size", "DataWidth", "Lanes")}
+    return {name: parameters[name] for name in ("Rows", "Columns", "DataWidth", "Lanes")}

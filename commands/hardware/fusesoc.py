@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The generator of tactile_depth.core: a configuration as a core of FuseSoC.
 
-Its parameters are the variables of `make sim` that choose a configuration; commands/hardware/synth.py names them. With
-NAME the core holds the module tactile_depth_<NAME>, which a design instantiates, and its tables in a folder <NAME>.
-Without it the core holds the tables, and the parameters as defaults for a design whose top is tactile_depth.
+Its parameters are NAME and the variables of `make sim` that choose a configuration; commands/hardware/synth.py names
+them. The core holds the module tactile_depth_<NAME>, which a design instantiates, and its tables in a folder <NAME>.
 """
 
 import sys
 from pathlib import Path
-from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
@@ -26,40 +24,28 @@ except ImportError as error:
 
 
 def generate(description: Path, folder: Path) -> None:
-    """Write the tables and a core that holds them, and the parameters as its defaults, into a folder.
-
-    Raises InputError.
-    """
+    """Write the module, its tables and a core that holds both into a folder. Raises InputError."""
     wanted = yaml.safe_load(description.read_text())
     values = dict(wanted.get("parameters") or {})
-    module = values.pop("NAME", "")
+    module = str(values.pop("NAME", ""))
+    if not wrapper.NAME.fullmatch(module):
+        raise InputError(f"NAME={module}: {wrapper.NAMES}")
     for key in values:
         if key not in synth.CONFIGURING:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
     request = run_request.parse([f"{key}={value}" for key, value in values.items()])
     config, calibration, frames = synth.configured(request)
     write_roms(folder, calibration, config, zero_of(untouched(request, frames), calibration, config))
-    parameters = top_parameters(config, calibration.pixel_pitch_mm)
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
-    place = f"{module}/" if module else ""
-    core: dict[str, Any] = {
+    path = wrapper.write(folder, module, top_parameters(config, calibration.pixel_pitch_mm), f"{module}/")
+    core = {
         "name": wanted["vlnv"],
-        "filesets": {"tables": {"files": [{name: {"copyto": place + name}} for name in tables], "file_type": "user"}},
-        "targets": {"default": {"filesets": ["tables"]}},
+        "filesets": {
+            "tables": {"files": [{name: {"copyto": f"{module}/{name}"}} for name in tables], "file_type": "user"},
+            "module": {"files": [path.name], "file_type": "systemVerilogSource"},
+        },
+        "targets": {"default": {"filesets": ["tables", "module"]}},
     }
-    if module:
-        path = wrapper.write(folder, module, parameters, place)
-        core["filesets"]["module"] = {
-            "files": [path.name],
-            "file_type": "systemVerilogSource",
-            "depend": ["::tactile_depth:0.1.0"],
-        }
-        core["targets"]["default"]["filesets"] += ["module"]
-    else:
-        core["parameters"] = {
-            name: {"datatype": "int", "default": value, "paramtype": "vlogparam"} for name, value in parameters.items()
-        }
-        core["targets"]["default"]["parameters"] = list(parameters)
     name = wanted["vlnv"].split(":")[2]
     (folder / f"{name}.core").write_text("CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False))
 

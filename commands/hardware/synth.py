@@ -39,7 +39,7 @@ from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
 from tactile_depth.frames import REST_SCENE, Frames
 from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import top_parameters
+from tactile_depth.tactile_depth import hdl_parameters
 
 OUT = repository.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
@@ -385,7 +385,7 @@ def keep_sources(folder: Path, config: Configuration, out: Path) -> None:
         old.unlink()
     for rom in folder.glob("*.hex"):
         shutil.copy(rom, kept_files)
-    parameters = " ".join(f"{name}={value}" for name, value in top_parameters(config).items())
+    parameters = " ".join(f"{name}={value}" for name, value in hdl_parameters(config).items())
     (out / "parameters.txt").write_text(parameters + "\n")
 
 

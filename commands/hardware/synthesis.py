@@ -12,7 +12,7 @@ from tactile_depth.built_in import load
 from tactile_depth.configuration import Configuration
 from tactile_depth.frames import Frames, load_frames, on_grid
 from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
 # Small ROMs are LUTs. For Yosys "distributed" is a RAM of LUTs, and it has none with a read port alone.
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
@@ -43,7 +43,7 @@ def read(
     *,
     calibration: str | Sensor = "synthetic",
     top: str = "tactile_depth",
-    parameters: Mapping[str, int] | None = None,
+    parameters: Mapping[str, int | str] | None = None,
     extra: Sequence[Path] = (),
     options: str = "",
 ) -> list[str]:
@@ -58,7 +58,7 @@ def read(
     folder.mkdir(parents=True, exist_ok=True)
     write_roms(folder, load(calibration) if isinstance(calibration, str) else calibration, config)
     names = list({source.name: shutil.copy(source, folder) for source in [*repository.sources(), *extra]})
-    of_top = top_parameters(config) if parameters is None else parameters
+    of_top = hdl_parameters(config) if parameters is None else parameters
     values = " ".join(f"-G {name}={value}" for name, value in of_top.items())
     return [
         f"read_slang --threads 1 -DSYNTHESIS --top {top} {options} {values} {' '.join(names)}",

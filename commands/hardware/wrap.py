@@ -9,7 +9,6 @@ module has the camera front end inside, and its s_axis takes the words of that c
 """
 
 import os
-import re
 import sys
 from pathlib import Path
 
@@ -20,15 +19,13 @@ from tactile_depth import files
 from tactile_depth.errors import InputError
 from tactile_depth.tactile_depth import top_parameters, write_roms
 
-NAME = re.compile(r"[a-z][a-z0-9_]*")
-
 
 def main() -> None:
     with variables.reported("wrap"):
         values = variables.given(sys.argv[1:], ("NAME", "OUT", "TABLES", *synth.CONFIGURING, *run_request.CAMERA))
         name = values.pop("NAME", "")
-        if not NAME.fullmatch(name):
-            raise InputError(f"NAME={name}: accepted are small letters, digits and _, beginning with a letter")
+        if not wrapper.NAME.fullmatch(name):
+            raise InputError(f"NAME={name}: {wrapper.NAMES}")
         out = Path(values.pop("OUT", repository.ROOT / "build" / "wrap" / name))
         tables = values.pop("TABLES", "./")
         if not tables.endswith("/") or '"' in tables:

@@ -26,7 +26,7 @@ from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
 BENCHES = ROOT / "formal"
 ITEMS = BENCHES / "test_proofs.py"
@@ -97,7 +97,7 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
 
 def structure_script(structure: Structure, config: Configuration) -> str:
     """Return the Yosys script of one structural proof; every memory of the data path has the name words."""
-    parameters = " ".join(f"-G{name}={value}" for name, value in top_parameters(config).items())
+    parameters = " ".join(f"-G{name}={value}" for name, value in hdl_parameters(config).items())
     outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
     quadratic = config.gradient_model == "quadratic"
     lines = [

@@ -29,7 +29,7 @@ from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
 from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import unit_gains
 from tactile_depth.rom_files import write_gains, write_quadratic, write_words, write_zero
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import default_parameters, hdl_parameters, write_roms
 
 GRIDS = (16, 128, 512)
 TOP = "tactile_depth"
@@ -56,8 +56,8 @@ class Structure:
         return f"{self.top}-{c.solver}-{'neumann' if c.neumann else 'dirichlet'}-{c.rows}x{c.columns}{colours}"
 
     @property
-    def parameters(self) -> dict[str, int]:
-        return {} if self.config is None else top_parameters(self.config)
+    def parameters(self) -> dict[str, str]:
+        return {} if self.config is None else hdl_parameters(self.config)
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def icarus(structure: Structure, files: Sequence[Path]) -> str:
     return output_of(["iverilog", "-g2012", "-Wall", "-t", "null", "-s", top, *parameters, *files])
 
 
-def slang(tops: Sequence[str], parameters: dict[str, int], files: Sequence[Path]) -> str:
+def slang(tops: Sequence[str], parameters: dict[str, str], files: Sequence[Path]) -> str:
     options = [f"-G{name}={value}" for name, value in parameters.items()]
     return output_of([sys.executable, "-m", "commands.verify.slang_lint", ",".join(tops), *options, *files])
 
@@ -202,7 +202,7 @@ def board_sources() -> list[Path]:
 
 def wrappers_of_boards() -> list[Path]:
     """Write the wrapper that each board instantiates, and return their paths."""
-    return [wrapper.write(FOLDER, name, wrapper.default_parameters()) for name in fpga.BOARDS]
+    return [wrapper.write(FOLDER, name, default_parameters()) for name in fpga.BOARDS]
 
 
 def checks() -> list[Check]:

@@ -25,7 +25,7 @@ from commands.verify import mutants, mutate
 from commands.verify.structures import Structure, structure
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
 OUT = repository.ROOT / "build" / "netlists"
 LIBRARY = "share/xilinx/cells_sim.v"  # Yosys' simulation models of the cells
@@ -78,7 +78,7 @@ def whole_design(solver: str) -> Case:
     config = Configuration(**choices)
     built = Structure(
         WHOLE,
-        top_parameters(config),
+        hdl_parameters(config),
         repository.testbench(WHOLE),
         lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
         {"CONFIGURATION": json.dumps(choices)},

@@ -101,7 +101,7 @@ WAIVERS = (
 NOT_IN_A_STRUCTURE = ("unused-def", *(f"unused-package-{kind}" for kind in ("parameter", "subroutine", "typedef")))
 
 
-def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, int] | None = None) -> list[Finding]:
+def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str, str] | None = None) -> list[Finding]:
     """Return all findings of slang, waived or not."""
     engine_driver = driver.Driver()
     engine_driver.addStandardArgs()
@@ -111,7 +111,7 @@ def findings(tops: Iterable[str], files: Iterable[Path], parameters: Mapping[str
         "--error-limit=0",
         "--allow-dup-initial-drivers",  # $readmemh in an initial gives a memory its contents at power-up
         *(f"--top={top}" for top in tops),
-        *(f"-G{name}={value}" for name, value in (parameters or {}).items()),
+        *(f'"-G{name}={value}"' for name, value in (parameters or {}).items()),  # a number may have a quote
         *((f"-Wno-{option}" for option in NOT_IN_A_STRUCTURE) if parameters else ()),
         *map(str, files),
     ]
@@ -145,7 +145,7 @@ def waiver(finding: Finding) -> Waiver | None:
 
 def main() -> None:
     tops, *words = sys.argv[1:]
-    parameters = {name: int(value) for name, value in (word[2:].split("=") for word in words if word.startswith("-G"))}
+    parameters = dict(word[2:].split("=") for word in words if word.startswith("-G"))
     files = [Path(word) for word in words if not word.startswith("-G")]
     left = Counter(str(f) for f in findings(tops.split(","), files, parameters) if waiver(f) is None)
     for line, count in left.items():

@@ -12,7 +12,7 @@ from commands.common import markdown, repository, variables
 from commands.common import simulator as simulation
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import top_parameters, write_roms
+from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
 CASES: dict[str, dict[str, Any]] = {
     "spectral": {"columns": 16, "bits_per_channel": 2},
@@ -35,7 +35,7 @@ def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]
     write_roms(folder, synthetic(config.bits_per_channel), config)
     (folder / "sim.vvp").unlink(missing_ok=True)  # the runner would keep a build with other parameters
     log = folder / "run.log"
-    simulation.build("icarus", "tactile_depth", repository.sources(), top_parameters(config), folder, log=log)
+    simulation.build("icarus", "tactile_depth", repository.sources(), hdl_parameters(config), folder, log=log)
     count, failed = simulation.run(
         "tactile_depth",
         "tb.tb_upsets",

@@ -67,12 +67,27 @@ module fv_axil_registers
   contact_settings_t contact_settings;
   table_command_t table_command;
   capture_command_t reference_command, zero_command;
-  axil_registers #(
-    .Tridiagonal(1), .Neumann(1), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth), .GradientWidth(GradientWidth),
-    .GradientFraction(GradientFraction), .BitsPerChannel(BitsPerChannel), .FlatField(1), .Quadratic(Quadratic),
-    .ZeroOffset(1), .BlockLog2(1), .DepthMantissa(DepthMantissa), .DepthExponent(DepthExponent),
-    .SlopeMantissa(SlopeMantissa), .SlopeExponent(SlopeExponent), .PitchNm(PitchNm)
-  ) dut (.*);
+  function automatic logic [ConfigBits-1:0] configuration();
+    configuration = DefaultConfig;
+    configuration[32*TridiagonalField+:32] = 1;
+    configuration[32*NeumannField+:32] = 1;
+    configuration[32*RowsField+:32] = Rows;
+    configuration[32*ColumnsField+:32] = Columns;
+    configuration[32*DataWidthField+:32] = DataWidth;
+    configuration[32*GradientWidthField+:32] = GradientWidth;
+    configuration[32*GradientFractionField+:32] = GradientFraction;
+    configuration[32*BitsPerChannelField+:32] = BitsPerChannel;
+    configuration[32*FlatFieldField+:32] = 1;
+    configuration[32*QuadraticField+:32] = Quadratic;
+    configuration[32*ZeroOffsetField+:32] = 1;
+    configuration[32*BlockLog2Field+:32] = 1;
+    configuration[32*DepthMantissaField+:32] = DepthMantissa;
+    configuration[32*DepthExponentField+:32] = DepthExponent;
+    configuration[32*SlopeMantissaField+:32] = SlopeMantissa;
+    configuration[32*SlopeExponentField+:32] = SlopeExponent;
+    configuration[32*PitchNmField+:32] = PitchNm;
+  endfunction
+  axil_registers #(.Config(configuration())) dut (.*);
 
   logic started = 1'b0;
   always_comb if (!started) assume (rst);
@@ -243,7 +258,7 @@ module fv_axil_registers
     else if (read_offset == DebounceOffset) word = frames_needed;
     else if (read_offset == InterruptStatusOffset) word = interrupts;
     else if (read_offset == InterruptMaskOffset) word = unmasked;
-    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 4) | (DefaultGainWidth << DeviceGainWidthLsb);
+    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 4) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
     else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
     else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
     else if (read_offset == PitchOffset) word = width_nm;

@@ -17,11 +17,12 @@ module contact_unit
   import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
-  parameter int Rows        = DefaultRows,
-  parameter int Columns     = DefaultSize,
-  parameter int DataWidth   = DefaultDataWidth,
-  parameter int Lanes       = DefaultLanes,        // depths in a beat
-  parameter int BottomFirst = DefaultTridiagonal,  // 1: the bottom row comes first
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Rows        = value(Config, RowsField),
+  localparam int Columns     = value(Config, ColumnsField),
+  localparam int DataWidth   = value(Config, DataWidthField),
+  localparam int Lanes       = value(Config, LanesField),  // depths in a beat
+  localparam int Tridiagonal = value(Config, TridiagonalField),  // 1: the bottom row comes first
   localparam int DepthBits = 8 * ((DataWidth + 7) / 8)  // of a depth on m_axis
 ) (
   input  wire                         clk,
@@ -82,7 +83,7 @@ module contact_unit
 
   logic [31:0] tap_time;
   contact_events #(
-    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
+    .Width(DataWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(Tridiagonal)
   ) u_events (
     .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data),
     .in_time(tap_time), .on_threshold(settings.threshold), .off_threshold(settings.off_threshold),

@@ -18,13 +18,14 @@ module depth_unit
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Rows         = DefaultRows,
-  parameter int Columns      = DefaultSize,
-  parameter int DataWidth    = DefaultDataWidth,
-  parameter int Lanes        = DefaultLanes,         // depths in a beat
-  parameter int FrameLatency = DefaultFrameLatency,  // from pixel_frame_end to the frame's first word out of the solver
-  parameter int ZeroOffset     = DefaultZeroOffset,
-  parameter int BlockLog2    = DefaultBlockLog2      // ZeroOffset
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Rows         = value(Config, RowsField),
+  localparam int Columns      = value(Config, ColumnsField),
+  localparam int DataWidth    = value(Config, DataWidthField),
+  localparam int Lanes        = value(Config, LanesField),  // depths in a beat
+  localparam int FrameLatency = value(Config, FrameLatencyField),  // pixel_frame_end to the first word of the solver
+  localparam int ZeroOffset   = value(Config, ZeroOffsetField),
+  localparam int BlockLog2    = value(Config, BlockLog2Field)  // ZeroOffset
 ) (
   input  wire                         clk,
   input  wire                         rst,

@@ -12,8 +12,8 @@ module frame_tags
   import td_config_pkg::*;
 #(
   parameter int Width   = 34,
-  parameter int Latency = DefaultFrameLatency,  // from a frame's last pixel to its first depth, cycles
-  parameter int Pixels  = DefaultRows * DefaultSize
+  parameter int Latency = value(DefaultConfig, FrameLatencyField),  // from a frame's last pixel to its first depth
+  parameter int Pixels  = value(DefaultConfig, RowsField) * value(DefaultConfig, ColumnsField)
 ) (
   input  wire              clk,
   input  wire              rst,

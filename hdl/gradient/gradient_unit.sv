@@ -17,17 +17,18 @@ module gradient_unit
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Rows             = DefaultRows,
-  parameter int Columns          = DefaultSize,
-  parameter int GradientWidth    = DefaultGradientWidth,
-  parameter int BitsPerChannel   = DefaultBitsPerChannel,   // of a colour that index the table
-  parameter int FlatField        = DefaultFlatField,
-  parameter int Quadratic        = DefaultQuadratic,   // 1 needs FlatField
-  parameter int BlockLog2        = DefaultBlockLog2,   // from here: FlatField
-  parameter int GainWidth        = DefaultGainWidth,
-  parameter int CaptureLog2      = DefaultCaptureLog2,
-  parameter int ColourDrop       = DefaultColourDrop,
-  parameter int SlopeDrop        = DefaultSlopeDrop          // Quadratic
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Rows           = value(Config, RowsField),
+  localparam int Columns        = value(Config, ColumnsField),
+  localparam int GradientWidth  = value(Config, GradientWidthField),
+  localparam int BitsPerChannel = value(Config, BitsPerChannelField),  // of a colour that index the table
+  localparam int FlatField      = value(Config, FlatFieldField),
+  localparam int Quadratic      = value(Config, QuadraticField),  // 1 needs FlatField
+  localparam int BlockLog2      = value(Config, BlockLog2Field),  // from here: FlatField
+  localparam int GainWidth      = value(Config, GainWidthField),
+  localparam int CaptureLog2    = value(Config, CaptureLog2Field),
+  localparam int ColourDrop     = value(Config, ColourDropField),
+  localparam int SlopeDrop      = value(Config, SlopeDropField)  // Quadratic
 ) (
   input  wire                             clk,
   input  wire                             rst,

@@ -16,29 +16,30 @@ module poisson_unit
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Tridiagonal      = DefaultTridiagonal,   // solver: 0 spectral, 1 tridiagonal
-  parameter int Neumann          = DefaultNeumann,
-  parameter int Rows             = DefaultRows,
-  parameter int Columns          = DefaultSize,
-  parameter int GradientWidth    = DefaultGradientWidth,
-  parameter int DataWidth        = DefaultDataWidth,
-  parameter int CoeffWidth       = DefaultCoeffWidth,
-  parameter int RowForwardOut    = DefaultRowForwardOut,
-  parameter int ColumnForwardIn  = DefaultColumnForwardIn,
-  parameter int ColumnInverseOut = DefaultColumnInverseOut,
-  parameter int RowInverseIn     = DefaultRowInverseIn,
-  parameter int RowInverseOut    = DefaultRowInverseOut,
-  parameter int DivideShiftWidth = DefaultDivideShiftWidth,
-  parameter int DivideDrop       = DefaultDivideDrop,
-  parameter int StoreStyle       = DefaultStoreStyle,
-  parameter int TableWords       = DefaultTableWords,   // from here: tridiagonal
-  parameter int SettledWidth     = DefaultSettledWidth,
-  parameter int LastShiftWidth   = DefaultLastShiftWidth,
-  parameter int MomentDrop       = DefaultMomentDrop,
-  parameter int MeanReciprocal   = DefaultMeanReciprocal,
-  parameter int MeanDrop         = DefaultMeanDrop,
-  parameter int WordsPerRow      = DefaultWordsPerRow,
-  parameter int Lanes            = DefaultLanes,
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Tridiagonal      = value(Config, TridiagonalField),  // solver: 0 spectral, 1 tridiagonal
+  localparam int Neumann          = value(Config, NeumannField),
+  localparam int Rows             = value(Config, RowsField),
+  localparam int Columns          = value(Config, ColumnsField),
+  localparam int GradientWidth    = value(Config, GradientWidthField),
+  localparam int DataWidth        = value(Config, DataWidthField),
+  localparam int CoeffWidth       = value(Config, CoeffWidthField),
+  localparam int RowForwardOut    = value(Config, RowForwardOutField),
+  localparam int ColumnForwardIn  = value(Config, ColumnForwardInField),
+  localparam int ColumnInverseOut = value(Config, ColumnInverseOutField),
+  localparam int RowInverseIn     = value(Config, RowInverseInField),
+  localparam int RowInverseOut    = value(Config, RowInverseOutField),
+  localparam int DivideShiftWidth = value(Config, DivideShiftWidthField),
+  localparam int DivideDrop       = value(Config, DivideDropField),
+  localparam int StoreStyle       = value(Config, StoreStyleField),
+  localparam int TableWords       = value(Config, TableWordsField),  // from here: tridiagonal
+  localparam int SettledWidth     = value(Config, SettledWidthField),
+  localparam int LastShiftWidth   = value(Config, LastShiftWidthField),
+  localparam int MomentDrop       = value(Config, MomentDropField),
+  localparam int MeanReciprocal   = value(Config, MeanReciprocalField),
+  localparam int MeanDrop         = value(Config, MeanDropField),
+  localparam int WordsPerRow      = value(Config, WordsPerRowField),
+  localparam int Lanes            = value(Config, LanesField),
   localparam int ClippedWidth = 8 + $clog2(Lanes)
 ) (
   input  wire                             clk,

@@ -14,8 +14,9 @@ module video_unit
   import td_config_pkg::*;
   import td_types_pkg::*;
 #(
-  parameter int Rows    = DefaultRows,
-  parameter int Columns = DefaultSize
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Rows    = value(Config, RowsField),
+  localparam int Columns = value(Config, ColumnsField)
 ) (
   input  wire         clk,
   input  wire         rst,

@@ -126,7 +126,7 @@ Parts = tuple[list[Multiplier], list[Memory]]
 
 def _pipeline(p: dict[str, int]) -> Parts:
     """Count the parts of hdl/tactile_depth.sv."""
-    size, slope, data = p["Size"], p["GradientWidth"], p["DataWidth"]
+    size, slope, data = p["Columns"], p["GradientWidth"], p["DataWidth"]
     divergence = slope + 2
     rows = [
         Memory("row buffers", slope, size, "divergence"),  # the row above
@@ -147,7 +147,7 @@ def _colours(p: dict[str, int]) -> Parts:
         gain, log2, core = p["GainWidth"], p["BlockLog2"], "flat_field"
         # A node times its row weight, and a colour times its gain. Both are unsigned, so each needs one more bit.
         multipliers += [Multiplier(gain + 1, log2 + 3, core), Multiplier(gain + 1, 9, core)] * 3
-        memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Size"] >> log2), core)] * 6
+        memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
         memories += [Memory("delay lines", 3 * 8 + PIXEL_MARKS, GAIN_MAP, core)]
     if p["Quadratic"]:
         core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
@@ -164,7 +164,7 @@ def _zero(p: dict[str, int]) -> Parts:
         return [], []
     log2, data, lanes = p["BlockLog2"], p["DataWidth"], p["Lanes"]
     side = td_node_map.side(lanes, log2)  # nodes that are written at once
-    words = (p["Rows"] >> log2) * (p["Size"] >> log2) // side
+    words = (p["Rows"] >> log2) * (p["Columns"] >> log2) // side
     if lanes == 1:
         weight, tables, delay = log2 + 3, 2, GAIN_MAP
     else:  # each bank is held twice, for the nodes above and for those below
@@ -178,7 +178,7 @@ def _zero(p: dict[str, int]) -> Parts:
 
 
 def _spectral(p: dict[str, int]) -> Parts:
-    size, data, width, coefficient = p["Size"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
+    size, data, width, coefficient = p["Columns"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
     return _joined(
         _forward(p),
         ([], [Memory("frame stores", data, size * size, "transpose")] * 2),
@@ -194,7 +194,7 @@ def _spectral(p: dict[str, int]) -> Parts:
 
 
 def _tridiagonal(p: dict[str, int]) -> Parts:
-    size, rows, data, width, lanes = p["Size"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"]
+    size, rows, data, width, lanes = p["Columns"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"]
     packed = p["WordsPerRow"]
     row_number = (rows - 1).bit_length() + 2  # 1 to rows, signed
     mean = [Multiplier(width, row_number), Multiplier(width, p["CoeffWidth"])] if p["Neumann"] else []
@@ -221,7 +221,7 @@ def _thomas(p: dict[str, int], running: int) -> Parts:
         [
             Memory("row buffers", width, running),
             Memory("tables", coefficient, words),
-            Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Size"]),
+            Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Columns"]),
         ],
     )
 
@@ -229,13 +229,13 @@ def _thomas(p: dict[str, int], running: int) -> Parts:
 def _forward(p: dict[str, int]) -> Parts:
     """Count the parts of dst_forward.sv, which forms only the real part of the product with the phase."""
     phase = [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"])] * 2
-    phases = [Memory("tables", 3 * p["CoeffWidth"], p["Size"])]
+    phases = [Memory("tables", 3 * p["CoeffWidth"], p["Columns"])]
     return _in("dst_forward", *_joined(_fft(p, inverse=False), (phase, phases)))
 
 
 def _inverse(p: dict[str, int], in_width: int) -> Parts:
     """Count the parts of hdl/poisson/transform/dst_inverse.sv with its mode_pairs."""
-    size = p["Size"]
+    size = p["Columns"]
     memories = [
         Memory("delay lines", in_width, size // 2 + 1),
         Memory("row buffers", in_width, size),
@@ -248,7 +248,7 @@ def _inverse(p: dict[str, int], in_width: int) -> Parts:
 def _fft(p: dict[str, int], inverse: bool) -> Parts:
     """Count the parts of hdl/poisson/transform/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
     multipliers, memories = [], []
-    for stage in stages(p["Size"], inverse):
+    for stage in stages(p["Columns"], inverse):
         if stage.delay > LONGEST_SHIFT:
             memories.append(Memory("delay lines", 2 * (p["DataWidth"] + GUARD_BITS + 1), stage.delay))
         elif not stage.delay:

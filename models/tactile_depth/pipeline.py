@@ -26,7 +26,15 @@ from tactile_depth.poisson.divergence import divergence
 from tactile_depth.resampling import Resampling, resampling
 from tactile_depth.result import Result
 from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import slope_codes, slope_tables, solve, top_parameters, write_roms, zeroed
+from tactile_depth.tactile_depth import (
+    config_value,
+    slope_codes,
+    slope_tables,
+    solve,
+    top_parameters,
+    write_roms,
+    zeroed,
+)
 
 LARGEST_DEFAULT_COLUMNS = 128
 SYNTHETIC_GRID = (128, 128)
@@ -247,8 +255,8 @@ class Pipeline:
         Parameters
         ----------
         folder : path
-            Created if it is missing. Its `parameters.json` holds the parameters of hdl/tactile_depth.sv, the contact
-            threshold for the register, units, and the names of the tables.
+            Created if it is missing. Its `parameters.json` holds the parameters of hdl/tactile_depth.sv, the fields of
+            Config by name, the contact threshold for the register, units, and the names of the tables.
 
         Returns
         -------
@@ -262,8 +270,10 @@ class Pipeline:
         folder = Path(folder)
         with new_files(folder, PARAMETERS) as unfinished:
             write_roms(unfinished, self.sensor, self.config, self._zero, self._gains)
+            fields = top_parameters(self.config, self.pixel_pitch_mm)
             description = {
-                "parameters": top_parameters(self.config, self.pixel_pitch_mm),
+                "parameters": {"Config": config_value(fields)},
+                "fields": fields,
                 "registers": {"THRESHOLD": self._threshold},
                 "grid": list(self.grid),
                 "depth_lsb_mm": self.depth_lsb_mm,

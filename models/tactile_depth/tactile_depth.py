@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -60,8 +63,8 @@ CONSTANTS = {
     "ZeroLog2": (LARGEST_LOG2, "base-2 logarithm of the most frames in a capture of the zero offset"),
 }
 """Numbers that both the models and the RTL use, and that no configuration changes, with their meaning."""
-DERIVED = ("InWidth", "Width", "StoreDrop")
-"""Parameters of a solver that hdl/poisson/poisson_unit.sv derives."""
+DERIVED = ("Size", "InWidth", "Width", "StoreDrop")
+"""Parameters of a solver that hdl/poisson/poisson_unit.sv derives from fields."""
 
 
 @dataclass(frozen=True)
@@ -175,16 +178,51 @@ def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) 
 
 
 def top_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
-    """Return the parameters of hdl/tactile_depth.sv; the device tells its host the pitch of the grid, 0: unknown."""
+    """Return the number of each field of Config, the parameter of hdl/tactile_depth.sv.
+
+    The fields of an option that the configuration leaves out have the numbers of a configuration with the option. The
+    device tells its host the pitch of the grid, 0: unknown.
+    """
+    return default_parameters() | _own_parameters(config, pixel_pitch_mm)
+
+
+@cache
+def default_parameters() -> MappingProxyType[str, int]:
+    """Return the fields of the default configuration, in the order of the vector."""
+    flat = [Configuration(flat_field=True, gradient_model=model) for model in ("quadratic", "lut")]
+    options = [*flat, Configuration(zero_offset=True), Configuration(solver="tridiagonal")]
+    merged: dict[str, int] = {}
+    for config in (*options, Configuration()):
+        merged |= _own_parameters(config)
+    return MappingProxyType(merged)
+
+
+def config_value(fields: Mapping[str, int]) -> str:
+    """Return all fields as one number of SystemVerilog, 32 bits for each, the first in the lowest."""
+    order = list(default_parameters())
+    if fields.keys() != set(order):
+        raise ValueError(f"not the fields of Config: {fields.keys() ^ set(order)}")
+    words = sum((fields[name] & 0xFFFF_FFFF) << 32 * position for position, name in enumerate(order))
+    return f"{32 * len(order)}'h{words:x}"
+
+
+def hdl_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, str]:
+    """Return the parameters of hdl/tactile_depth.sv, as the tools take them by name."""
+    return {"Config": config_value(top_parameters(config, pixel_pitch_mm))}
+
+
+def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
+    """Return the fields that a configuration uses."""
     tridiagonal = config.solver == "tridiagonal"
     solver = tridiagonal_solver if tridiagonal else spectral_solver
     parameters = {"Size": config.columns, **solver.solver_parameters(config)}
     del parameters["Columns"]
     return {
-        **{name: value for name, value in parameters.items() if name not in DERIVED},
+        "Columns": config.columns,
         "Rows": config.rows,
         "Lanes": config.lanes,
         "Tridiagonal": int(tridiagonal),
+        **{name: value for name, value in parameters.items() if name not in DERIVED},
         "BitsPerChannel": config.bits_per_channel,
         "GradientWidth": config.gradient.width,
         "GradientFraction": config.gradient.fraction,

@@ -30,7 +30,7 @@ INPUTS = (
     *(f"{table}_status" for table in CAPTURES),
 )
 PARAMETERS = (
-    *("Tridiagonal", "Neumann", "Rows", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
+    *("Tridiagonal", "Neumann", "Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
     *("FlatField", "Quadratic", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
     *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
 )
@@ -48,7 +48,7 @@ class Checker:
     def __init__(self, dut: Any) -> None:
         self.dut = dut
         parameters = {name: getattr(dut, name).value.to_signed() for name in PARAMETERS}
-        self.build = Build(parameters | {"Size": dut.Columns.value.to_signed()})
+        self.build = Build(parameters)
         self.model = AxilRegisters(self.build, entry)
         self.port = AxilPort()
         self.late_answer = 0, Response.OKAY

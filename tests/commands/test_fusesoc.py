@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tactile_depth.core: its list of files is hdl/, and its generator writes the parameters and tables that the top
-reads."""
+"""tactile_depth.core: its list of files is hdl/, and its generator writes a module and its tables."""
 
 import json
 import os
@@ -18,8 +17,6 @@ from cocotb_tools.config import pygpi_entry_point
 from find_libpython import find_libpython
 
 from commands.common import repository, simulator
-from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import top_parameters
 
 CORE = repository.ROOT / "tactile_depth.core"
 
@@ -58,27 +55,17 @@ def test_the_generator_without_its_libraries_says_what_to_do(tmp_path: Path) -> 
     assert "run `make setup`" in ended.stderr
 
 
-def test_the_generator_writes_parameters_and_tables(tmp_path: Path) -> None:
-    assert generated(tmp_path, {"SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}).returncode == 0
-    made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
-    config = Configuration(columns=16, rows=8, solver="tridiagonal")
-    defaults = {name: parameter["default"] for name, parameter in made["parameters"].items()}
-    # The slopes of the calibration set the formats; all other parameters are the defaults.
-    assert defaults.keys() == top_parameters(config).keys()
-    assert (defaults["Rows"], defaults["Size"], defaults["Tridiagonal"]) == (8, 16, 1)
-    files = {name for file in made["filesets"]["tables"]["files"] for name in file}
-    assert files == {path.name for path in tmp_path.glob("*.hex")}
-    assert "gradient.hex" in files
-
-
-def test_with_a_name_it_writes_a_module(tmp_path: Path) -> None:
+def test_the_generator_writes_a_module_and_its_tables(tmp_path: Path) -> None:
     assert generated(tmp_path, {"NAME": "finger", "SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}).returncode == 0
     made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
-    assert "parameters" not in made
     assert made["filesets"]["module"]["files"] == ["tactile_depth_finger.sv"]
-    places = {place["copyto"] for file in made["filesets"]["tables"]["files"] for place in file.values()}
-    assert "finger/gradient.hex" in places
-    assert 'TableFolder = "finger/"' in (tmp_path / "tactile_depth_finger.sv").read_text()
+    files = {name: place["copyto"] for file in made["filesets"]["tables"]["files"] for name, place in file.items()}
+    assert files.keys() == {path.name for path in tmp_path.glob("*.hex")}
+    assert files["gradient.hex"] == "finger/gradient.hex"
+    module = (tmp_path / "tactile_depth_finger.sv").read_text()
+    assert 'TableFolder = "finger/"' in module
+    for field, number in {"Rows": 8, "Columns": 16, "Tridiagonal": 1}.items():
+        assert f"configuration[32*{field}Field+:32] = 32'd{number};" in module
 
 
 def fusesoc(folder: Path, *arguments: str, **environment: str) -> None:
@@ -146,6 +133,9 @@ def test_the_target_sim_runs_the_testbench_of_the_whole(tmp_path: Path, core: An
 
 
 def test_the_generator_refuses_what_it_does_not_know(tmp_path: Path) -> None:
-    result = generated(tmp_path, {"FRAMES": "ball"})
+    result = generated(tmp_path, {"NAME": "finger", "FRAMES": "ball"})
     assert result.returncode == 2
     assert "FRAMES: unknown variable" in result.stderr
+    result = generated(tmp_path, {"N": 16})
+    assert result.returncode == 2
+    assert "NAME=: accepted are small letters" in result.stderr

@@ -7,17 +7,15 @@ from typing import Any
 import pytest
 
 from tactile_depth.configuration import Configuration
-from tactile_depth.tactile_depth import top_parameters
-from tb.registers.register_file import PARAMETERS
+from tactile_depth.tactile_depth import config_value, default_parameters, top_parameters
 
 
 def built(**choices: Any) -> dict[str, int]:
-    """Return the parameters of the registers of a configuration."""
-    top = top_parameters(Configuration(**choices), 0.0634)
-    return {name: value for name, value in top.items() if name in PARAMETERS} | {"Columns": top["Size"]}
+    """Return the fields of a configuration."""
+    return top_parameters(Configuration(**choices), 0.0634)
 
 
-EXTREMES = {
+EXTREMES = default_parameters() | {
     "Tridiagonal": 1,
     "Neumann": 1,
     "Rows": 65535,
@@ -50,4 +48,4 @@ BUILDS = {"128": built(columns=128), "extremes": EXTREMES, "quadratic": QUADRATI
     regress_verilator=[("extremes",), ("quadratic",)],
 )
 def test_axil_registers(run_tb: Callable[..., None], build: Any) -> None:
-    run_tb("axil_registers", parameters=BUILDS[build])
+    run_tb("axil_registers", parameters={"Config": config_value(BUILDS[build])})

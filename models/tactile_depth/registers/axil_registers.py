@@ -42,7 +42,7 @@ class Build:
         """Number of entries of each table that TABLE_SELECT can name; 0: the build does not have the table."""
         p = self.parameters
         nodes = (
-            (p["Rows"] >> p["BlockLog2"]) * (p["Size"] >> p["BlockLog2"]) if p["FlatField"] or p["ZeroOffset"] else 0
+            (p["Rows"] >> p["BlockLog2"]) * (p["Columns"] >> p["BlockLog2"]) if p["FlatField"] or p["ZeroOffset"] else 0
         )
         sizes = {
             "gradient": 0 if p["Quadratic"] else 1 << 3 * p["BitsPerChannel"],
@@ -63,7 +63,7 @@ class Build:
         p, depth, slope = self.parameters, REGISTERS["DEPTH_UNIT"], REGISTERS["SLOPE_UNIT"]
         exponent = (1 << depth.field("exponent").width) - 1
         return {
-            "GRID": REGISTERS["GRID"].pack(rows=p["Rows"], columns=p["Size"]),
+            "GRID": REGISTERS["GRID"].pack(rows=p["Rows"], columns=p["Columns"]),
             "FORMAT": REGISTERS["FORMAT"].pack(
                 data_width=p["DataWidth"],
                 gradient_width=p["GradientWidth"],
