@@ -11,7 +11,7 @@
 module td_ram #(
   parameter int Width = 24,
   parameter int Depth = 16384,
-  parameter int Style = 1,  // 0: distributed, 1: block
+  parameter int Style = 3,  // as in hdl/common/td_ram.sv; ultra is block
   parameter     File  = "",
   localparam int AddressWidth = $clog2(Depth)
 ) (
@@ -24,10 +24,11 @@ module td_ram #(
   output logic [Width-1:0]        read_data
 );
 
+  localparam int AutoBits = 4096;
   localparam int Block = 16384;
   localparam int SliceWidth = Block >> AddressWidth;
 
-  if (Style == 0) begin : g_distributed
+  if (Style == 0 || (Style == 3 && Width * Depth <= AutoBits)) begin : g_distributed
     (* ram_style = "distributed", no_rw_check *) logic [Width-1:0] words[Depth];
     if (File != "") begin : g_file
       initial $readmemh(File, words);
@@ -51,7 +52,7 @@ module td_ram #(
       localparam int Bits = Width - Low < SliceWidth ? Width - Low : SliceWidth;
       (* ram_style = "block", no_rw_check *) logic [Bits-1:0] words[Depth];
       if (File != "") begin : g_file
-        initial $readmemh({File, ".", 8'(48 + s / 10), 8'(48 + s % 10)}, words);
+        initial $readmemh({File, ".", "0" + 8'(s / 10), "0" + 8'(s % 10)}, words);
       end
       always_ff @(posedge clk) begin
         if (write_en) words[write_address] <= write_data[Low+:Bits];

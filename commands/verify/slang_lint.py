@@ -6,6 +6,7 @@
 prints the findings; exit status 1 if there are any.
 """
 
+import math
 import re
 import sys
 from collections import Counter
@@ -32,8 +33,8 @@ class Finding:
 
 def width(name: str) -> int | None:
     """Return the bits of a packed type by its name; None for other types."""
-    if match := re.fullmatch(r"(?:logic|bit|reg)(?: signed)?(?:\[(-?\d+):(-?\d+)\])?", name):
-        return abs(int(match[1]) - int(match[2])) + 1 if match[1] else 1
+    if match := re.fullmatch(r"(?:logic|bit|reg)(?: signed)?((?:\[-?\d+:-?\d+\])*)", name):
+        return math.prod(abs(int(a) - int(b)) + 1 for a, b in re.findall(r"(-?\d+):(-?\d+)", match[1]))
     return {"int": 32, "integer": 32}.get(name)
 
 
@@ -65,6 +66,7 @@ WAIVERS = (
         lambda f: same_width(f) and f.source.startswith(("==", "!=")),
         "equality of words of one width compares bits",
     ),
+    Waiver("packed-array-conv", same_width, "a delay line of words takes the concatenation of its words, as many bits"),
     Waiver("case-type", same_width, "equality of words of one width compares bits"),
     Waiver(
         "arith-op-mismatch",

@@ -28,10 +28,10 @@ module fv_back_substitution #(
   localparam int InWidth = 2;
   localparam int Width = 3;
   localparam int CoeffWidth = 3;
-  localparam int Lift = 1;
+  localparam int Drop = -1;
   localparam int SettledWidth = 2;
   localparam int LastShiftWidth = 1;
-  localparam int Aligned = InWidth + Lift + CoeffWidth - 1;
+  localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
   localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
 
   logic started = 1'b0;
@@ -57,7 +57,7 @@ module fv_back_substitution #(
   logic [$clog2(Lanes+1)-1:0] saturations;
   back_substitution #(
     .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .InWidth(InWidth),
-    .Lift(Lift),
+    .Drop(Drop),
     .TableWords(Words), .SettledWidth(SettledWidth)
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
@@ -125,7 +125,7 @@ module fv_back_substitution #(
         {d_q, c_q, lane_q2, of_first_row_q} <= {d, c, lane_q, of_first_row};
       end
       if (old[4]) product <= below_q * c_q;
-      if (old[5]) exact <= (ExactWidth'(d_q) <<< (Lift + CoeffWidth - 1)) - ExactWidth'(product);
+      if (old[5]) exact <= (ExactWidth'(d_q) <<< (CoeffWidth - 1 - Drop)) - ExactWidth'(product);
       if (old[6]) below <= z;
     end
     if (rst) begin

@@ -56,9 +56,9 @@ module td_async_fifo #(
     end
   end
 
-  for (genvar place = 0; place < Depth; place++) begin : g_word
+  for (genvar n = 0; n < Depth; n++) begin : g_word
     always_ff @(posedge write_clk) begin
-      if (enters && written[DepthLog2-1:0] == DepthLog2'(place)) words[place] <= write_data;
+      if (enters && written[DepthLog2-1:0] == DepthLog2'(n)) words[n] <= write_data;
     end
   end
 

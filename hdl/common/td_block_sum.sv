@@ -57,16 +57,17 @@ module td_block_sum #(
   logic [3:0] row_ends_q = '0;  // a cycle before the first reset writes nothing
   logic [3:0] completes_q;
   logic [1:0] begins_q;
-  logic [BlockWidth-1:0] block, block_q, block_q2, block_q3, block_q4;
+  logic [BlockWidth-1:0] block;
+  logic [3:0][BlockWidth-1:0] block_q;
   assign row_ends = valid_q & (column & InBlock) == InBlock & row < RowWidth'($unsigned(BlockRows << BlockLog2));
   assign begins = first_frame & row[BlockLog2-1:0] == '0;
   assign completes = last_frame & row[BlockLog2-1:0] == '1;
   assign block = BlockWidth'({row[RowWidth-1:BlockLog2], column[ColumnWidth-1:ColumnLog2]});
 
   assign read_en = row_ends_q[0] & ~begins_q[0];
-  assign read_block = block_q;
+  assign read_block = block_q[0];
   assign write_en = row_ends_q[3];
-  assign write_block = block_q4;
+  assign write_block = block_q[3];
   assign write_complete = row_ends_q[3] & completes_q[3];
 
   always_ff @(posedge clk) begin
@@ -79,7 +80,7 @@ module td_block_sum #(
     row_ends_q <= {row_ends_q[2:0], row_ends};
     begins_q <= {begins_q[0], begins};
     completes_q <= {completes_q[2:0], completes};
-    {block_q4, block_q3, block_q2, block_q} <= {block_q3, block_q2, block_q, block};
+    block_q <= {block_q[2:0], block};
     if (rst) begin
       valid_q <= 1'b0;
       row_ends_q <= '0;
@@ -88,7 +89,8 @@ module td_block_sum #(
 
   for (genvar c = 0; c < Channels; c++) begin : g_channel
     logic [Width-1:0] word;
-    logic [RowSumWidth-1:0] row_sum, row_sum_q, row_sum_q2;
+    logic [RowSumWidth-1:0] row_sum;
+    logic [1:0][RowSumWidth-1:0] row_sum_q;
     logic [SumWidth-1:0] sum, sum_read;
     assign word = data_q[c*Width+:Width];
     assign write_sums[c*SumWidth+:SumWidth] = sum;
@@ -97,9 +99,9 @@ module td_block_sum #(
         row_sum <= ((column & InBlock) == '0 ? '0 : row_sum)
             + (Signed != 0 ? RowSumWidth'($signed(word)) : RowSumWidth'(word));
       end
-      {row_sum_q2, row_sum_q} <= {row_sum_q, row_sum};
+      row_sum_q <= {row_sum_q[0], row_sum};
       sum_read <= begins_q[1] ? '0 : read_sums[c*SumWidth+:SumWidth];
-      sum <= sum_read + {{(SumWidth - RowSumWidth) {Signed != 0 & row_sum_q2[RowSumWidth-1]}}, row_sum_q2};
+      sum <= sum_read + {{(SumWidth - RowSumWidth) {Signed != 0 & row_sum_q[1][RowSumWidth-1]}}, row_sum_q[1]};
     end
   end
 

@@ -18,16 +18,15 @@ module td_delay_line #(
 );
 
   localparam int LongestShift = 4;
-  localparam int BlockBits = 4096;
 
   if (Delay <= LongestShift) begin : g_shift
-    logic [Delay*Width-1:0] taps;  // the oldest word on top
+    logic [Delay-1:0][Width-1:0] taps;  // the oldest word on top
     if (Delay == 1) begin : g_one
       always_ff @(posedge clk) if (en) taps <= in;
     end else begin : g_many
-      always_ff @(posedge clk) if (en) taps <= {taps[(Delay-1)*Width-1:0], in};
+      always_ff @(posedge clk) if (en) taps <= {taps[Delay-2:0], in};
     end
-    assign out = taps[Delay*Width-1-:Width];
+    assign out = taps[Delay-1];
     logic unused_rst;
     assign unused_rst = rst;
   end else begin : g_memory
@@ -36,11 +35,7 @@ module td_delay_line #(
     logic [AddressWidth-1:0] pointer;
     logic [AddressWidth-1:0] pointer_next;
     assign pointer_next = (pointer == AddressWidth'(Delay - 1)) ? '0 : pointer + AddressWidth'(1);
-    td_ram #(
-      .Width(Width),
-      .Depth(Delay),
-      .Style((Width * Delay > BlockBits) ? 1 : 0)
-    ) u_ram (
+    td_ram #(.Width(Width), .Depth(Delay)) u_ram (
       .clk          (clk),
       .write_en     (en),
       .write_address(pointer),

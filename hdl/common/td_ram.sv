@@ -10,7 +10,7 @@
 module td_ram #(
   parameter int Width = 24,
   parameter int Depth = 16384,
-  parameter int Style = 1,  // 0: distributed, 1: block, 2: ultra
+  parameter int Style = 3,  // 0: distributed, 1: block, 2: ultra, 3: block above AutoBits, else distributed
   parameter     File  = "",
   localparam int AddressWidth = $clog2(Depth)
 ) (
@@ -23,7 +23,10 @@ module td_ram #(
   output logic [Width-1:0]        read_data
 );
 
-  case (Style)  // not else if: Yosys' own front end would count that as a scope
+  localparam int AutoBits = 4096;  // below this LUTs are cheaper than a block RAM
+  localparam int Built = Style != 3 ? Style : Width * Depth > AutoBits ? 1 : 0;
+
+  case (Built)  // not else if: Yosys' own front end would count that as a scope
     0: begin : g_distributed
       (* ram_style = "distributed", no_rw_check *) logic [Width-1:0] words[Depth];
       if (File != "") begin : g_file

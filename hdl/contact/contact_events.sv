@@ -5,22 +5,11 @@
 //        \-> centroid --> record_packets --> record, m_event
 //
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat, raster order or,
-// BottomFirst, bottom row first; they are never held back. A frame that begins inside another begins afresh. Settings
-// and in_time are taken with a frame's first beat. From the last beat of a frame to that of the next lie at least
-// Latency cycles: a solver begins a frame every Rows Columns cycles, whatever Lanes is. Gaps change nothing.
-//
-// Record: 13 words of 32 bits, word n in bits 32 n + 31 to 32 n, kept until the next; zero after a reset. Words 4 to 12
-// are zero for a frame with nothing above the threshold. Positions are {row, column} in 31:16 and 15:0, with rows
-// counted from the top of the picture.
-//    0 bit 0 touching, 1 it began with this frame, 2 it ended with this frame
-//    1 number of the frame, from 1, modulo 2^32   2 in_time   3 area: depths above the threshold
-//    4 highest depth, signed   5 its position, of equals the first in stream order
-//    6, 7 least and greatest row and column of those above   8, 9 sums of their columns and of their rows
-//   10, 11 sum of their depths, signed, low word first   12 centroid, {row, column}, with 4 fraction bits
-//
-// Stream out: each record as a packet (record_packets). Latency: the record is in its register Latency =
-// 2 log2(larger side) + 16 + log2(Lanes) cycles after the last beat, touching 3 cycles after it. Bit-accurate model:
-// models/tactile_depth/contact/contact_events.py.
+// BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
+// begins afresh. Settings and in_time are taken with a frame's first beat. From the last beat of a frame to that of the
+// next lie at least Latency cycles. Stream out: the record of each frame, docs/registers.md, as a packet. Latency: the
+// record is in its register, until the next, Latency = 2 log2(larger side) + 16 + log2(Lanes) cycles after the last
+// beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/contact/contact_events.py.
 
 `default_nettype none
 

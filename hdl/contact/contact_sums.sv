@@ -45,7 +45,7 @@ module contact_sums
 
   localparam int OffsetWidth = Lanes > 1 ? $clog2(Lanes) : 1;  // of a depth in its beat
   localparam int CountWidth = $clog2(Lanes + 1);
-  localparam int Behind = $clog2(Lanes) + 1;  // cycles from the comparison to the sums of a beat
+  localparam int SumDelay = $clog2(Lanes) + 1;  // cycles from the comparison to the sums of a beat
 
   function automatic logic [CountWidth-1:0] ones(input logic [Lanes-1:0] bits);
     ones = '0;
@@ -55,7 +55,7 @@ module contact_sums
   // A count of depths times their row, or times the first column of their beat.
   function automatic logic [31:0] times(input logic [CountWidth-1:0] count, input logic [15:0] position);
     times = '0;
-    for (int place = 0; place < CountWidth; place++) if (count[place]) times = times + (32'(position) << place);
+    for (int b = 0; b < CountWidth; b++) if (count[b]) times = times + (32'(position) << b);
   endfunction
 
   // Row and first column of each beat, and which of its depths are above either threshold.
@@ -68,7 +68,7 @@ module contact_sums
   assign row = ~frame_start ? next_row : BottomFirst != 0 ? RowWidth'(Rows - 1) : '0;
 
   logic signed [31:0] on_q, off_q;
-  logic [Lanes*Width-1:0] data_q;
+  logic [1:0][Lanes*Width-1:0] data_q;
   logic [Lanes-1:0] above_on, above_off;
   logic valid_q, frame_start_q, frame_end_q;
   always_ff @(posedge clk) begin
@@ -82,7 +82,7 @@ module contact_sums
     end
     column_q <= column;
     row_q <= row;
-    data_q <= in_data;
+    data_q <= {data_q[0], in_data};
     valid_q <= in_valid;
     frame_start_q <= frame_start;
     frame_end_q <= in_position.frame_end;
@@ -100,28 +100,26 @@ module contact_sums
   // Area. The first beat of the next frame may be here in the cycle of area_valid.
 
   logic [Lanes-1:0] above, above_q;
-  logic [Lanes*Width-1:0] data_q2;
-  logic [Behind-1:0] valid_behind, start_behind, end_behind;
-  logic [Behind*ColumnWidth-1:0] column_behind;
-  logic [Behind*RowWidth-1:0] row_behind;
+  logic [SumDelay-1:0] valid_delayed, start_delayed, end_delayed;
+  logic [SumDelay-1:0][ColumnWidth-1:0] column_delayed;
+  logic [SumDelay-1:0][RowWidth-1:0] row_delayed;
   assign above = touching ? above_off : above_on;
   always_ff @(posedge clk) begin
     if (valid_q) area <= (frame_start_q ? '0 : area) + AreaWidth'(ones(above));
     above_q <= above;
-    data_q2 <= data_q;
-    column_behind <= (Behind * ColumnWidth)'({column_behind, column_q});
-    row_behind <= (Behind * RowWidth)'({row_behind, row_q});
-    valid_behind <= Behind'({valid_behind, valid_q});
-    start_behind <= Behind'({start_behind, frame_start_q});
-    end_behind <= Behind'({end_behind, valid_q & frame_end_q});
-    sums_valid <= end_behind[Behind-1];
+    column_delayed <= (SumDelay * ColumnWidth)'({column_delayed, column_q});
+    row_delayed <= (SumDelay * RowWidth)'({row_delayed, row_q});
+    valid_delayed <= SumDelay'({valid_delayed, valid_q});
+    start_delayed <= SumDelay'({start_delayed, frame_start_q});
+    end_delayed <= SumDelay'({end_delayed, valid_q & frame_end_q});
+    sums_valid <= end_delayed[SumDelay-1];
     if (rst) begin
-      valid_behind <= '0;
-      end_behind <= '0;
+      valid_delayed <= '0;
+      end_delayed <= '0;
       sums_valid <= 1'b0;
     end
   end
-  assign area_valid = end_behind[0];
+  assign area_valid = end_delayed[0];
 
   // Sums of a beat: for one lane those of its depth.
 
@@ -132,13 +130,13 @@ module contact_sums
   logic signed [Width-1:0] beat_peak;
   logic [ColumnWidth-1:0] first_column, beat_peak_column, beat_least, beat_greatest;
   logic [RowWidth-1:0] beat_row;
-  assign first_column = column_behind[(Behind-1)*ColumnWidth+:ColumnWidth];
-  assign beat_row = row_behind[(Behind-1)*RowWidth+:RowWidth];
+  assign first_column = column_delayed[SumDelay-1];
+  assign beat_row = row_delayed[SumDelay-1];
   if (Lanes == 1) begin : g_one_lane
     assign beat_count = above_q;
     assign beat_columns = ColumnSumWidth'(first_column);
     assign beat_rows = RowSumWidth'(beat_row);
-    assign beat_peak = data_q2;
+    assign beat_peak = data_q[1];
     assign beat_volume = VolumeWidth'(beat_peak);
     assign {beat_peak_column, beat_least, beat_greatest} = {3{first_column}};
   end else begin : g_lanes
@@ -146,7 +144,7 @@ module contact_sums
     logic [OffsetWidth-1:0] peak_offset, least_offset, greatest_offset;
     logic signed [Width+OffsetWidth-1:0] volume_of_beat;
     beat_sums #(.Width(Width), .Lanes(Lanes)) u_beat (
-      .clk, .above(above_q), .data(data_q2), .count(beat_count), .offset_sum, .volume(volume_of_beat),
+      .clk, .above(above_q), .data(data_q[1]), .count(beat_count), .offset_sum, .volume(volume_of_beat),
       .peak(beat_peak), .peak_offset, .least_offset, .greatest_offset
     );
     assign beat_columns = ColumnSumWidth'(times(beat_count, 16'(first_column))) + ColumnSumWidth'(offset_sum);
@@ -167,9 +165,9 @@ module contact_sums
   logic [RowWidth-1:0] peak_row, first_row, last_row, least_row, greatest_row;
   logic [ColumnWidth-1:0] peak_column, least_column, greatest_column;
   assign any_in_beat = beat_count != '0;
-  assign first_above = start_behind[Behind-1] | ~any_above;
+  assign first_above = start_delayed[SumDelay-1] | ~any_above;
   always_ff @(posedge clk) begin
-    if (valid_behind[Behind-1]) begin
+    if (valid_delayed[SumDelay-1]) begin
       any_above <= any_in_beat | ~first_above;
       if (any_in_beat) begin
         column_sum <= (first_above ? '0 : column_sum) + beat_columns;
@@ -185,11 +183,18 @@ module contact_sums
   end
   assign least_row = BottomFirst != 0 ? last_row : first_row;
   assign greatest_row = BottomFirst != 0 ? first_row : last_row;
-  assign sums = ~any_above ? '0 : {
-    64'(volume), 32'(row_sum), 32'(column_sum),
-    16'(greatest_row), 16'(greatest_column), 16'(least_row), 16'(least_column),
-    16'(peak_row), 16'(peak_column), 32'(peak)
-  };
+  contact_sums_t frame_sums;
+  assign frame_sums.volume = 64'(volume);
+  assign frame_sums.row_sum = 32'(row_sum);
+  assign frame_sums.column_sum = 32'(column_sum);
+  assign frame_sums.greatest_row = 16'(greatest_row);
+  assign frame_sums.greatest_column = 16'(greatest_column);
+  assign frame_sums.least_row = 16'(least_row);
+  assign frame_sums.least_column = 16'(least_column);
+  assign frame_sums.peak_row = 16'(peak_row);
+  assign frame_sums.peak_column = 16'(peak_column);
+  assign frame_sums.peak = 32'(peak);
+  assign sums = any_above ? frame_sums : '0;
 
   if (Width < 2 || Width > 32) begin : g_refused_0
     Width_must_be_2_to_32 u_refused ();

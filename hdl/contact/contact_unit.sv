@@ -33,7 +33,7 @@ module contact_unit
   input  wire  [31:0]                 now,
   output logic                        frame_leaves,         // its last depth value does
   output logic                        depth_dropped,        // a frame was given up
-  output logic                        record_valid,         // the record is new in this clock
+  output logic                        record_valid,         // the record is new in this cycle
   output logic                        record_lost,
   output logic                        touching,
   output logic [32*RecordWords-1:0]   record,               // of the last frame

@@ -2,17 +2,16 @@
 // depth_gate: the way out of the depth stream; it waits for the sink, or drops frames.
 //
 //   drop_frames 0: the pipeline waits for the sink (en low), and nothing is lost
-//   drop_frames 1: the pipeline does not wait; a frame with a word that finds no room is given up: its words so far
-//                  have left, the others do not follow, and event_dropped is high for one cycle. The next frame leaves
-//                  from its first word on if that finds room, else it is given up whole.
+//   drop_frames 1: the pipeline does not wait; a frame with a word that finds no room is given up from that word on,
+//                  and event_dropped is high for one cycle
 //
 // drop_frames counts as it is in the cycle before a frame's first word comes. Stream in: the words of whole frames,
 // under en, each frame in successive enabled cycles (frame_output). Stream out: the same under valid and ready, two
-// words deep; every output comes from a register; a word that is offered stays until it is taken. Latency: 1 cycle.
-// `tap_` is the stream as the comparator and contact_events see it: each word once, in order; with 0 in the cycle in
-// which it leaves, with 1 a cycle after it came, which is when it would leave, given up or not. Words that a sink has
-// left standing when 0 turns to 1 are tapped first, one a cycle: for that, and for nothing else, en is low with 1, for
-// one cycle. Cycle-accurate model: models/tactile_depth/contact/depth_gate.py.
+// words deep, every output from a register. Latency: 1 cycle.
+// `tap_` is the stream for the comparator and contact_events: each word once, in order; with 0 in the cycle in which it
+// leaves, with 1 a cycle after it came, given up or not. When 0 turns to 1, words that wait for the sink are tapped
+// first, one a cycle: for that alone en is low with 1, for one cycle. Cycle-accurate model:
+// models/tactile_depth/contact/depth_gate.py.
 
 `default_nettype none
 

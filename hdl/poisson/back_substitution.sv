@@ -4,9 +4,9 @@
 //   z[i] = d[i] - c[i] z[i+1],  z[Rows] = 0
 //
 // Stream in: bursts of Columns words d, Rows of them a frame, last row first, to the lanes in turn; with more than one,
-// each row Columns / Lanes clocks after the row before. Stream out: the same bursts of z, Width bits. Latency: 8
+// each row Columns / Lanes cycles after the row before. Stream out: the same bursts of z, Width bits. Latency: 8
 // cycles; en low: nothing moves. The lanes are a ring: each takes z of the row below from the lane before it, the first
-// from the last. z waits in a memory; where a row is 4 clocks behind the row before, it goes straight into the next
+// from the last. z waits in a memory; where a row is 4 cycles behind the row before, it goes straight into the next
 // product. One multiplier for each lane. Bit-accurate model: models/tactile_depth/poisson/back_substitution.py.
 
 `default_nettype none
@@ -19,7 +19,7 @@ module back_substitution #(
   parameter int Columns      = 128,
   parameter int Lanes        = 1,
   parameter int InWidth      = 24,
-  parameter int Lift         = 3,  // fraction bits of z beyond those of d
+  parameter int Drop         = -3,  // fraction bits from d to z; negative: added
   parameter int TableWords   = 1379,
   parameter int SettledWidth = 7,
   localparam int ClippedWidth = $clog2(Lanes + 1)
@@ -32,19 +32,20 @@ module back_substitution #(
   input  wire  [Lanes*InWidth-1:0] in_data,         // d for each lane, F fraction bits
   output logic [Lanes-1:0]         out_start,
   output logic [Lanes-1:0]         out_frame_start,
-  output logic [Lanes*Width-1:0]   out_data,        // z for each lane, F + Lift fraction bits
-  output logic [ClippedWidth-1:0]  saturations      // values clipped in a cycle
+  output logic [Lanes*Width-1:0]   out_data,        // z for each lane, F - Drop fraction bits
+  output logic [ClippedWidth-1:0]  saturations      // clip count, delayed
 );
 
   localparam int PositionWidth = $clog2(Columns);
   localparam int RowWidth = $clog2(Rows);
-  localparam int Step = Columns / Lanes;  // clocks from a row to the row above
+  localparam int Step = Columns / Lanes;  // cycles from a row to the row above
   localparam int StepWidth = $clog2(Step);
   localparam int ProductWidth = Width + CoeffWidth;
-  localparam int Align = Lift + CoeffWidth - 1;
+  localparam int Align = CoeffWidth - 1 - Drop;
   localparam int SumWidth = (InWidth + Align > ProductWidth ? InWidth + Align : ProductWidth) + 1;
   localparam int ToSum = 7;
-  localparam int Direct = 4;  // clocks from the product with z of the row below to z
+  localparam int Direct = 4;  // cycles from the product with z of the row below to z
+  localparam int ToBelow = Step == Direct ? 4 : 3;  // cycles to z of the row below, or to the register before it
 
   logic [Lanes-1:0] clipped_q;
 
@@ -70,11 +71,12 @@ module back_substitution #(
 
     logic [ToSum:0] active_q;
     logic [ToSum-1:0] start_q, frame_start_q;
-    logic signed [InWidth-1:0] data_q, data_q2, data_q3, data_q4, data_q5, data_q6;
+    logic [ToSum-2:0][InWidth-1:0] data_q;
     logic signed [Width-1:0] below, rounded;
     logic signed [ProductWidth-1:0] product;
     logic signed [SumWidth-1:0] sum;
-    logic first_q, first_q2, first_q3, clipped;
+    logic [ToBelow-1:0] first_q;  // the row is a frame's last: no row is below
+    logic clipped;
     td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
       .clk, .en, .a(below), .b(coefficient), .product
     );
@@ -87,17 +89,10 @@ module back_substitution #(
         start_q <= {start_q[ToSum-2:0], in_start[lane]};
         frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start[lane]};
         active_q <= {active_q[ToSum-1:0], active};
-        first_q <= lane == 0 && row == RowWidth'(Rows - 1);
-        first_q2 <= first_q;
-        first_q3 <= first_q2;
+        first_q <= {first_q[ToBelow-2:0], lane == 0 && row == RowWidth'(Rows - 1)};
         row_q <= row - (active && position == PositionWidth'(Columns - 1) ? RowWidth'(Lanes) : '0);
-        data_q <= in_data[lane*InWidth+:InWidth];
-        data_q2 <= data_q;
-        data_q3 <= data_q2;
-        data_q4 <= data_q3;
-        data_q5 <= data_q4;
-        data_q6 <= data_q5;
-        sum <= (SumWidth'(data_q6) <<< Align) - SumWidth'(product);
+        data_q <= {data_q[ToSum-3:0], in_data[lane*InWidth+:InWidth]};
+        sum <= (SumWidth'($signed(data_q[ToSum-2])) <<< Align) - SumWidth'(product);
         out_data[lane*Width+:Width] <= rounded;
         out_start[lane] <= start_q[ToSum-1];
         out_frame_start[lane] <= frame_start_q[ToSum-1];
@@ -115,34 +110,24 @@ module back_substitution #(
 
     // z of the row below, out of the lane before.
     if (Step == Direct) begin : g_direct
-      logic first_q4;
-      always_ff @(posedge clk) begin
-        if (en) begin
-          first_q4 <= first_q3;
-          below <= first_q4 ? '0 : out_data[Before*Width+:Width];
-        end
-      end
+      always_ff @(posedge clk) if (en) below <= first_q[ToBelow-1] ? '0 : out_data[Before*Width+:Width];
     end else begin : g_waits
-      // A word is read before the next one comes to its place, Step clocks behind it.
-      logic [(ToSum+1)*StepWidth-1:0] position_q;  // in the row of words that are below
+      // A word is read before the next one is written over it, Step cycles later.
+      logic [ToSum:0][StepWidth-1:0] position_q;  // in the row of words that are below
       logic signed [Width-1:0] waiting, below_q;
-      td_ram #(
-        .Width(Width),
-        .Depth(Step),
-        .Style((Width * Step > 4096) ? 1 : 0)
-      ) u_row_below (
+      td_ram #(.Width(Width), .Depth(Step)) u_row_below (
         .clk,
         .write_en     (en & g_lane[Before].active_q[ToSum]),
-        .write_address(g_lane[Before].g_waits.position_q[ToSum*StepWidth+:StepWidth]),
+        .write_address(g_lane[Before].g_waits.position_q[ToSum]),
         .write_data   (out_data[Before*Width+:Width]),
         .read_en      (en & active_q[1]),
-        .read_address (position_q[StepWidth+:StepWidth]),
+        .read_address (position_q[1]),
         .read_data    (waiting)
       );
       always_ff @(posedge clk) begin
         if (en) begin
-          position_q <= {position_q[ToSum*StepWidth-1:0], position[StepWidth-1:0]};
-          below_q <= first_q3 ? '0 : waiting;
+          position_q <= {position_q[ToSum-1:0], position[StepWidth-1:0]};
+          below_q <= first_q[ToBelow-1] ? '0 : waiting;
           below <= below_q;
         end
       end

@@ -38,11 +38,7 @@ module divergence
   logic signed [Width-1:0] gx_q, gy_q, gx_left, gy_above, gx_stored, gy_stored;
 
   // Read while the pixel is taken, written one cycle later, so never the same word at once.
-  td_ram #(
-    .Width(Width),
-    .Depth(Columns),
-    .Style((Width * Columns > 4096) ? 1 : 0)
-  ) u_line (
+  td_ram #(.Width(Width), .Depth(Columns)) u_line (
     .clk,
     .write_en     (en & valid_q),
     .write_address(column_q),

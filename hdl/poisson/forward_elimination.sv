@@ -37,7 +37,7 @@ module forward_elimination #(
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,        // d, F - StoreDrop fraction bits
-  output logic [2:0]                 saturations      // values clipped in a cycle, a little ago
+  output logic [2:0]                 saturations      // clip count, delayed
 );
 
   localparam int PositionWidth = $clog2(Columns);
@@ -65,22 +65,19 @@ module forward_elimination #(
 
   // What follows a word down the pipeline.
   logic [ToState-1:0] start_q, frame_start_q, active_q, singular_q;  // singular: position 0 of the last row
-  logic [ToState*PositionWidth-1:0] position_q;
-  logic first_row_q, first_row_q2, first_row_q3;
-  logic signed [Width-1:0] data_q, data_q2, data_q3, state, state_or_zero;
+  logic [ToState-1:0][PositionWidth-1:0] position_q;
+  logic [2:0] first_row_q;
+  logic [2:0][Width-1:0] data_q;
+  logic signed [Width-1:0] state, state_or_zero;
   always_ff @(posedge clk) begin
     if (en) begin
       start_q <= {start_q[ToState-2:0], in_start};
       frame_start_q <= {frame_start_q[ToState-2:0], in_frame_start};
       active_q <= {active_q[ToState-2:0], active};
       singular_q <= {singular_q[ToState-2:0], in_start & (row == RowWidth'(Rows - 1))};
-      position_q <= {position_q[(ToState-1)*PositionWidth-1:0], position};
-      first_row_q <= row == '0;
-      first_row_q2 <= first_row_q;
-      first_row_q3 <= first_row_q2;
-      data_q <= in_data;
-      data_q2 <= data_q;
-      data_q3 <= data_q2;
+      position_q <= {position_q[ToState-2:0], position};
+      first_row_q <= {first_row_q[1:0], row == '0};
+      data_q <= {data_q[1:0], in_data};
       row_q <= row + RowWidth'(active & (position == PositionWidth'(Columns - 1)));
     end
     if (rst) begin
@@ -91,16 +88,17 @@ module forward_elimination #(
   end
 
   // Difference, product, shift, rounding.
-  assign state_or_zero = first_row_q3 ? '0 : state;
-  logic signed [Width-1:0] difference, difference_q, difference_q2, rounded, d, chosen;
+  assign state_or_zero = first_row_q[2] ? '0 : state;
+  logic [1:0][Width-1:0] difference_q;
+  logic signed [Width-1:0] difference, rounded, d, chosen;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
   logic [2:0] clipped, clipped_q;
   td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-    .clk, .en, .a(difference_q2), .b(coefficient), .product
+    .clk, .en, .a(difference_q[1]), .b(coefficient), .product
   );
   td_round_saturate #(.InWidth(Width + 1), .Drop(0), .OutWidth(Width)) u_difference (
-    .in((Width + 1)'(data_q3) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
+    .in((Width + 1)'($signed(data_q[2])) - (Width + 1)'(state_or_zero)), .out(difference), .clipped(clipped[0])
   );
   td_round_saturate #(.InWidth(ShiftedWidth), .Drop(CoeffWidth - 1), .OutWidth(Width)) u_state (
     .in(shifted), .out(rounded), .clipped(clipped[1])
@@ -111,8 +109,7 @@ module forward_elimination #(
   );
   always_ff @(posedge clk) begin
     if (en) begin
-      difference_q <= difference;
-      difference_q2 <= difference_q;
+      difference_q <= {difference_q[0], difference};
       shift_q <= shift;
       shifted <= ShiftedWidth'(product) <<< shift_q;
       d <= chosen;
@@ -130,23 +127,19 @@ module forward_elimination #(
     end
   end
 
-  td_ram #(
-    .Width(Width),
-    .Depth(Columns),
-    .Style((Width * Columns > 4096) ? 1 : 0)
-  ) u_state_row (
+  td_ram #(.Width(Width), .Depth(Columns)) u_state_row (
     .clk,
     .write_en     (en & active_q[ToState-1]),
-    .write_address(position_q[(ToState-1)*PositionWidth+:PositionWidth]),
+    .write_address(position_q[ToState-1]),
     .write_data   (d),
     .read_en      (en & active_q[1]),
-    .read_address (position_q[PositionWidth+:PositionWidth]),
+    .read_address (position_q[1]),
     .read_data    (state)
   );
 
   logic [1:0] clipped_mean;
   if (Neumann != 0) begin : g_mean
-    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Columns clocks lie between the last addend and
+    // Sum over rows of (row + 1) d at position 0, then times 1 / Rows: Columns cycles lie between the last addend and
     // its use.
     localparam int MomentWidth = Width + 2 * RowWidth + 2;
     logic [RowWidth:0] weight;  // of d, row + 1
@@ -154,7 +147,7 @@ module forward_elimination #(
     logic signed [MomentWidth-1:0] moment;
     logic signed [Width-1:0] sum, sum_q, mean;
     logic signed [ProductWidth-1:0] scaled;
-    logic [3:0] after;  // clocks since d at position 0 was there
+    logic [3:0] after;  // cycles since d at position 0 was there
     logic [1:0] clipped_now;
     td_multiply #(.AWidth(Width), .BWidth(RowWidth + 2)) u_addend (
       .clk, .en(en & start_q[ToState-1]), .a(d), .b({1'b0, weight}), .product(addend)

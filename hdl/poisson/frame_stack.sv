@@ -2,7 +2,7 @@
 // frame_stack: rows of a frame in, last row first out, through one memory that holds a frame, to one or more lanes.
 //
 // Stream in: bursts of Columns words, Rows of them a frame, gaps between bursts anywhere; rows count from a frame's
-// start. Stream out: the rows in turn to the lanes, the last row to lane 0; every lane begins Columns / Lanes clocks
+// start. Stream out: the rows in turn to the lanes, the last row to lane 0; every lane begins Columns / Lanes cycles
 // after the lane before it and has its bursts without a pause. Latency: 3 cycles from the first word of the last row to
 // the first word out of lane 0; nothing need follow, the readers run by themselves.
 //
@@ -36,7 +36,7 @@ module frame_stack #(
 );
 
   localparam int PositionWidth = $clog2(Columns);
-  localparam int Step = Columns / Lanes;  // clocks from the start of a lane to that of the next one
+  localparam int Step = Columns / Lanes;  // cycles from the start of a lane to that of the next one
   localparam int Levels = (Rows + Lanes - 1) / Lanes;  // bursts in a bank
   localparam int Burst = (Columns + WordsPerRow - 1) / WordsPerRow;  // memory rows of a burst
   localparam int Depth = Levels * Burst;
@@ -46,23 +46,23 @@ module frame_stack #(
   // The last memory row of the row before the last one, by the way of the writer.
   localparam int BeforeLastUp = Lanes > 1 ? Depth - 1 : Top - 1;
   localparam int BeforeLastDown = Lanes > 1 ? Burst - 1 : 2 * Burst - 1;
-  localparam int LeftWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
+  localparam int RemainingWidth = WordsPerRow > 1 ? $clog2(WordsPerRow) : 1;
   localparam int Kept = WordsPerRow > 2 ? WordsPerRow - 1 : 1;
   localparam logic [PositionWidth-1:0] LastPosition = PositionWidth'(Columns - 1);
   // Words of a memory row that are still to come: of a burst's first, and of any other.
-  localparam logic [LeftWidth-1:0] FirstLeft = LeftWidth'((Columns - 1) % WordsPerRow);
-  localparam logic [LeftWidth-1:0] FullLeft = LeftWidth'(WordsPerRow - 1);
+  localparam logic [RemainingWidth-1:0] FirstRemaining = RemainingWidth'((Columns - 1) % WordsPerRow);
+  localparam logic [RemainingWidth-1:0] FullRemaining = RemainingWidth'(WordsPerRow - 1);
 
-  function automatic logic [LeftWidth-1:0] left_after(input logic [LeftWidth-1:0] left);
-    left_after = left == '0 ? FullLeft : left - LeftWidth'(1);
+  function automatic logic [RemainingWidth-1:0] remaining_after(input logic [RemainingWidth-1:0] remaining);
+    remaining_after = remaining == '0 ? FullRemaining : remaining - RemainingWidth'(1);
   endfunction
 
   function automatic logic [Width-1:0] word_of(
-    input logic [WordsPerRow*Width-1:0] words, input logic [LeftWidth-1:0] left
+    input logic [WordsPerRow*Width-1:0] words, input logic [RemainingWidth-1:0] remaining
   );
     word_of = words[Width-1:0];
     for (int word = 1; word < WordsPerRow; word++) begin
-      if (left == LeftWidth'(word)) word_of = words[word*Width+:Width];
+      if (remaining == RemainingWidth'(word)) word_of = words[word*Width+:Width];
     end
   endfunction
 
@@ -76,7 +76,7 @@ module frame_stack #(
 
   // Writer. A row for each bank in turn, bank 0 the last; then the next burst of all banks.
   logic [PositionWidth-1:0] write_position;
-  logic [LeftWidth-1:0] write_left, write_left_q;
+  logic [RemainingWidth-1:0] write_remaining, write_remaining_q;
   logic [AddressWidth-1:0] write_address, write_address_q;
   logic [BankWidth-1:0] bank, bank_q;
   logic write_active, write_end, write_last_q, write_row;
@@ -86,8 +86,8 @@ module frame_stack #(
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
   assign write_end = write_active & (write_position == LastPosition);
-  assign write_left = in_start ? FirstLeft : write_left_q;
-  assign write_row = write_active & (write_left == '0);
+  assign write_remaining = in_start ? FirstRemaining : write_remaining_q;
+  assign write_row = write_active & (write_remaining == '0);
   assign write_address = in_frame_start ? (down ? AddressWidth'(Top) : '0) : write_address_q;
   assign bank = Lanes == 1 ? '0 : in_frame_start ? BankWidth'((Rows - 1) % Lanes) : bank_q;
 
@@ -98,7 +98,7 @@ module frame_stack #(
     if (en) begin
       kept <= (Kept * Width)'({kept, in_data});
       kept_q <= kept[Width-1:0];
-      write_left_q <= left_after(write_left);
+      write_remaining_q <= remaining_after(write_remaining);
       if (!write_row) write_address_q <= write_address;
       else if (write_end && bank != '0) write_address_q <= write_address - AddressWidth'(Burst - 1);
       else write_address_q <= address_after(write_address, write_end, down);
@@ -117,10 +117,10 @@ module frame_stack #(
 
     // Reader. The first burst of lane 0 is the last row, which needs no memory.
     logic [PositionWidth-1:0] read_position;
-    logic [LeftWidth-1:0] read_left, read_left_q, read_left_q2;
+    logic [RemainingWidth-1:0] read_remaining, read_remaining_q, word_remaining;  // word: of the word that is read
     logic [AddressWidth-1:0] read_address;
     logic read_more, read_start, read_active, read_end, read_first, read_first_q, read_past, read_last;
-    logic read_past_q, read_past_q2, start_q, start_q2, frame_start_q, frame_start_q2;
+    logic [1:0] read_past_q, start_q, frame_start_q;
     logic [Width-1:0] word_q;  // the word that is read stands in a register before it goes on
     logic [WordsPerRow*Width-1:0] read_data;
     td_burst_counter #(.Words(Columns)) u_read (
@@ -129,7 +129,7 @@ module frame_stack #(
     assign read_start = read_begin[lane] | read_more;
     assign read_first = read_begin[lane] | read_first_q;
     assign read_past = lane == 0 ? read_first : 1'b0;
-    assign read_left = read_start ? FirstLeft : read_left_q;
+    assign read_remaining = read_start ? FirstRemaining : read_remaining_q;
     assign read_end = read_active & (read_position == LastPosition);
     assign read_last = read_address
         == (down ? AddressWidth'(Top - (Bursts - 1) * Burst + Burst - 1) : AddressWidth'(Bursts * Burst - 1));
@@ -154,7 +154,7 @@ module frame_stack #(
       .write_en     (en & write_row & (bank == BankWidth'(lane))),
       .write_address(write_address),
       .write_data   ((WordsPerRow * Width)'({kept, in_data})),
-      .read_en      (en & read_active & ~read_past & (read_start | (read_left == FullLeft))),
+      .read_en      (en & read_active & ~read_past & (read_start | (read_remaining == FullRemaining))),
       .read_address (read_address),
       .read_data    (read_data)
     );
@@ -163,31 +163,26 @@ module frame_stack #(
       if (en) begin
         read_more <= read_end & (read_past ? Bursts > 1 : ~read_last);
         read_first_q <= read_first & ~read_end;
-        read_left_q <= left_after(read_left);
+        read_remaining_q <= remaining_after(read_remaining);
         if (begins_next) begin  // `down` turns as lane 0 begins
           if (lane == 0) read_address <= down ? AddressWidth'(Burst) : AddressWidth'(Top - Burst);
           else read_address <= down ? AddressWidth'(Top) : '0;
-        end else if (~(lane == 0 & read_first_q) & read_active & read_left == '0) begin
+        end else if (~(lane == 0 & read_first_q) & read_active & read_remaining == '0) begin
           read_address <= address_after(read_address, read_end, down);
         end
-        start_q <= read_start;
-        frame_start_q <= read_begin[lane];
-        read_past_q <= read_past;
-        read_left_q2 <= read_left;
-        start_q2 <= start_q;
-        frame_start_q2 <= frame_start_q;
-        read_past_q2 <= read_past_q;
-        word_q <= word_of(read_data, read_left_q2);
-        out_start[lane] <= start_q2;
-        out_frame_start[lane] <= frame_start_q2;
-        out_data[lane*Width+:Width] <= read_past_q2 ? kept_q : word_q;
+        start_q <= {start_q[0], read_start};
+        frame_start_q <= {frame_start_q[0], read_begin[lane]};
+        read_past_q <= {read_past_q[0], read_past};
+        word_remaining <= read_remaining;
+        word_q <= word_of(read_data, word_remaining);
+        out_start[lane] <= start_q[1];
+        out_frame_start[lane] <= frame_start_q[1];
+        out_data[lane*Width+:Width] <= read_past_q[1] ? kept_q : word_q;
       end
       if (rst) begin
         read_more <= 1'b0;
-        start_q <= 1'b0;
-        frame_start_q <= 1'b0;
-        start_q2 <= 1'b0;
-        frame_start_q2 <= 1'b0;
+        start_q <= '0;
+        frame_start_q <= '0;
         out_start[lane] <= 1'b0;
         out_frame_start[lane] <= 1'b0;
       end

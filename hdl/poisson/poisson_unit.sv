@@ -3,6 +3,12 @@
 //
 //   slope -> divergence -> spectral_solver or tridiagonal_solver -> depth
 //
+//   spectral_solver:     row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
+//                        -> dst_inverse -> transpose -> dst_inverse -> row_reorder
+//   tridiagonal_solver:  row_reorder -> dst_forward -> forward_elimination -> frame_stack
+//                        -> back_substitution -> dst_inverse -> row_reorder; with several lanes, each has its own
+//                        dst_inverse, and corner_turn takes the place of the last row_reorder
+//
 // Stream in: slopes in raster order. Stream out: a burst of Columns / Lanes beats for each row, Lanes depth codes in a
 // beat, the first in the lowest bits; `burst_start` with the first beat of a row and depth_frame_start with the first
 // of a frame; rows in raster order (tridiagonal: the bottom row first). Latency from the last slope to the first depth:
@@ -52,7 +58,7 @@ module poisson_unit
   output logic                            burst_start,
   output logic                            depth_frame_start,
   output logic [Lanes*DataWidth-1:0]      depth_data,  // depth codes, signed
-  output logic [ClippedWidth-1:0]         saturations  // values clipped in this clock
+  output logic [ClippedWidth-1:0]         saturations  // clip count, delayed
 );
 
   localparam int InWidth = GradientWidth + 2;  // of a divergence

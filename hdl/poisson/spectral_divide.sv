@@ -28,7 +28,7 @@ module spectral_divide #(
   output logic                    out_start,
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_data,        // mode of depth, in the format for which c was computed
-  output logic                    saturations      // values clipped in this cycle
+  output logic                    saturations      // clip count, delayed
 );
 
   localparam int PositionWidth = $clog2(Columns);
@@ -61,20 +61,21 @@ module spectral_divide #(
     end
   end
 
-  logic [ShiftWidth-1:0] shift, shift_q, shift_q2;
+  logic [ShiftWidth-1:0] shift;
+  logic [1:0][ShiftWidth-1:0] shift_q;
   logic signed [CoeffWidth-1:0] mantissa, mantissa_q;
   td_rom #(.Width(ShiftWidth + CoeffWidth), .Depth(Words), .File(File)) u_rom (
     .clk, .en, .address, .data({shift, mantissa})
   );
 
-  logic signed [Width-1:0] data_q, data_q2, data_q3;
+  logic [2:0][Width-1:0] data_q;
   logic signed [ProductWidth-1:0] product;
   logic signed [ShiftedWidth-1:0] shifted;
   logic [ToShifted-1:0] start_q, frame_start_q, active_q;
   logic signed [Width-1:0] rounded;
   logic clipped;
   td_multiply #(.AWidth(Width), .BWidth(CoeffWidth)) u_product (
-    .clk, .en, .a(data_q3), .b(mantissa_q), .product
+    .clk, .en, .a(data_q[2]), .b(mantissa_q), .product
   );
   td_round_saturate #(.InWidth(ShiftedWidth), .Drop(Drop), .OutWidth(Width)) u_round (
     .in(shifted), .out(rounded), .clipped
@@ -82,13 +83,10 @@ module spectral_divide #(
 
   always_ff @(posedge clk) begin
     if (en) begin
-      data_q <= in_data;
-      data_q2 <= data_q;
-      data_q3 <= data_q2;
+      data_q <= {data_q[1:0], in_data};
       mantissa_q <= mantissa;
-      shift_q <= shift;
-      shift_q2 <= shift_q;
-      shifted <= ShiftedWidth'(product) <<< shift_q2;
+      shift_q <= {shift_q[0], shift};
+      shifted <= ShiftedWidth'(product) <<< shift_q[1];
       out_data <= rounded;
       start_q <= {start_q[ToShifted-2:0], in_start};
       frame_start_q <= {frame_start_q[ToShifted-2:0], in_frame_start};

@@ -3,9 +3,6 @@
 //
 //   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
-//   row_reorder -> dst_forward -> transpose -> dst_forward -> spectral_divide
-//               -> dst_inverse -> transpose -> dst_inverse -> row_reorder
-//
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
 // one burst of Columns words a row. Latency: fixed; models/tactile_depth/latency.py. Formats:
 // models/tactile_depth/configuration.py.
@@ -39,10 +36,10 @@ module spectral_solver #(
   output logic                        out_start,
   output logic                        out_frame_start,  // the first burst of a frame
   output logic signed [DataWidth-1:0] out_data,         // depth code
-  output logic [7:0]                  saturations       // values clipped in a cycle, a little ago
+  output logic [7:0]                  saturations       // clip count, delayed
 );
 
-  localparam int Alternate = Neumann != 0 ? 0 : 1;
+  localparam int Sine = Neumann != 0 ? 0 : 1;
 
   logic row_start, row_modes_start, column_start, modes_start, divided_start;
   logic column_out_start, depth_row_start, depth_start, depth_valid;
@@ -52,7 +49,7 @@ module spectral_solver #(
   logic [DataWidth-1:0] column_data, depth_row_data, depth_reordered;
   logic signed [DataWidth-1:0] row_modes, column_out, depth;
   logic signed [Width-1:0] modes, divided;
-  logic [7:0] clipped_a, clipped_b, clipped_c, clipped_d;
+  logic [7:0] clipped_row_forward, clipped_column_forward, clipped_column_inverse, clipped_row_inverse;
   logic clipped_divide;
 
   row_reorder #(.Width(InWidth), .Columns(Columns), .ToBurst(1)) u_row_in (
@@ -61,11 +58,12 @@ module spectral_solver #(
   );
 
   dst_forward #(
-    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
-    .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes), .saturations(clipped_a)
+    .out_start(row_modes_start), .out_frame_start(row_modes_frame_start), .out_data(row_modes),
+    .saturations(clipped_row_forward)
   );
 
   transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(0), .MakhoulOut(1), .Style(StoreStyle)) u_to_columns (
@@ -74,11 +72,11 @@ module spectral_solver #(
   );
 
   dst_forward #(
-    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(DataWidth), .InputDrop(ColumnForwardIn), .OutWidth(Width), .OutputDrop(0)
   ) u_column_forward (
     .clk, .rst, .en, .in_start(column_start), .in_frame_start(column_frame_start), .in_data(column_data),
-    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_b)
+    .out_start(modes_start), .out_frame_start(modes_frame_start), .out_data(modes), .saturations(clipped_column_forward)
   );
 
   spectral_divide #(
@@ -90,12 +88,12 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(Width), .InputDrop(0), .OutWidth(DataWidth), .OutputDrop(ColumnInverseOut)
   ) u_column_inverse (
     .clk, .rst, .en, .in_start(divided_start), .in_frame_start(divided_frame_start), .in_data(divided),
     .out_start(column_out_start), .out_frame_start(column_out_frame_start), .out_data(column_out),
-    .saturations(clipped_c)
+    .saturations(clipped_column_inverse)
   );
 
   transpose #(.Width(DataWidth), .Columns(Columns), .MakhoulIn(1), .MakhoulOut(0), .Style(StoreStyle)) u_to_rows (
@@ -104,11 +102,11 @@ module spectral_solver #(
   );
 
   dst_inverse #(
-    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(DataWidth), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
   ) u_row_inverse (
     .clk, .rst, .en, .in_start(depth_row_start), .in_frame_start(depth_row_frame_start), .in_data(depth_row_data),
-    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_d)
+    .out_start(depth_start), .out_frame_start(depth_frame_start), .out_data(depth), .saturations(clipped_row_inverse)
   );
 
   logic [$clog2(Columns)-1:0] unused_position;
@@ -122,7 +120,8 @@ module spectral_solver #(
   assign out_data = depth_reordered;
 
   always_ff @(posedge clk) begin
-    saturations <= 8'(clipped_a) + 8'(clipped_b) + 8'(clipped_divide) + 8'(clipped_c) + 8'(clipped_d);
+    saturations <= clipped_row_forward + clipped_column_forward + 8'(clipped_divide) + clipped_column_inverse
+        + clipped_row_inverse;
     if (rst) saturations <= '0;
   end
 

@@ -3,7 +3,7 @@
 //
 //   c[0] = 1 / b[0], c[i] = 1 / (b[i] - c[i-1]) = coefficient 2^(shift + 1 - CoeffWidth)
 //
-// A position and a row in, its coefficient out 5 enabled clocks later. Down the rows a coefficient soon settles; what
+// A position and a row in, its coefficient out 5 enabled cycles later. Down the rows a coefficient soon settles; what
 // follows its last change is not stored: word base + min(row, settled). The last row has a table of its own, and a
 // shift, since its coefficients exceed 1 under Neumann. A user that multiplies nothing in that row leaves it out.
 // Bit-accurate model: models/tactile_depth/poisson/thomas_table.py, which also writes the ROMs.
@@ -34,21 +34,19 @@ module thomas_table #(
   localparam int CompareWidth = RowWidth > SettledWidth ? RowWidth : SettledWidth;
 
   logic [PositionWidth-1:0] position_q;
-  logic [RowWidth-1:0] row_q;
+  logic [1:0][RowWidth-1:0] row_q;
   logic [AddressWidth-1:0] base, address;
   logic [SettledWidth-1:0] settled;
   td_rom #(.Width(AddressWidth + SettledWidth), .Depth(Columns), .File({TableFolder, "thomas_index.hex"})) u_index (
     .clk, .en, .address(position_q), .data({base, settled})
   );
 
-  logic [RowWidth-1:0] row_q2;
   always_ff @(posedge clk) begin
     if (en) begin
-      row_q <= row;
       position_q <= position;
-      row_q2 <= row_q;
+      row_q <= {row_q[0], row};
       address <= base
-          + (CompareWidth'(row_q2) < CompareWidth'(settled) ? AddressWidth'(row_q2) : AddressWidth'(settled));
+          + (CompareWidth'(row_q[1]) < CompareWidth'(settled) ? AddressWidth'(row_q[1]) : AddressWidth'(settled));
     end
   end
 
@@ -58,21 +56,19 @@ module thomas_table #(
   );
 
   if (HasLastRow) begin : g_last_row
-    logic [PositionWidth-1:0] position_q2, position_q3;
-    logic last_q3, last_q4;
+    logic [1:0][PositionWidth-1:0] last_position;  // behind position_q
+    logic [1:0] last_row;                          // behind row_q
     logic signed [CoeffWidth-1:0] last;
     logic [LastShiftWidth-1:0] last_shift;
     td_rom #(.Width(LastShiftWidth + CoeffWidth), .Depth(Columns), .File({TableFolder, "thomas_last.hex"})) u_last (
-      .clk, .en, .address(position_q3), .data({last_shift, last})
+      .clk, .en, .address(last_position[1]), .data({last_shift, last})
     );
     always_ff @(posedge clk) begin
       if (en) begin
-        position_q2 <= position_q;
-        position_q3 <= position_q2;
-        last_q3 <= row_q2 == RowWidth'(Rows - 1);
-        last_q4 <= last_q3;
-        coefficient <= last_q4 ? last : inner;
-        shift <= last_q4 ? last_shift : '0;
+        last_position <= {last_position[0], position_q};
+        last_row <= {last_row[0], row_q[1] == RowWidth'(Rows - 1)};
+        coefficient <= last_row[1] ? last : inner;
+        shift <= last_row[1] ? last_shift : '0;
       end
     end
   end else begin : g_inner_rows

@@ -3,12 +3,8 @@
 //
 //   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
-//   row_reorder -> dst_forward -> forward_elimination -> frame_stack -> back_substitution -> dst_inverse -> row_reorder
-//                                                             \-> back_substitution -> dst_inverse -> corner_turn
-//
-// The second line: with more than one lane, each with its own part of the chain, a row each.
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
-// one burst of Columns / Lanes clocks a row, Lanes codes a clock, the first in the lowest bits. Latency: fixed, 3.5
+// one burst of Columns / Lanes cycles a row, Lanes codes a cycle, the first in the lowest bits. Latency: fixed, 3.5
 // Columns and a few registers behind the last pixel; models/tactile_depth/latency.py. Formats:
 // models/tactile_depth/configuration.py. Bit-accurate model: models/tactile_depth/poisson/tridiagonal_solver.py.
 
@@ -18,7 +14,7 @@ module tridiagonal_solver #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Rows           = 128,
   parameter int Columns        = 128,  // columns, a power of two
-  parameter int Lanes          = 1,    // rows at a time on the way up, depth codes in a clock
+  parameter int Lanes          = 1,    // rows at a time on the way up, depth codes in a cycle
   parameter int InWidth        = 23,
   parameter int DataWidth      = 24,   // of a stored word, and of a depth code
   parameter int Width          = 27,   // of the arithmetic
@@ -47,10 +43,10 @@ module tridiagonal_solver #(
   output logic                       out_start,
   output logic                       out_frame_start,  // the first burst of a frame
   output logic [Lanes*DataWidth-1:0] out_data,         // depth codes, signed
-  output logic [ClippedWidth-1:0]    saturations       // values clipped in a cycle, a little ago
+  output logic [ClippedWidth-1:0]    saturations       // clip count, delayed
 );
 
-  localparam int Alternate = Neumann != 0 ? 0 : 1;
+  localparam int Sine = Neumann != 0 ? 0 : 1;
 
   logic row_start, modes_start, eliminated_start, row_frame_start, modes_frame_start, eliminated_frame_start;
   logic [InWidth-1:0] row_data;
@@ -71,7 +67,7 @@ module tridiagonal_solver #(
   );
 
   dst_forward #(
-    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+    .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
     .InWidth(InWidth), .InputDrop(0), .OutWidth(Width), .OutputDrop(RowForwardOut)
   ) u_row_forward (
     .clk, .rst, .en, .in_start(row_start), .in_frame_start(row_frame_start), .in_data(row_data),
@@ -98,7 +94,7 @@ module tridiagonal_solver #(
 
   back_substitution #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes),
-    .InWidth(DataWidth), .Lift(StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth)
+    .InWidth(DataWidth), .Drop(-StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
     .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved), .saturations(clipped_up)
@@ -106,7 +102,7 @@ module tridiagonal_solver #(
 
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     dst_inverse #(
-      .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Alternate(Alternate),
+      .TableFolder(TableFolder), .Size(Columns), .Width(Width), .CoeffWidth(CoeffWidth), .Sine(Sine),
       .InWidth(Width), .InputDrop(RowInverseIn), .OutWidth(DataWidth), .OutputDrop(RowInverseOut)
     ) u_row_inverse (
       .clk, .rst, .en, .in_start(solved_start[lane]), .in_frame_start(solved_frame_start[lane]),

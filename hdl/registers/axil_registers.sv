@@ -6,9 +6,9 @@
 //                        -> table_banks      <-> banks, captures
 //                        -> table_access     <-> entries of the tables
 //
-// The map is docs/registers.md. A write takes effect, unless it is refused, in the clock in which axil_port raises
-// `write`; a read shows the registers as they were before the write of the same clock. An event counts for each clock
-// in which it is high, and reaches status and counters one clock later. Word n of the record of contact is in bits
+// The map is docs/registers.md. A write takes effect, unless it is refused, in the cycle in which axil_port raises
+// `write`; a read shows the registers as they were before the write of the same cycle. An event counts for each cycle
+// in which it is high, and reaches status and counters one cycle later. Word n of the record of contact is in bits
 // 32 n + 31 to 32 n, and is read as it stands.
 // Model: models/tactile_depth/registers/axil_registers.py.
 
@@ -126,11 +126,12 @@ module axil_registers
     .clk, .rst, .write(write && !capture_refused), .write_offset, .write_ones, .write_mask, .read_offset,
     .read_data(setting_data), .settings
   );
-  assign contact_settings = {
-    settings[ThresholdSetting], settings[OffThresholdSetting], settings[MinimumAreaSetting],
-    settings[DebounceSetting][7:0], settings[ControlSetting][ControlHoldContactBit],
-    settings[ControlSetting][ControlDropFramesBit]
-  };
+  assign contact_settings.threshold = settings[ThresholdSetting];
+  assign contact_settings.off_threshold = settings[OffThresholdSetting];
+  assign contact_settings.minimum_area = settings[MinimumAreaSetting];
+  assign contact_settings.debounce = settings[DebounceSetting][7:0];
+  assign contact_settings.hold_contact = settings[ControlSetting][ControlHoldContactBit];
+  assign contact_settings.drop_frames = settings[ControlSetting][ControlDropFramesBit];
   assign timeout = settings[TimeoutSetting];
   assign dark_level = settings[DarkLevelSetting][7:0];
 
@@ -151,8 +152,10 @@ module axil_registers
     .read_offset, .read_data(bank_data), .frame_start, .table_bank, .table_in_use, .closed,
     .reference_request, .reference_status, .zero_request, .zero_status
   );
-  assign reference_command = {reference_request, settings[ReferenceCaptureSetting][ReferenceCaptureLog2FramesLsb+:4]};
-  assign zero_command = {zero_request, settings[ZeroCaptureSetting][ZeroCaptureLog2FramesLsb+:4]};
+  assign reference_command.request = reference_request;
+  assign reference_command.log2_frames = settings[ReferenceCaptureSetting][ReferenceCaptureLog2FramesLsb+:4];
+  assign zero_command.request = zero_request;
+  assign zero_command.log2_frames = settings[ZeroCaptureSetting][ZeroCaptureLog2FramesLsb+:4];
 
   logic [31:0] entry_data;
   table_access #(

@@ -2,9 +2,9 @@
 // event_registers: keeps what happened: sticky bits, counters, the last latency, and the interrupt.
 //
 // A sticky bit of STATUS or INTERRUPT_STATUS is set by its event until a 1 is written to it. A counter counts the
-// clocks in which its event is high, SATURATIONS the values clipped. An event in the clock of a clearing write is kept.
-// `irq` is high in the clock after one in which a bit of INTERRUPT_STATUS and its bit of interrupt_mask are 1.
-// read_data is the word at read_offset in the same clock, 0 where there is none.
+// cycles in which its event is high, SATURATIONS the values clipped. An event in the cycle of a clearing write is kept.
+// `irq` is high in the cycle after one in which a bit of INTERRUPT_STATUS and its bit of interrupt_mask are 1.
+// read_data is the word at read_offset in the same cycle, 0 where there is none.
 // Model: models/tactile_depth/registers/event_registers.py.
 
 `default_nettype none

@@ -3,8 +3,8 @@
 //
 // TABLE_INDEX is the entry that is written or read next; it moves on after either, from the last entry to the first.
 // A write of TABLE_LOW makes that entry {TABLE_HIGH, TABLE_LOW}: table_command.write is high with `write`. A read of
-// TABLE_HIGH or TABLE_LOW raises table_command.read in the clock after `read`; the entry's words shall stand on
-// table_answer from 3 clocks later until the next such read, and stand on late_data then. Refused: what has no entry, a
+// TABLE_HIGH or TABLE_LOW raises table_command.read in the cycle after `read`; the entry's words shall stand on
+// table_answer from 3 cycles later until the next such read, and stand on late_data then. Refused: what has no entry, a
 // write with a byte that is not strobed, and a write of a table that is `closed`. A write that is refused does nothing.
 // In a reset neither is commanded.
 // Model: models/tactile_depth/registers/table_access.py.
@@ -30,7 +30,7 @@ module table_access
   input  wire                  read,
   input  wire  [31:0]          read_offset,
   output logic [31:0]          read_data,   // the word at read_offset, 0 where there is none
-  output logic                 read_late,   // the word at read_offset comes as late_data, 4 clocks later
+  output logic                 read_late,   // the word at read_offset comes as late_data, 4 cycles later
   output logic [31:0]          late_data,
   output logic                 late_refused,
 
@@ -69,7 +69,12 @@ module table_access
   assign read_late = read_offset == TableHighOffset || read_offset == TableLowOffset;
   assign late_refused = !had_entry;
   assign late_data = !had_entry ? '0 : asked_low ? table_answer.low : table_answer.high;
-  assign table_command = {writes, reads, select, 24'(index), high, write_ones};
+  assign table_command.write = writes;
+  assign table_command.read = reads;
+  assign table_command.select = select;
+  assign table_command.index = 24'(index);
+  assign table_command.high = high;
+  assign table_command.low = write_ones;
 
   always_ff @(posedge clk) begin
     asked <= read && read_late;

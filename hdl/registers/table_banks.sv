@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // table_banks: decides which of its two banks each table uses, and starts captures into the bank that is not in use.
 //
-// A 1 written to TABLE_COMMIT requests that its table change over, which it does with the next frame_start: table_bank
-// changes in that clock. A table takes the change over with the first pixel of its own next frame, or in a reset, and
-// shows the bank it uses on table_in_use: so all tables change over with the same frame, wherever they stand within a
-// frame of the head of the pipeline. Until then the change-over is pending. A table is `closed`, to writes and to
-// commits, while its change-over is pending or it is captured. `done` of a capture requests the change-over as a commit
-// does. A start written to REFERENCE_CAPTURE or ZERO_CAPTURE raises the request in the clock of the write; from the
-// next clock to that of `done`, `busy` shall be high. Refused: a start for a table that the build has not, and one for
-// the zero offset while its change-over is pending: the zero offset takes it a solver's latency after the frame's
-// start, and the capture would write the bank that is to be used. A write that is refused does nothing. rst forgets
-// what no frame has taken and leaves the banks, because it leaves the tables; cold_rst, together with rst, clears the
-// banks. Model: models/tactile_depth/registers/table_banks.py.
+// A 1 written to TABLE_COMMIT, or `done` of a capture, requests that a table change over to its other bank:
+// docs/streams.md, Tables. table_bank changes with the next frame_start, in that cycle; table_in_use says which bank
+// the table uses. A table is `closed`, to writes and to commits, while its change-over is pending or it is captured. A
+// capture's request is high in the cycle of the write that starts it; from the next cycle to that of `done`, `busy`
+// shall be high. A start is refused for a table that the build has not, and for the zero offset while its change-over
+// is pending. rst forgets what no frame has taken and leaves the banks; cold_rst, together with rst, clears them.
+// Model: models/tactile_depth/registers/table_banks.py.
 
 `default_nettype none
 

@@ -66,14 +66,21 @@ module frame_guard
   assign start_early = en & s_valid & ~origin & ~filling & s_user;
   assign timed_out = en & ~s_valid & ~origin & ~filling & (timeout != '0) & (silence >= timeout);
   assign fault_in_frame = row_short | row_long | start_early | timed_out;
-  assign faults = {timed_out, start_early, start_missing, row_long, row_short};
+  assign faults.timed_out = timed_out;
+  assign faults.start_early = start_early;
+  assign faults.start_missing = start_missing;
+  assign faults.row_long = row_long;
+  assign faults.row_short = row_short;
   assign emit = take | filling;
 
   always_ff @(posedge clk) begin
     if (en) begin
       out_valid <= emit;
       if (take) out_data <= s_data;
-      out_position <= {last_column, row == RowWidth'(Rows - 1), column == '0, row == '0};
+      out_position.last_column <= last_column;
+      out_position.last_row <= row == RowWidth'(Rows - 1);
+      out_position.first_column <= column == '0;
+      out_position.first_row <= row == '0;
       out_frame_start <= take & origin;
       out_frame_end <= emit & frame_end;
       out_bad <= filling | row_long;  // at the end of a frame nothing else can be wrong

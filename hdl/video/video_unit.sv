@@ -28,7 +28,7 @@ module video_unit
   input  wire         s_axis_tlast,
   input  wire         s_axis_tuser,
 
-  input  wire  [31:0] timeout,  // of a source that falls silent inside a frame, in clocks; 0: none
+  input  wire  [31:0] timeout,  // of a source that falls silent inside a frame, in cycles; 0: none
   output faults_t     faults,
   output logic        busy,     // a pixel waits, or a frame has begun and not ended
 
@@ -39,7 +39,7 @@ module video_unit
   output logic        pixel_frame_end,
   output logic        pixel_bad,
 
-  output logic [31:0] now,        // clocks since reset
+  output logic [31:0] now,        // cycles since reset
   output logic [31:0] frame_time  // `now` when the first pixel of this frame was taken
 );
 

@@ -41,7 +41,7 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
     run_tb(
         "back_substitution",
         {name: parameters[name] for name in NAMES}
-        | {"InWidth": config.data_width, "Lift": parameters["StoreDrop"], "Lanes": config.lanes},
+        | {"InWidth": config.data_width, "Drop": -parameters["StoreDrop"], "Lanes": config.lanes},
         roms=lambda folder: write_thomas(folder, config),
         environment={"CONFIGURATION": json.dumps(choices)},
     )

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// corner_turn: rows that come side by side, one word of each per clock, leave in turn, several words of one per clock.
+// corner_turn: rows that come side by side, one word of each a cycle, leave in turn, several words of one a cycle.
 //
 // Stream in: bursts of Columns words in Makhoul order (0, 2, 4, .., 5, 3, 1); the lanes have the rows of a frame in
-// turn, each Columns / Lanes clocks behind the row before, without a pause. Stream out: the same rows in the same
-// order, each a burst of Columns / Lanes clocks with Lanes words in natural order, the first word in the lowest bits.
+// turn, each Columns / Lanes cycles behind the row before, without a pause. Stream out: the same rows in the same
+// order, each a burst of Columns / Lanes cycles with Lanes words in natural order, the first word in the lowest bits.
 // Latency: 3 cycles from the last word of a row to its first words out.
 //
-// In every clock each lane writes a word, and Lanes words of one row are read, so there are Lanes memories. The words
+// In every cycle each lane writes a word, and Lanes words of one row are read, so there are Lanes memories. The words
 // that leave together are neighbours in the first half of the burst (even words) and in the second half (odd words).
 // Two lanes that are Lanes / 2 apart are half a burst apart. So half of the memories hold first halves; there, position
 // p of lane e is in memory p + e (Columns / Lanes + 1), modulo Lanes / 2. The others hold second halves in the same
@@ -31,13 +31,13 @@ module corner_turn #(
   output logic [Lanes*Width-1:0] out_data
 );
 
-  localparam int Step = Columns / Lanes;  // clocks from a row to the next
+  localparam int Step = Columns / Lanes;  // cycles from a row to the next
   localparam int Half = Lanes / 2;
   localparam int IndexWidth = Half > 1 ? $clog2(Half) : 1;
   localparam int LaneWidth = $clog2(Lanes);
   localparam int StepWidth = $clog2(Step);
   localparam int AddressWidth = StepWidth + LaneWidth + 1;
-  localparam logic [AddressWidth-1:0] Stride = AddressWidth'(Half);  // positions that a clock reads in half a burst
+  localparam logic [AddressWidth-1:0] Stride = AddressWidth'(Half);  // positions that a cycle reads in half a burst
   localparam logic [AddressWidth-1:0] Last = AddressWidth'(Columns - 1);
   localparam logic [IndexWidth-1:0] LaneOffset = IndexWidth'(Step + 1);
 
@@ -93,7 +93,7 @@ module corner_turn #(
     logic [IndexWidth-1:0] even, odd;  // of the words that leave together, the one in this memory
     assign even = Half > 1 ? IndexWidth'(index) - offset : '0;
     assign odd = Half > 1 ? offset - IndexWidth'(index + 1) : '0;
-    td_ram #(.Width(Width), .Depth(2 * Columns), .Style((2 * Columns * Width > 4096) ? 1 : 0)) u_first (
+    td_ram #(.Width(Width), .Depth(2 * Columns)) u_first (
       .clk,
       .write_en     (en & (|active)),
       .write_address(now),
@@ -102,7 +102,7 @@ module corner_turn #(
       .read_address (begun + ahead + AddressWidth'(even)),
       .read_data    (read_first[index*Width+:Width])
     );
-    td_ram #(.Width(Width), .Depth(2 * Columns), .Style((2 * Columns * Width > 4096) ? 1 : 0)) u_second (
+    td_ram #(.Width(Width), .Depth(2 * Columns)) u_second (
       .clk,
       .write_en     (en & (|active)),
       .write_address(now),

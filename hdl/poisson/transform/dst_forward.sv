@@ -22,7 +22,7 @@ module dst_forward #(
   parameter int CoeffWidth = 18,
   parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
   parameter int OutWidth   = 24,
-  parameter int Alternate  = 1    // 0: without the sign (-1)^n, which makes it a DCT-II
+  parameter int Sine       = 1     // 1: DST-II; 0: DCT-II, without the sign (-1)^n
 ) (
   input  wire                        clk,
   input  wire                        rst,
@@ -33,7 +33,7 @@ module dst_forward #(
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,        // mode, F - InputDrop - OutputDrop fraction bits
-  output logic [7:0]                 saturations      // values clipped, all stages together, each some cycles ago
+  output logic [7:0]                 saturations      // clip count, delayed
 );
 
   // Samples of odd index are the second half of the burst.
@@ -54,7 +54,7 @@ module dst_forward #(
   always_ff @(posedge clk) begin
     if (en) begin
       data_q <= in_data;
-      negative <= Alternate != 0 && position[$clog2(Size)-1];
+      negative <= Sine != 0 && position[$clog2(Size)-1];
       signed_in <= negative ? -$signed({data_q[InWidth-1], data_q}) : (InWidth + 1)'(data_q);
       x_q <= x;
       active_q <= {active_q[0], active};

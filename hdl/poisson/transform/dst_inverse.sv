@@ -22,7 +22,7 @@ module dst_inverse #(
   parameter int CoeffWidth = 18,
   parameter int OutputDrop = 3,    // fraction bits from the arithmetic to the output
   parameter int OutWidth   = 24,
-  parameter int Alternate  = 1    // 0: without the sign (-1)^n, which makes it a DCT-II
+  parameter int Sine       = 1     // 1: DST-II; 0: DCT-II, without the sign (-1)^n
 ) (
   input  wire                        clk,
   input  wire                        rst,
@@ -33,7 +33,7 @@ module dst_inverse #(
   output logic                       out_start,
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_data,        // sample, F - InputDrop - OutputDrop fraction bits
-  output logic [7:0]                 saturations      // values clipped, all stages together, each some cycles ago
+  output logic [7:0]                 saturations      // clip count, delayed
 );
 
   logic pair_start, pair_frame_start;
@@ -43,8 +43,8 @@ module dst_inverse #(
     .out_start(pair_start), .out_frame_start(pair_frame_start), .out_mode(mode), .out_mirrored(mirrored)
   );
 
-  logic turned_start, turned_frame_start;
-  logic signed [Width-1:0] turned_re, turned_im;
+  logic rotated_start, rotated_frame_start;
+  logic signed [Width-1:0] rotated_re, rotated_im;
   logic [1:0] clipped_phase;
   twiddle_multiply #(
     .InWidth(InWidth), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1 + InputDrop),
@@ -52,7 +52,7 @@ module dst_inverse #(
   ) u_phase (
     .clk, .rst, .en,
     .in_start(pair_start), .in_frame_start(pair_frame_start), .in_re(mirrored), .in_im(mode),
-    .out_start(turned_start), .out_frame_start(turned_frame_start), .out_re(turned_re), .out_im(turned_im),
+    .out_start(rotated_start), .out_frame_start(rotated_frame_start), .out_re(rotated_re), .out_im(rotated_im),
     .saturations(clipped_phase)
   );
 
@@ -61,7 +61,7 @@ module dst_inverse #(
   logic [6:0] clipped_fft;
   sdf_fft #(.TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Size(Size), .Inverse(1)) u_fft (
     .clk, .rst, .en,
-    .in_start(turned_start), .in_frame_start(turned_frame_start), .in_re(turned_re), .in_im(turned_im),
+    .in_start(rotated_start), .in_frame_start(rotated_frame_start), .in_re(rotated_re), .in_im(rotated_im),
     .out_start(fft_start), .out_frame_start(fft_frame_start), .out_re(x), .out_im(unused_im),
     .saturations(clipped_fft)
   );
@@ -80,7 +80,7 @@ module dst_inverse #(
   );
   always_ff @(posedge clk) begin
     if (en) begin
-      signed_x <= Alternate != 0 && position[$clog2(Size)-1] ? -$signed({x[Width-1], x}) : (Width + 1)'(x);
+      signed_x <= Sine != 0 && position[$clog2(Size)-1] ? -$signed({x[Width-1], x}) : (Width + 1)'(x);
       active_q <= active;
       start_q <= fft_start;
       frame_start_q <= fft_frame_start;

@@ -48,19 +48,12 @@ module mode_pairs #(
   logic signed [Width-1:0] mode_q;
   logic write_active_q, read_active_q, read_start_q, read_frame_start;
   logic [PositionWidth-1:0] write_position_q, mirrored_position_q;
-  td_delay_line #(
-    .Width(Width),
-    .Delay(Size / 2 + 1)
-  ) u_delay (
+  td_delay_line #(.Width(Width), .Delay(Size / 2 + 1)) u_delay (
     .clk, .rst, .en, .in(mode_q), .out(out_mode)
   );
 
   logic [Width-1:0] mirrored;
-  td_ram #(
-    .Width(Width),
-    .Depth(Size),
-    .Style(0)
-  ) u_ram (
+  td_ram #(.Width(Width), .Depth(Size), .Style(0)) u_ram (
     .clk,
     .write_en     (en & write_active_q),
     .write_address(write_position_q),

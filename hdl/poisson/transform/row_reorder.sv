@@ -33,25 +33,21 @@ module row_reorder #(
   endfunction
 
   logic write_bank, read_bank, read_start, read_active, frame_start, frame_start_q, read_frame_start;
-  logic [PositionWidth-1:0] write_position, write_position_q, read_position, write_place, read_place;
+  logic [PositionWidth-1:0] write_position, write_position_q, read_position, write_address, read_address;
   td_burst_counter #(.Words(Columns)) u_read (
     .clk, .rst, .en, .start(read_start), .position(read_position), .active(read_active)
   );
   assign write_position = in_frame_start ? '0 : write_position_q;
-  assign write_place = ToBurst != 0 ? write_position : makhoul(write_position);
-  assign read_place = ToBurst != 0 ? makhoul(read_position) : read_position;
+  assign write_address = ToBurst != 0 ? write_position : makhoul(write_position);
+  assign read_address = ToBurst != 0 ? makhoul(read_position) : read_position;
 
-  td_ram #(
-    .Width(Width),
-    .Depth(2 * Columns),
-    .Style((2 * Columns * Width > 4096) ? 1 : 0)
-  ) u_ram (
+  td_ram #(.Width(Width), .Depth(2 * Columns)) u_ram (
     .clk,
     .write_en     (en & in_valid),
-    .write_address({write_bank, write_place}),
+    .write_address({write_bank, write_address}),
     .write_data   (in_data),
     .read_en      (en & read_active),
-    .read_address ({read_bank, read_place}),
+    .read_address ({read_bank, read_address}),
     .read_data    (out_data)
   );
 

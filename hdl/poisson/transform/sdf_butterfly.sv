@@ -29,7 +29,7 @@ module sdf_butterfly #(
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
   output logic signed [Width-1:0] out_im,
-  output logic [1:0]              saturations      // values clipped in this cycle
+  output logic [1:0]              saturations      // clip count, delayed
 );
 
   localparam int PositionWidth = $clog2(Size);
@@ -74,28 +74,25 @@ module sdf_butterfly #(
   assign {sum_im, unused_carry[1]} = {a_im, 1'b1} + {b_im[Width-1], b_im, minus_im};
   assign {difference_re, unused_carry[2]} = {a_re, 1'b1} + {~b_re[Width-1], ~b_re, ~minus_re};
   assign {difference_im, unused_carry[3]} = {a_im, 1'b1} + {~b_im[Width-1], ~b_im, ~minus_im};
-  td_delay_line #(
-    .Width(2 * (Width + 1)),
-    .Delay(Delay)
-  ) u_delay (
+  td_delay_line #(.Width(2 * (Width + 1)), .Delay(Delay)) u_delay (
     .clk, .rst, .en,
     .in(second ? {difference_re, difference_im} : {(Width + 1)'(in_re), (Width + 1)'(in_im)}), .out({a_re, a_im})
   );
 
-  logic leaves_first, leaves_first_q, frame_start_q, frame_start_q2;  // the first sum of a burst
+  logic leaves_first, leaves_first_q, frame_start_q, leaves_frame_start;  // the first sum of a burst
   assign leaves_first = active & (position == PositionWidth'(Delay));
   logic signed [Width:0] leaving_re, leaving_im;
   always_ff @(posedge clk) begin
     if (en) begin
       if (in_start) frame_start_q <= in_frame_start;
       leaves_first_q <= leaves_first;
-      frame_start_q2 <= leaves_first & frame_start_q;
+      leaves_frame_start <= leaves_first & frame_start_q;
       leaving_re <= second ? sum_re : a_re;
       leaving_im <= second ? sum_im : a_im;
     end
     if (rst) begin
       leaves_first_q <= 1'b0;
-      frame_start_q2 <= 1'b0;
+      leaves_frame_start <= 1'b0;
     end
   end
 
@@ -115,7 +112,7 @@ module sdf_butterfly #(
   always_ff @(posedge clk) begin
     if (en) begin
       out_start <= leaves_first_q;
-      out_frame_start <= frame_start_q2;
+      out_frame_start <= leaves_frame_start;
       out_re <= rounded_re;
       out_im <= rounded_im;
     end

@@ -33,7 +33,7 @@ module sdf_fft #(
   output logic                    out_frame_start,
   output logic signed [Width-1:0] out_re,
   output logic signed [Width-1:0] out_im,
-  output logic [6:0]              saturations      // values clipped in all stages, in the cycle before
+  output logic [6:0]              saturations      // clip count, delayed
 );
 
   localparam int Log2Size = $clog2(Size);
@@ -49,14 +49,14 @@ module sdf_fft #(
   assign im[0] = in_im;
 
   for (genvar i = 0; i < Stages; i++) begin : g_stage
-    localparam int Forward = Inverse != 0 ? Stages - 1 - i : i;  // place of this stage in the forward transform
+    localparam int Forward = Inverse != 0 ? Stages - 1 - i : i;  // position of this stage in the forward transform
     localparam int Pair = Forward / 3;
     localparam int Part = Forward % 3;  // of the pair: first butterfly, second one, twiddle multiplication
     localparam int Block = Size >> (2 * Pair);
     if (Part == 2) begin : g_twiddle
       twiddle_multiply #(
         .InWidth(Width), .OutWidth(Width), .CoeffWidth(CoeffWidth), .Drop(CoeffWidth - 1), .Size(Size), .Block(Block),
-        .File({TableFolder, Inverse != 0 ? "twiddle_inverse_" : "twiddle_forward_", 8'(48 + Pair), ".hex"})
+        .File({TableFolder, Inverse != 0 ? "twiddle_inverse_" : "twiddle_forward_", "0" + 8'(Pair), ".hex"})
       ) u_twiddle (
         .clk, .rst, .en, .in_start(start[i]), .in_frame_start(frame_start[i]), .in_re(re[i]), .in_im(im[i]),
         .out_start(start[i+1]), .out_frame_start(frame_start[i+1]), .out_re(re[i+1]), .out_im(im[i+1]),

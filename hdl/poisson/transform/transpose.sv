@@ -38,14 +38,14 @@ module transpose #(
     makhoul = {p[IndexWidth-2:0] ^ {(IndexWidth - 1){p[IndexWidth-1]}}, p[IndexWidth-1]};
   endfunction
 
-  // Writer: row counts bursts, turned says whether rows of this frame lie along the memory's columns.
+  // Writer: row counts bursts, transposed says whether rows of this frame lie along the memory's columns.
   logic [IndexWidth-1:0] row, row_q, write_position, write_column;
-  logic write_active, write_turned, write_turned_q, read_turned, last_row_start;
+  logic write_active, write_transposed, write_transposed_q, read_transposed, last_row_start;
   td_burst_counter #(.Words(Columns)) u_write (
     .clk, .rst, .en, .start(in_start), .position(write_position), .active(write_active)
   );
   assign row = in_frame_start ? '0 : row_q;
-  assign write_turned = in_frame_start ? ~read_turned : write_turned_q;
+  assign write_transposed = in_frame_start ? ~read_transposed : write_transposed_q;
   assign write_column = MakhoulIn != 0 ? makhoul(write_position) : write_position;
   assign last_row_start = in_start & (row == IndexWidth'(Columns - 1));
 
@@ -59,32 +59,28 @@ module transpose #(
   assign column = read_position[2*IndexWidth-1:IndexWidth];
   assign read_row = MakhoulOut != 0 ? makhoul(read_position[IndexWidth-1:0]) : read_position[IndexWidth-1:0];
 
-  td_ram #(
-    .Width(Width),
-    .Depth(Columns * Columns),
-    .Style(Style)
-  ) u_ram (
+  td_ram #(.Width(Width), .Depth(Columns * Columns), .Style(Style)) u_ram (
     .clk,
     .write_en     (en & write_active),
-    .write_address(write_turned ? {write_column, row} : {row, write_column}),
+    .write_address(write_transposed ? {write_column, row} : {row, write_column}),
     .write_data   (in_data),
     .read_en      (en & read_active),
-    .read_address (read_turned ? {column, read_row} : {read_row, column}),
+    .read_address (read_transposed ? {column, read_row} : {read_row, column}),
     .read_data    (out_data)
   );
 
   always_ff @(posedge clk) begin
     if (en) begin
       row_q <= row + IndexWidth'(write_active & (write_position == IndexWidth'(Columns - 1)));
-      write_turned_q <= write_turned;
-      if (last_row_start) read_turned <= write_turned;
+      write_transposed_q <= write_transposed;
+      if (last_row_start) read_transposed <= write_transposed;
       read_start <= last_row_start;
       out_frame_start <= read_start;
       out_start <= read_active & (read_position[IndexWidth-1:0] == '0);
     end
     if (rst) begin
       read_start <= 1'b0;
-      read_turned <= 1'b0;
+      read_transposed <= 1'b0;
       out_start <= 1'b0;
       out_frame_start <= 1'b0;
     end

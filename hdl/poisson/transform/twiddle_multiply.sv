@@ -30,7 +30,7 @@ module twiddle_multiply #(
   output logic                       out_frame_start,
   output logic signed [OutWidth-1:0] out_re,          // F + CoeffWidth - 1 - Drop fraction bits, as out_im
   output logic signed [OutWidth-1:0] out_im,
-  output logic [1:0]                 saturations      // values clipped in this cycle
+  output logic [1:0]                 saturations      // clip count, delayed
 );
 
   localparam int SumWidth = InWidth + CoeffWidth + 1;
@@ -56,14 +56,12 @@ module twiddle_multiply #(
     assign unused_position = ^position[PositionWidth-1:BlockWidth];
   end
 
-  logic signed [InWidth-1:0] re_q, im_q, re_q2, im_q2;
+  logic [1:0][InWidth-1:0] re_q, im_q;
   logic [ToSum-1:0] start_q, frame_start_q, active_q;
   always_ff @(posedge clk) begin
     if (en) begin
-      re_q <= in_re;
-      im_q <= in_im;
-      re_q2 <= re_q;
-      im_q2 <= im_q;
+      re_q <= {re_q[0], in_re};
+      im_q <= {im_q[0], in_im};
       {w_minus_im, w_im, w_re} <= factor;
       start_q <= {start_q[ToSum-2:0], in_start};
       frame_start_q <= {frame_start_q[ToSum-2:0], in_frame_start};
@@ -81,7 +79,7 @@ module twiddle_multiply #(
 
   logic signed [SumWidth-1:0] sum_re;
   td_dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_re (
-    .clk, .en, .a0(re_q2), .b0(w_re), .a1(im_q2), .b1(w_minus_im), .sum(sum_re)
+    .clk, .en, .a0(re_q[1]), .b0(w_re), .a1(im_q[1]), .b1(w_minus_im), .sum(sum_re)
   );
   td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round_re (
     .in(sum_re), .out(rounded_re), .clipped(clipped[0])
@@ -90,7 +88,7 @@ module twiddle_multiply #(
   if (RealOnly == 0) begin : g_im
     logic signed [SumWidth-1:0] sum_im;
     td_dot_product #(.AWidth(InWidth), .BWidth(CoeffWidth)) u_im (
-      .clk, .en, .a0(re_q2), .b0(w_im), .a1(im_q2), .b1(w_re), .sum(sum_im)
+      .clk, .en, .a0(re_q[1]), .b0(w_im), .a1(im_q[1]), .b1(w_re), .sum(sum_im)
     );
     td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(OutWidth)) u_round_im (
       .in(sum_im), .out(rounded_im), .clipped(clipped[1])

@@ -23,7 +23,7 @@ CLOCKS_OF_A_BURST_EDGE = 12  # cycles in which a burst begins to enter, or to le
 
 async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
     """Send bursts (count, size, 1) and compare the output with the model of the device."""
-    *formats, alternate = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Alternate")
+    *formats, alternate = parameters(dut, "InputDrop", "Width", "CoeffWidth", "OutputDrop", "OutWidth", "Sine")
     transform, latency = CORES[dut._name]
 
     def model(words: Any, monitor: Any) -> Any:

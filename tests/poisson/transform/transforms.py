@@ -14,7 +14,7 @@ TRANSFORM_PARAMETERS = (
     "CoeffWidth",
     "OutputDrop",
     "OutWidth",
-    "Alternate",
+    "Sine",
 )
 
 
