@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_types_pkg: what travels beside the data between the units, and the bus of the tables.
+// td_types_pkg: what travels beside the data between the units, the buses of tables and registers, and a counter.
 //
 // Members are unsigned and of fixed width: Icarus 11 takes no others.
 
@@ -90,6 +90,22 @@ package td_types_pkg;
     logic [31:0] low;
   } table_answer_t;
 
+  // From the AXI4-Lite port to registers beside those of tactile_depth, which is all that they need to know of an access.
+  typedef struct packed {
+    logic        write;
+    logic [31:0] write_offset;  // of the register, in bytes
+    logic [31:0] write_ones;    // the data, 0 in bytes without strobe
+    logic [31:0] write_mask;    // ones in bytes with strobe
+    logic [31:0] read_offset;
+  } register_command_t;
+
+  // Their answer, in the same cycle.
+  typedef struct packed {
+    logic        writable;  // the register at write_offset is one of them, and takes writes
+    logic        readable;  // the register at read_offset is one of them
+    logic [31:0] data;      // its word; zero for any other
+  } register_answer_t;
+
   // A capture: of the reference frame, or of the zero offset.
   typedef struct packed {
     logic       request;
@@ -125,6 +141,14 @@ package td_types_pkg;
     logic [15:0] peak_column;
     logic [31:0] peak;
   } contact_sums_t;
+
+  // A counter that counts on, and stays at all ones.
+  localparam int StepWidth = 13;
+  function automatic logic [31:0] counted(input logic [31:0] count, input logic [StepWidth-1:0] step);
+    logic [32:0] sum;
+    sum = {1'b0, count} + 33'(step);
+    counted = sum[31:0] | {32{sum[32]}};
+  endfunction
 
 endpackage
 

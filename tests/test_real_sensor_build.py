@@ -59,10 +59,9 @@ def depth_of(
     zero = captured_zero(tactile_depth(no_contact, calibration, replace(config, zero_offset=False)), config)
     frames = np.stack([view.frame for view in views])
     camera = None if choice is None else choice.on(presses.background.shape[:2], (config.rows, config.columns))
-    if camera is None or words is None:
-        entries = bench.frame_entries(frames)
-    else:
-        entries = bench.picture_entries(words, camera.last_word)
+    entries = bench.frame_entries(frames)
+    if camera is not None and words is not None:
+        entries = bench.picture_entries(words, camera)
     folder.mkdir()
     always = [bench.entry(side, bench.chance(0)) for side in ("sink", "source")]
     entries = np.concatenate([np.array(always, np.uint32), entries])

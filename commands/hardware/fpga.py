@@ -19,7 +19,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import as_completed
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -140,7 +140,7 @@ def camera_of(request: Request, camera: CameraConfiguration | None) -> CameraCon
             f"SENSOR={request.sensor.name} sends pictures of {columns} x {rows} pixels, FRAMES has {camera.picture[1]} "
             f"x {camera.picture[0]}: give a picture of that size"
         )
-    return replace(camera, byte_serial=True)
+    return camera
 
 
 def check() -> None:

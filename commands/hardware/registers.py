@@ -26,6 +26,8 @@ from systemrdl.node import FieldNode, RegNode, RootNode
 from commands.common import variables, wrapper
 from commands.common.repository import ROOT, sources
 from tactile_depth import files
+from tactile_depth.camera.pixel_format import chroma_codes
+from tactile_depth.camera_configuration import FORMATS
 
 FUSESOC = ROOT / "tactile_depth.core"
 LAYER = ROOT / "build" / "registers"
@@ -176,6 +178,19 @@ def package(of: Map, registers: list[dict[str, Any]]) -> str:
             *predicate("_".join(filter(None, ("is", of.prefix, "register"))), registers),
             *predicate("_".join(filter(None, ("is", of.prefix, "writable"))), writable),
         ],
+        "Of a pixel format: bits of a sample, words of a pixel, 1 for a Bayer pattern, 1 for YUYV.": [
+            *of_format("format_bits", {name: form.bits for name, form in FORMATS.items()}),
+            *of_format("format_words", {name: form.words for name, form in FORMATS.items()}),
+            *of_format("format_is_bayer", {name: int(form.bayer) for name, form in FORMATS.items()}),
+            *of_format("format_is_yuyv", {name: int(form.is_yuyv) for name, form in FORMATS.items()}),
+        ]
+        if of is CAMERA
+        else [],
+        "Coefficients of BT.601, full range, in units of 2^-12.": [
+            f"localparam int {name} = {code};" for name, code in chroma_codes().items()
+        ]
+        if of is CAMERA
+        else [],
     }
     parts = [(f"// {title}", *lines) for title, lines in sections.items() if lines]
     body = "\n\n".join("\n".join(f"  {line}" for line in part) for part in parts)
@@ -219,6 +234,27 @@ def predicate(name: str, registers: list[dict[str, Any]]) -> list[str]:
         *(f"  {line}" for line in lines),
         f"  {last}: {name} = 1'b1;",
         f"    default: {name} = 1'b0;",
+        "  endcase",
+        "endfunction",
+    ]
+
+
+def of_format(name: str, values: dict[str, int]) -> list[str]:
+    """Return a function of a pixel format; another number counts as the first format."""
+    by_value: dict[int, list[str]] = {}
+    for form, value in values.items():
+        by_value.setdefault(value, []).append(f"CameraFormat{camel(form)}")
+    default = next(iter(by_value))
+    return [
+        f"function automatic int {name}(input int pixel_format);",
+        "  case (pixel_format)",
+        *(
+            f"    {line}"
+            for value, forms in by_value.items()
+            if value != default
+            for line in wrapped(f"{', '.join(forms)}: {name} = {value};", 100)
+        ),
+        f"    default: {name} = {default};",
         "  endcase",
         "endfunction",
     ]

@@ -13,6 +13,7 @@ import numpy as np
 
 from commands.common import repository, wrapper
 from commands.common import simulator as simulation
+from tactile_depth.camera.pixel_format import stream
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import Sensor
@@ -51,17 +52,17 @@ def frame_entries(frames: np.ndarray) -> np.ndarray:
     return entries.reshape(-1)
 
 
-def picture_entries(words: np.ndarray, last_word: int) -> np.ndarray:
+def picture_entries(words: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
     """Return the entries of camera pictures, uint32 (pictures, rows, columns), with blanking after rows and before
     pictures.
 
-    The cycles of the first word and of the word at position `last_word` of a picture are noted.
+    The cycles of the first word of a picture and of the camera's `last_word` are noted.
     """
-    count, rows, columns = words.shape
-    entries = words.copy()
+    entries = stream(words, camera).copy()
+    count, rows, columns = entries.shape
     entries[..., -1] |= LAST
     entries[:, 0, 0] |= USER | NOTE
-    entries.reshape(count, -1)[:, last_word] |= NOTE
+    entries.reshape(count, -1)[:, camera.last_word] |= NOTE
     line = round(LINE_BLANKING * columns)
     blanked = np.concatenate((entries, np.full((count, rows, 1), entry("idle", line), np.uint32)), axis=-1)
     frame = entry("idle", round(FRAME_BLANKING * rows) * (columns + line))

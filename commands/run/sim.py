@@ -66,7 +66,7 @@ def simulate(
         entries = bench.frame_entries(frames.pixels)
         clocks = (total + 4) * pixels
     else:
-        entries = bench.picture_entries(frames.words, frames.camera.last_word)
+        entries = bench.picture_entries(frames.words, frames.camera)
         clocks = 4 * pixels + request.repeat * bench.clocks_of(entries)
     # Twice the expected cycles with gaps and stalls, so that a pipeline that hangs ends with a failure.
     clocks = int(2 * clocks / (1 - request.gaps) / (1 - request.stalls))

@@ -98,7 +98,7 @@ CORES = {
     "camera_setup": Core((1,), "after_reset"),
     "camera_window": Core((1, 2), repeats=2),
     "camera_front_end": Core((1, 2), repeats=2, flat=False),
-    "camera_registers": Core((1,), "axil_registers", outside=("dropped", "lost"), flat=False),
+    "camera_registers": Core((1,), "after_reset", outside=("dropped", "lost"), flat=False),
     "row_reorder": Core((2,), "words"),
     "corner_turn": Core((2,)),
     "divergence": Core((5,)),

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from formal.entries import FULL_WIDTH, ROUNDING, Proof
+from formal.entries import FULL_WIDTH, Proof
+from tactile_depth.camera_configuration import FORMATS
 
 CAMERA_PROOFS: tuple[Proof, ...] = (
     Proof(
         "camera_registers",
-        "every register as the map has it: words, responses, settings that leave, sticky bits, counters",
+        "every register as the map has it: words, settings that leave, sticky bits, counters",
         FULL_WIDTH,
     ),
     *(
@@ -76,22 +77,18 @@ CAMERA_PROOFS: tuple[Proof, ...] = (
             "pixel_format",
             "samples of the window's pixels with their marks, in order; breaks behind them; latency 1",
             FULL_WIDTH,
-            {"Format": form, "Bits": bits, **choice},
+            {"Format": FORMATS[form].code, "Phase": phase},
         )
-        for form, bits, choice in (
-            (0, 8, {"Phase": 1}),
-            (0, 10, {"MsbAligned": 1}),
-            (0, 12, {"MsbAligned": 0}),
-            (1, 8, {}),
-            (2, 8, {"HighByteFirst": 0}),
-            (2, 8, {"HighByteFirst": 1}),
+        for form, phase in (
+            *(("rgb888", 0), ("rgb565", 0), ("rgb565_bytes", 0), ("raw8", 1), ("raw10", 0), ("raw10_lsb", 2)),
+            *(("raw12", 3), ("raw12_lsb", 0)),
         )
     ),
     Proof(
         "pixel_format",
-        "YUYV: luma and chroma of the pixel's own pair, in order; latency 3 and 4, breaks 4",
-        f"coefficients of 0 and 1: products are exact; {ROUNDING}",
-        {"Format": 3, "Bits": 10},
+        "YUYV: colours from luma and chroma of the pixel's own pair, in order; latency 3 and 4, breaks 4",
+        FULL_WIDTH,
+        {"Format": FORMATS["yuyv"].code},
     ),
     *(
         Proof(

@@ -4,7 +4,9 @@
 
 `default_nettype none
 
-module protocol_pixel_format #(
+module protocol_pixel_format
+  import td_camera_map_pkg::*;
+#(
   parameter int Format = 0
 ) (
   input  logic clk,
@@ -24,7 +26,7 @@ module protocol_pixel_format #(
 
   logic reset, live = 1'b0, expects_odd = 1'b0, pixel;
   assign reset = rst | ~holds;
-  assign holds = rst | ~in_valid | (~in_abort & (Format != 3 | in_odd_column == expects_odd));
+  assign holds = rst | ~in_valid | (~in_abort & (format_is_yuyv(Format) == 0 | in_odd_column == expects_odd));
   always_ff @(posedge clk) begin
     live <= live | reset;
     if (en && (in_valid || in_abort)) expects_odd <= in_valid & ~in_odd_column;
@@ -33,7 +35,7 @@ module protocol_pixel_format #(
   assign counts = live & ~reset;
   assign pixel = counts & out_valid;
   assign {counts_out_samples, counts_out_row_start, counts_out_frame_start} = {3{pixel}};
-  assign counts_out_colour = pixel & (Format == 0);
+  assign counts_out_colour = pixel & (format_is_bayer(Format) != 0);
 
 endmodule
 

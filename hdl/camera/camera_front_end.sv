@@ -3,7 +3,7 @@
 //
 //   s_axis -> td_axis_skid -> camera_window -> pixel_format -> black_level -> area_average -> td_axis_skid -> m_axis
 //
-// Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv); WordsPerPixel 2: single bytes.
+// Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv), words or single bytes.
 // Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel per clock.
 // A malformed picture raises one fault for one cycle (camera_window.sv). It leaves as one frame with a row too short or
 // too long, which the frame_guard behind drops whole and flags once; m_axis carries no other malformed frame.
@@ -13,24 +13,15 @@
 `default_nettype none
 
 module camera_front_end
+  import td_camera_map_pkg::*;
   import td_types_pkg::*;
 #(
-  parameter int Rows          = 128,  // of the grid
-  parameter int Columns       = 128,
-  parameter int Numerator     = 15,   // camera pixels for a pixel of the grid: Numerator / Denominator
-  parameter int Denominator   = 4,
-  parameter int WindowColumns = 480,
-  parameter int WindowRows    = 480,
-  parameter int Format        = 0,
-  parameter int Bits          = 10,
-  parameter int Phase         = 0,
-  parameter int MsbAligned    = 1,
-  parameter int HighByteFirst = 0,
-  parameter int WordsPerPixel = 1,
-  parameter int RedCr         = 5743,
-  parameter int GreenCb       = -1410,
-  parameter int GreenCr       = -2925,
-  parameter int BlueCb        = 7258
+  parameter int Rows        = 128,  // of the grid
+  parameter int Columns     = 128,
+  parameter int Numerator   = 15,   // camera pixels for a pixel of the grid: Numerator / Denominator
+  parameter int Denominator = 4,
+  parameter int Format      = CameraFormatRaw10,
+  parameter int Phase       = 0
 ) (
   input  wire                   clk,
   input  wire                   rst,
@@ -48,9 +39,10 @@ module camera_front_end
   output logic                  m_axis_tuser
 );
 
-  localparam int Raw = 0;
-  localparam int Yuyv = 3;
-  localparam int Bayer = Format == Raw ? 1 : 0;
+  localparam int WindowColumns = (Columns * Numerator + Denominator - 1) / Denominator;
+  localparam int WindowRows = (Rows * Numerator + Denominator - 1) / Denominator;
+  localparam int Bits = format_bits(Format);
+  localparam int Bayer = format_is_bayer(Format);
   localparam int GainWidth = 16;
   localparam int SamplesWidth = (Bayer != 0 ? 1 : 3) * (Bits + 2);
 
@@ -68,8 +60,8 @@ module camera_front_end
   logic row_short, row_long, start_missing, start_early, window_outside;
   logic [23:0] word;
   camera_window #(
-    .WindowColumns(WindowColumns), .WindowRows(WindowRows), .WordsPerPixel(WordsPerPixel),
-    .PixelPairs(Format == Yuyv ? 1 : 0)
+    .WindowColumns(WindowColumns), .WindowRows(WindowRows), .WordsPerPixel(format_words(Format)),
+    .PixelPairs(format_is_yuyv(Format))
   ) u_window (
     .clk, .rst, .en, .columns(settings.columns), .rows(settings.rows), .window_x(settings.window_x),
     .window_y(settings.window_y), .s_valid(held_valid), .s_ready(held_ready), .s_data(held_data), .s_last(held_last),
@@ -86,10 +78,7 @@ module camera_front_end
   logic sample_valid, sample_row_start, sample_frame_start, sample_abort;
   logic [1:0] sample_colour;
   logic [SamplesWidth-1:0] samples;
-  pixel_format #(
-    .Format(Format), .Bits(Bits), .MsbAligned(MsbAligned), .HighByteFirst(HighByteFirst), .Phase(Phase),
-    .RedCr(RedCr), .GreenCb(GreenCb), .GreenCr(GreenCr), .BlueCb(BlueCb)
-  ) u_format (
+  pixel_format #(.Format(Format), .Phase(Phase)) u_format (
     .clk, .rst, .en, .in_valid(word_valid), .in_data(word), .in_inside(in_window), .in_odd_row(odd_row),
     .in_odd_column(odd_column), .in_row_start(word_row_start), .in_frame_start(word_frame_start),
     .in_abort(word_abort), .out_valid(sample_valid), .out_samples(samples), .out_colour(sample_colour),
@@ -123,11 +112,6 @@ module camera_front_end
     .s_valid(pixel_valid), .s_ready(en), .s_data({pixel_user, pixel_last, pixel}),
     .m_valid(m_axis_tvalid), .m_ready(m_axis_tready), .m_data({m_axis_tuser, m_axis_tlast, m_axis_tdata})
   );
-
-  if (WindowColumns != (Columns * Numerator + Denominator - 1) / Denominator
-      || WindowRows != (Rows * Numerator + Denominator - 1) / Denominator) begin : g_refused
-    the_window_must_be_the_grid_times_the_ratio u_refused ();
-  end
 
 endmodule
 

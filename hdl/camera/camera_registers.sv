@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// camera_registers: the registers of the camera front end, on AXI4-Lite.
+// camera_registers: the registers of the camera front end, behind the axil_port of axil_registers.
 //
-//   s_axil <-> axil_port -> setting_registers -> settings of camera_front_end
-//                        <- faults, frames_lost: sticky bits and counters
-//                        <> camera_setup: restart, and how it stands
+//   write -> setting_registers -> settings of camera_front_end
+//   read <-- sticky bits and counters <- faults, frames_lost
+//        <-> camera_setup: restart, and its state
 //
-// The map is docs/camera-registers.md; its offsets continue those of axil_registers. A write takes effect in the clock
-// in which axil_port raises `write`, and shows in the next; a read shows the registers as they were before the write of
-// the same clock. An event counts for each clock in which it is high, and reaches status and counters one clock later.
+// The map is docs/camera-registers.md; its offsets continue those of axil_registers. A write takes effect in its cycle,
+// and shows in the next; a read shows the registers as they were before the write of the same cycle. read_data is the
+// word at read_offset, 0 where there is none. An event counts for each cycle in which it is high, and reaches status and counters one cycle later.
 // Model: models/tactile_depth/camera/camera_registers.py, which also has the parameters.
 
 `default_nettype none
 
 module camera_registers
   import td_camera_map_pkg::*;
-  import td_register_map_pkg::AddressWidth;
   import td_types_pkg::*;
 #(
   parameter int PictureColumns = 640,  // after a reset, as the other settings
@@ -27,32 +26,20 @@ module camera_registers
   parameter int BlueGain       = 4096,
   parameter int WindowColumns  = 480,  // of camera_front_end
   parameter int WindowRows     = 480,
-  parameter int Format         = 0,
-  parameter int Bits           = 10,
+  parameter int Format         = CameraFormatRaw10,
   parameter int Phase          = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
 
-  input  wire  [AddressWidth-1:0] s_axil_awaddr,
-  input  wire  [2:0]              s_axil_awprot,  // no effect
-  input  wire                     s_axil_awvalid,
-  output logic                    s_axil_awready,
-  input  wire  [31:0]             s_axil_wdata,
-  input  wire  [3:0]              s_axil_wstrb,
-  input  wire                     s_axil_wvalid,
-  output logic                    s_axil_wready,
-  output logic [1:0]              s_axil_bresp,
-  output logic                    s_axil_bvalid,
-  input  wire                     s_axil_bready,
-  input  wire  [AddressWidth-1:0] s_axil_araddr,
-  input  wire  [2:0]              s_axil_arprot,  // no effect
-  input  wire                     s_axil_arvalid,
-  output logic                    s_axil_arready,
-  output logic [31:0]             s_axil_rdata,
-  output logic [1:0]              s_axil_rresp,
-  output logic                    s_axil_rvalid,
-  input  wire                     s_axil_rready,
+  input  wire                     write,
+  input  wire  [31:0]             write_offset,
+  input  wire  [31:0]             write_ones,     // the data, 0 in bytes without strobe
+  input  wire  [31:0]             write_mask,     // ones in bytes with strobe
+  output logic                    writable,       // write_offset is that of a register that takes writes
+  input  wire  [31:0]             read_offset,
+  output logic                    readable,       // read_offset is that of a register
+  output logic [31:0]             read_data,
 
   output camera_settings_t        settings,       // of camera_front_end
   input  wire camera_faults_t     faults,
@@ -63,17 +50,6 @@ module camera_registers
   input  wire  [7:0]              setup_entry,
   input  wire  [7:0]              setup_found
 );
-
-  logic write, read, write_refused;
-  logic [31:0] write_offset, write_ones, write_mask, read_offset, read_data;
-  assign write_refused = !is_camera_writable(write_offset);
-  axil_port u_port (
-    .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
-    .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
-    .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready, .write, .write_offset, .write_ones, .write_mask,
-    .write_refused, .read, .read_offset, .read_data, .read_refused(!is_camera_register(read_offset)),
-    .read_late(1'b0), .late_data(32'd0), .late_refused(1'b0)
-  );
 
   // Settings.
 
@@ -95,12 +71,14 @@ module camera_registers
     .clk, .rst, .write, .write_offset, .write_ones, .write_mask, .read_offset, .read_data(setting_data),
     .settings(words)
   );
-  assign settings = {
-    words[CameraPictureSetting][CameraPictureColumnsLsb+:13], words[CameraPictureSetting][CameraPictureRowsLsb+:13],
-    words[CameraWindowSetting][CameraWindowXLsb+:13], words[CameraWindowSetting][CameraWindowYLsb+:13],
-    words[CameraBlackLevelSetting][11:0], words[CameraRedGainSetting][15:0], words[CameraGreenGainSetting][15:0],
-    words[CameraBlueGainSetting][15:0]
-  };
+  assign settings.columns = words[CameraPictureSetting][CameraPictureColumnsLsb+:13];
+  assign settings.rows = words[CameraPictureSetting][CameraPictureRowsLsb+:13];
+  assign settings.window_x = words[CameraWindowSetting][CameraWindowXLsb+:13];
+  assign settings.window_y = words[CameraWindowSetting][CameraWindowYLsb+:13];
+  assign settings.black_level = words[CameraBlackLevelSetting][11:0];
+  assign settings.red_gain = words[CameraRedGainSetting][15:0];
+  assign settings.green_gain = words[CameraGreenGainSetting][15:0];
+  assign settings.blue_gain = words[CameraBlueGainSetting][15:0];
 
   // Events, in registers first, so that no path from the front end ends in the counters.
 
@@ -116,19 +94,12 @@ module camera_registers
   assign control = write && write_offset == CameraControlOffset ? write_ones : '0;
   assign setup_restart = control[CameraControlRestartSetupBit];
 
-  // A counter that counts on, and stays at all ones.
-  function automatic logic [31:0] counted(input logic [31:0] count, input logic [7:0] step);
-    logic [32:0] sum;
-    sum = {1'b0, count} + 33'(step);
-    counted = sum[31:0] | {32{sum[32]}};
-  endfunction
-
   always_ff @(posedge clk) begin
     faults_q <= faults;
     lost_q <= frames_lost;
     status <= (status & ~(write && write_offset == CameraStatusOffset ? write_ones : '0)) | status_set;
-    dropped <= counted(control[CameraControlClearCountersBit] ? '0 : dropped, 8'(|faults_q));
-    lost <= counted(control[CameraControlClearCountersBit] ? '0 : lost, lost_q);
+    dropped <= counted(control[CameraControlClearCountersBit] ? '0 : dropped, StepWidth'(|faults_q));
+    lost <= counted(control[CameraControlClearCountersBit] ? '0 : lost, StepWidth'(lost_q));
     if (rst) {faults_q, lost_q, status, dropped, lost} <= '0;
   end
 
@@ -139,7 +110,8 @@ module camera_registers
         word = (WindowColumns << CameraWindowSizeColumnsLsb) | (WindowRows << CameraWindowSizeRowsLsb);
       end
       CameraFormatOffset: begin
-        word = (Format << CameraFormatPixelFormatLsb) | (Phase << CameraFormatPhaseLsb) | (Bits << CameraFormatBitsLsb);
+        word = (Format << CameraFormatPixelFormatLsb) | (Phase << CameraFormatPhaseLsb)
+          | (format_bits(Format) << CameraFormatBitsLsb);
       end
       CameraStatusOffset: begin
         word = status | (32'(setup_done) << CameraStatusSetupDoneBit)
@@ -153,10 +125,9 @@ module camera_registers
       default: word = '0;
     endcase
   end
+  assign writable = is_camera_writable(write_offset);
+  assign readable = is_camera_register(read_offset);
   assign read_data = word | setting_data;
-
-  logic unused_pins;
-  assign unused_pins = ^{read, s_axil_awprot, s_axil_arprot};
 
   if (((PictureColumns | PictureRows | WindowX | WindowY | WindowColumns | WindowRows) >>> 13) != 0)
   begin : g_refused_0

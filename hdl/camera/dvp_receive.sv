@@ -101,6 +101,10 @@ module dvp_receive #(
     end
   end
 
+  if (FifoLog2 < 3) begin : g_refused
+    FifoLog2_must_be_at_least_3_or_nearly_equal_clocks_lose_every_frame u_refused ();
+  end
+
 endmodule
 
 `default_nettype wire

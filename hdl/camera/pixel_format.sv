@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // pixel_format: samples of the pixels of a window, from words in the format of the camera.
 //
-//   Format          word of a pixel                                                    samples
-//   0 RAW8, 10, 12  15:0, to its top or its bottom (MsbAligned); RAW8: 7:0             one, of a Bayer pattern
-//   1 RGB888        R in 23:16, B in 15:8, G in 7:0                                    three
-//   2 RGB565        R in 15:11, G in 10:5, B in 4:0; HighByteFirst: bytes exchanged    three, upper bits repeated below
-//   3 YUYV          Y in 7:0; in 15:8 Cb of even columns, Cr of odd ones               three, BT.601 of full range
+//   Format                 word of a pixel                                          samples
+//   RAW8, RAW10, RAW12     7:0, or at the top of 15:0; *_LSB: at its bottom         one, of a Bayer pattern
+//   RGB888                 R in 23:16, B in 15:8, G in 7:0                          three
+//   RGB565                 R in 15:11, G in 10:5, B in 4:0; *_BYTES: exchanged      three, upper bits repeated below
+//   YUYV                   Y in 7:0; in 15:8 Cb of even columns, Cr of odd ones     three, BT.601 of full range
 //
-// A sample is signed, 2^Bits is full scale. YUYV: R = Y + RedCr (Cr - 128) / 2^12 and so on, rounded half to even to
-// quarters of a grey level (Bits 10), below 0 and above white too: what is averaged later is clipped there.
+// Format is a number of camera_format_e (registers/camera.rdl). A sample is signed, 2^Bits is full scale. YUYV: R = Y +
+// RedCr (Cr - 128) / 2^12 and so on, rounded half to even to quarters of a grey level, below 0 and above white too.
 // Phase: bit 0 the first column of the picture has blue pixels, bit 1 the first row has.
 // Stream in: the pixels of a picture in raster order, in_inside with those of the window. Stream out: those of the
 // window, with their marks and colour (bit 0 a column of blue, bit 1 a row of blue). in_abort passes behind them.
@@ -17,17 +17,13 @@
 
 `default_nettype none
 
-module pixel_format #(
-  parameter int Format        = 0,
-  parameter int Bits          = 10,
-  parameter int MsbAligned    = 1,
-  parameter int HighByteFirst = 0,
-  parameter int Phase         = 0,
-  parameter int RedCr         = 5743,  // from here: YUYV, in units of 2^-12
-  parameter int GreenCb       = -1410,
-  parameter int GreenCr       = -2925,
-  parameter int BlueCb        = 7258,
-  localparam int Channels = Format == 0 ? 1 : 3,
+module pixel_format
+  import td_camera_map_pkg::*;
+#(
+  parameter int Format = CameraFormatRaw10,
+  parameter int Phase  = 0,
+  localparam int Bits = format_bits(Format),
+  localparam int Channels = format_is_bayer(Format) != 0 ? 1 : 3,
   localparam int Width = Bits + 2
 ) (
   input  wire                       clk,
@@ -49,20 +45,20 @@ module pixel_format #(
   output logic                      out_abort
 );
 
-  if (Format != 3) begin : g_word
+  if (format_is_yuyv(Format) == 0) begin : g_word
     logic [Channels*Width-1:0] samples;
-    if (Format == 0) begin : g_raw
-      localparam int Lowest = MsbAligned != 0 && Bits > 8 ? 16 - Bits : 0;
+    if (format_is_bayer(Format) != 0) begin : g_raw
+      localparam int Lowest = Format == CameraFormatRaw10 || Format == CameraFormatRaw12 ? 16 - Bits : 0;
       logic unused_bits;
       assign samples = Width'(in_data[Lowest+:Bits]);
       assign unused_bits = ^in_data;
-    end else if (Format == 1) begin : g_rgb888
+    end else if (Format == CameraFormatRgb888) begin : g_rgb888
       assign samples = {Width'(in_data[15:8]), Width'(in_data[7:0]), Width'(in_data[23:16])};
     end else begin : g_rgb565
       logic [4:0] red, blue;
       logic [5:0] green;
       logic unused_bits;
-      assign {red, green, blue} = HighByteFirst != 0 ? {in_data[7:0], in_data[15:8]} : in_data[15:0];
+      assign {red, green, blue} = Format == CameraFormatRgb565Bytes ? {in_data[7:0], in_data[15:8]} : in_data[15:0];
       assign samples = {
         Width'({blue, blue[4:2]}), Width'({green, green[5:4]}), Width'({red, red[4:2]})
       };
@@ -160,20 +156,11 @@ module pixel_format #(
     assign unused_inputs = ^{in_data[23:16], in_odd_row};
   end
 
-  if (Format < 0 || Format > 3) begin : g_refused_0
-    Format_is_0_to_3 u_refused ();
+  if (Format < 0 || Format >= CameraFormatPixelFormatCount) begin : g_refused_0
+    Format_is_a_number_of_camera_format_e u_refused ();
   end
-  if (Phase < 0 || Phase > 3) begin : g_refused_1
+  if (Phase < 0 || Phase >= CameraFormatPhaseCount) begin : g_refused_1
     Phase_is_0_to_3 u_refused ();
-  end
-  if (Format == 0 && Bits != 8 && Bits != 10 && Bits != 12) begin : g_refused_2
-    Bits_of_RAW_are_8_10_or_12 u_refused ();
-  end
-  if ((Format == 1 || Format == 2) && Bits != 8) begin : g_refused_3
-    Bits_of_RGB_are_8 u_refused ();
-  end
-  if (Format == 3 && Bits != 10) begin : g_refused_4
-    Bits_of_YUYV_are_10 u_refused ();
   end
 
 endmodule

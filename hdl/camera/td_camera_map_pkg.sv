@@ -31,7 +31,7 @@ package td_camera_map_pkg;
   localparam int CameraWindowSizeColumnsLsb = 0;
   localparam int CameraWindowSizeRowsLsb = 16;
   localparam int CameraFormatPixelFormatLsb = 0;
-  localparam int CameraFormatPixelFormatWidth = 2;
+  localparam int CameraFormatPixelFormatWidth = 4;
   localparam int CameraFormatPhaseLsb = 4;
   localparam int CameraFormatPhaseWidth = 2;
   localparam int CameraFormatBitsLsb = 8;
@@ -49,11 +49,17 @@ package td_camera_map_pkg;
   localparam int CameraSetupFoundLsb = 8;
 
   // Values of a field.
-  localparam int CameraFormatPixelFormatCount = 4;
-  localparam int CameraFormatRaw = 0;
-  localparam int CameraFormatRgb888 = 1;
-  localparam int CameraFormatRgb565 = 2;
+  localparam int CameraFormatPixelFormatCount = 10;
+  localparam int CameraFormatRgb888 = 0;
+  localparam int CameraFormatRgb565 = 1;
+  localparam int CameraFormatRgb565Bytes = 2;
   localparam int CameraFormatYuyv = 3;
+  localparam int CameraFormatYuyvBytes = 4;
+  localparam int CameraFormatRaw8 = 5;
+  localparam int CameraFormatRaw10 = 6;
+  localparam int CameraFormatRaw10Lsb = 7;
+  localparam int CameraFormatRaw12 = 8;
+  localparam int CameraFormatRaw12Lsb = 9;
   localparam int CameraFormatPhaseCount = 4;
   localparam int CameraFormatRggb = 0;
   localparam int CameraFormatGrbg = 1;
@@ -96,6 +102,40 @@ package td_camera_map_pkg;
       default: is_camera_writable = 1'b0;
     endcase
   endfunction
+
+  // Of a pixel format: bits of a sample, words of a pixel, 1 for a Bayer pattern, 1 for YUYV.
+  function automatic int format_bits(input int pixel_format);
+    case (pixel_format)
+      CameraFormatYuyv, CameraFormatYuyvBytes, CameraFormatRaw10, CameraFormatRaw10Lsb: format_bits = 10;
+      CameraFormatRaw12, CameraFormatRaw12Lsb: format_bits = 12;
+      default: format_bits = 8;
+    endcase
+  endfunction
+  function automatic int format_words(input int pixel_format);
+    case (pixel_format)
+      CameraFormatRgb565Bytes, CameraFormatYuyvBytes: format_words = 2;
+      default: format_words = 1;
+    endcase
+  endfunction
+  function automatic int format_is_bayer(input int pixel_format);
+    case (pixel_format)
+      CameraFormatRaw8, CameraFormatRaw10, CameraFormatRaw10Lsb, CameraFormatRaw12, CameraFormatRaw12Lsb:
+      format_is_bayer = 1;
+      default: format_is_bayer = 0;
+    endcase
+  endfunction
+  function automatic int format_is_yuyv(input int pixel_format);
+    case (pixel_format)
+      CameraFormatYuyv, CameraFormatYuyvBytes: format_is_yuyv = 1;
+      default: format_is_yuyv = 0;
+    endcase
+  endfunction
+
+  // Coefficients of BT.601, full range, in units of 2^-12.
+  localparam int RedCr = 5743;
+  localparam int GreenCb = -1410;
+  localparam int GreenCr = -2925;
+  localparam int BlueCb = 7258;
 
 endpackage
 

@@ -55,7 +55,6 @@ module event_registers
 
   localparam int Counters = 7;
   logic counters_cleared;
-  localparam int StepWidth = 13;
   logic [StepWidth*Counters-1:0] more;
   logic [32*Counters-1:0] counts;
   assign counters_cleared = write && write_offset == ControlOffset && write_ones[ControlClearCountersBit];
@@ -63,13 +62,6 @@ module event_registers
     events.saturations, StepWidth'(events.record_lost), StepWidth'(events.depth_dropped), StepWidth'(events.dark),
     StepWidth'(frame_dropped), StepWidth'(events.frame_out), StepWidth'(events.frame_in)
   };
-
-  // A counter that counts on, and stays at all ones.
-  function automatic logic [31:0] counted(input logic [31:0] count, input logic [StepWidth-1:0] step);
-    logic [32:0] sum;
-    sum = {1'b0, count} + 33'(step);
-    counted = sum[31:0] | {32{sum[32]}};
-  endfunction
 
   always_ff @(posedge clk) begin
     for (int n = 0; n < Counters; n++) begin

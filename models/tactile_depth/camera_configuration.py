@@ -26,21 +26,28 @@ class PixelFormat:
     Attributes
     ----------
     name : str
-    code : int
-        `Format` of hdl/camera/pixel_format.sv.
     bits : int
         2**bits is full scale of a sample. YUYV: two fraction bits below 8 bits.
     bayer : bool
-        A pixel has one colour, by its place in a pattern of 2 x 2.
-    bytes_per_pixel : int
-        Bytes that a receiver of single bytes (DVP) takes for a pixel; 0: no such receiver delivers the format.
+        A pixel has one colour, by its position in a pattern of 2 x 2.
+    words : int
+        Words of the stream at the input for each pixel: 2 where single bytes arrive.
     """
 
     name: str
-    code: int
     bits: int
-    bayer: bool
-    bytes_per_pixel: int
+    bayer: bool = False
+    words: int = 1
+
+    @property
+    def code(self) -> int:
+        """`Format` of hdl/camera/pixel_format.sv."""
+        return tuple(FORMATS).index(self.name)
+
+    @property
+    def is_yuyv(self) -> bool:
+        """Two neighbours of a row share their chroma."""
+        return self.name.startswith("yuyv")
 
     @property
     def least_ratio(self) -> int:
@@ -51,14 +58,20 @@ class PixelFormat:
 FORMATS = {
     form.name: form
     for form in (
-        PixelFormat("rgb888", 1, 8, False, 0),
-        PixelFormat("rgb565", 2, 8, False, 2),
-        PixelFormat("yuyv", 3, 10, False, 2),
-        PixelFormat("raw8", 0, 8, True, 1),
-        PixelFormat("raw10", 0, 10, True, 0),
-        PixelFormat("raw12", 0, 12, True, 0),
+        PixelFormat("rgb888", 8),
+        PixelFormat("rgb565", 8),
+        PixelFormat("rgb565_bytes", 8, words=2),
+        PixelFormat("yuyv", 10),
+        PixelFormat("yuyv_bytes", 10, words=2),
+        PixelFormat("raw8", 8, bayer=True),
+        PixelFormat("raw10", 10, bayer=True),
+        PixelFormat("raw10_lsb", 10, bayer=True),
+        PixelFormat("raw12", 12, bayer=True),
+        PixelFormat("raw12_lsb", 12, bayer=True),
     )
 }
+"""The formats, in the order of `camera_format_e` of registers/camera.rdl. `_bytes`: single bytes, as `dvp_receive`
+delivers them; `_lsb`: at the bottom of a word of 16 bits in place of its top."""
 
 
 def check_format(pixel_format: str, phase: str) -> None:
@@ -109,10 +122,6 @@ class CameraConfiguration:
         A name of `PHASES`; Bayer formats only.
     window : (x, y, width, height), or None
         The part of the picture that is averaged to the grid; None: the centred crop of `resampling`.
-    byte_serial : bool
-        The receiver delivers single bytes, as a DVP port does, and not whole pixels, as CSI-2 receivers do.
-    msb_aligned : bool
-        RAW10 and RAW12 are at the top of a word of 16 bits, and not at its bottom.
     black_level : int
         Subtracted from every sample, in units of 2**-bits of full scale.
     gains : (red, green, blue)
@@ -124,8 +133,6 @@ class CameraConfiguration:
     pixel_format: str = "rgb888"
     phase: str = PHASES[0]
     window: tuple[int, int, int, int] | None = None
-    byte_serial: bool = False
-    msb_aligned: bool = True
     black_level: int = 0
     gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
@@ -134,10 +141,8 @@ class CameraConfiguration:
         rows, columns = self.picture
         if not all(2 <= length <= LARGEST_PICTURE for length in self.picture):
             raise InputError(f"a picture of {columns} x {rows}: accepted are 2 to {LARGEST_PICTURE} columns and rows")
-        if self.pixel_format == "yuyv" and columns % 2:
-            raise InputError(f"a picture of {columns} columns in yuyv: two columns share a chroma: give an even number")
-        if self.byte_serial and not self.format.bytes_per_pixel:
-            raise InputError(f"byte_serial with {self.pixel_format}: accepted are {', '.join(_serial_formats())}")
+        if self.format.is_yuyv and columns % 2:
+            raise InputError(f"a picture of {columns} columns: two share a chroma in yuyv: give an even number")
         if not 0 <= self.black_level < 1 << self.bits:
             raise InputError(f"black_level={self.black_level}: accepted are 0 to {(1 << self.bits) - 1}")
         if len(self.gains) != 3 or not all(0 <= code < 1 << GAIN_WIDTH for code in self.gain_codes):
@@ -209,7 +214,7 @@ class CameraConfiguration:
     @property
     def words_per_pixel(self) -> int:
         """Words of the stream at the input for each pixel."""
-        return self.format.bytes_per_pixel if self.byte_serial else 1
+        return self.format.words
 
     @property
     def last_word(self) -> int:
@@ -218,7 +223,7 @@ class CameraConfiguration:
         That is the last word of the window's last pixel; in YUYV that of its pair.
         """
         x, y, width, height = self.crop
-        pixels = x + width + (self.pixel_format == "yuyv" and (x + width) % 2)
+        pixels = x + width + (self.format.is_yuyv and (x + width) % 2)
         return ((y + height - 1) * self.picture[1] + pixels) * self.words_per_pixel - 1
 
     @property
@@ -232,7 +237,3 @@ class CameraConfiguration:
     def gain_codes(self) -> tuple[int, int, int]:
         red, green, blue = (round(gain * (1 << GAIN_FRACTION)) for gain in self.gains)
         return red, green, blue
-
-
-def _serial_formats() -> list[str]:
-    return [form.name for form in FORMATS.values() if form.bytes_per_pixel]

@@ -83,13 +83,13 @@ def zero_offset_latency(lanes: int, block_log2: int) -> int:
 
 def pixel_format_latency(camera: CameraConfiguration) -> int:
     """Return the latency of pixel_format; YUYV: of the second pixel of a pair, one more than of its first."""
-    return 4 if camera.pixel_format == "yuyv" else 1
+    return 4 if camera.format.is_yuyv else 1
 
 
 def camera_front_end_latency(camera: CameraConfiguration) -> int:
     """Return the cycles from the camera's `last_word` to the last pixel of the grid, for any gaps."""
     x, _, width, _ = camera.crop
-    first_of_pair = camera.pixel_format == "yuyv" and (x + width) % 2 == 1
+    first_of_pair = camera.format.is_yuyv and (x + width) % 2 == 1
     cores = CAMERA_WINDOW + pixel_format_latency(camera) - first_of_pair + BLACK_LEVEL + AREA_AVERAGE
     return AXIS_SKID + cores + AXIS_SKID
 

@@ -46,9 +46,7 @@ def sensor(config: Configuration) -> Camera:
 def camera_of(config: Configuration) -> CameraConfiguration:
     """Return the front end for the sensor."""
     device = sensor(config)
-    return CameraConfiguration(
-        device.picture, (config.rows, config.columns), "raw8", device.bayer, byte_serial=True, black_level=0
-    )
+    return CameraConfiguration(device.picture, (config.rows, config.columns), "raw8", device.bayer)
 
 
 class CameraBoard(Board):

@@ -14,6 +14,7 @@ import numpy as np
 
 from tactile_depth.camera.block_weights import block_weights, pixels_of
 from tactile_depth.camera.camera_front_end import SETTINGS
+from tactile_depth.camera.pixel_format import stream
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.video.frame_guard import Word
 from tb.axis import video
@@ -77,10 +78,7 @@ class Window:
 
 def camera_words(words: np.ndarray, camera: CameraConfiguration) -> list[Word]:
     """Return the stream of a picture in the camera's format, (rows, columns), one word for each pixel or byte."""
-    if camera.words_per_pixel > 1:
-        words = np.stack([words >> 8 * place & 255 for place in range(camera.words_per_pixel)], -1).reshape(
-            len(words), -1
-        )
+    words = stream(words, camera)
     return video(words.reshape(-1).tolist(), words.shape[1])
 
 

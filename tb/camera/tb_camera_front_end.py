@@ -179,7 +179,7 @@ async def settings_in_every_bit(dut: Any, name: str) -> None:
     bench = Bench(dut)
     await bench.start()
     built, right = bench.camera, camera_settings(bench.camera)
-    crop, pairs = built.crop[2:], built.pixel_format == "yuyv"
+    crop, pairs = built.crop[2:], built.format.is_yuyv
     names = ("columns", "rows", "window_x", "window_y")
     for bit in range(SETTINGS[name]):
         taken: list[tuple[Word, Settings]] = []

@@ -23,7 +23,7 @@ class Bench:
     def __init__(self, dut: Any) -> None:
         self.dut = dut
         self.camera = CameraConfiguration(**json.loads(os.environ["CAMERA"]))
-        self.bayer, self.yuyv = self.camera.format.bayer, self.camera.pixel_format == "yuyv"
+        self.bayer, self.yuyv = self.camera.format.bayer, self.camera.format.is_yuyv
         self.latency = pixel_format_latency(self.camera)
         self.slots = Slots({"in_data": 24, **dict.fromkeys(MARKS, 1)})
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
@@ -35,7 +35,7 @@ class Bench:
         others."""
         rows, columns = self.camera.picture
         words = self.rng.integers(0, 1 << 24, rows * columns)
-        form = self.camera.pixel_format
+        form = self.camera.pixel_format.removesuffix("_bytes")
         fields = {"rgb888": (0, 8, 16), "rgb565": (0, 5, 8), "yuyv": (0, 8)}.get(form, (raw_shift(self.camera),))
         width = self.camera.bits if self.bayer else 8
         place = 0

@@ -16,12 +16,10 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.registers.axil_port import strobed_bits
-from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, WORD
+from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, WORD, Register
 from tb.stream import CLOCK_NS, REGRESS
 
 RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
-OFFSET = {register.offset: register.name for register in MAP}
-UNMAPPED = tuple(offset for offset in range(0, 1 << ADDRESS_WIDTH, 4) if offset not in OFFSET)
 WHOLE = 0xF  # every byte is strobed
 
 
@@ -35,9 +33,12 @@ class RegisterBench:
     """
 
     idle: Mapping[str, int] = MappingProxyType({})  # inputs beside the bus, while a test sets no other value
+    registers: tuple[Register, ...] = MAP
 
     def __init__(self, dut: Any) -> None:
         self.dut, self.clocks = dut, 0
+        self.offset = {register.name: register.offset for register in self.registers}
+        self.name_at = {offset: name for name, offset in self.offset.items()}
         self.random = random.Random(cocotb.RANDOM_SEED)
         Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
 
@@ -96,20 +97,20 @@ class RegisterBench:
         dut = self.dut
         self.inputs = {**self.idle, **inputs}
         # Without a write address and data are random.
-        offset, data, strobe = write or (self.random.choice(tuple(OFFSET)), self.random.getrandbits(32), WHOLE)
-        offset = REGISTERS[offset].offset if isinstance(offset, str) else offset
+        offset, data, strobe = write or (self.random.choice(tuple(self.name_at)), self.random.getrandbits(32), WHOLE)
+        offset = self.offset[offset] if isinstance(offset, str) else offset
         mask = strobed_bits(strobe)
-        name, ones = OFFSET.get(offset, ""), data & mask
-        self.ones = ones
+        name, ones = self.name_at.get(offset, ""), data & mask
+        self.ones, self.write_name = ones, name
         refused = self.refuses(name, ones, mask)
         taken = write is not None and not rst
         allowed = taken and not refused
-        read_offset = REGISTERS[read_at].offset if isinstance(read_at, str) else read_at
+        read_offset = self.offset[read_at] if isinstance(read_at, str) else read_at
         driven = {"write": taken, "write_offset": offset, "write_ones": ones, "write_mask": mask, "rst": rst}
         for pin, value in (driven | {"read_offset": read_offset} | self.inputs).items():
             if hasattr(dut, pin):
                 getattr(dut, pin).value = int(value)
-        self.read_name = OFFSET.get(read_offset, "")
+        self.read_name = self.name_at.get(read_offset, "")
         self.rst, self.allowed = rst, (name, ones, mask) if allowed else None
         await RisingEdge(dut.clk)
         word = self.word(self.read_name)
@@ -127,12 +128,13 @@ class RegisterBench:
     ) -> None:
         """Write and read registers at random, preferably those named, with `random_inputs`."""
         rng = self.random
+        unmapped = tuple(offset for offset in range(0, 1 << ADDRESS_WIDTH, 4) if offset not in self.name_at)
 
         def any_offset() -> int:
             chosen = rng.random()
             if chosen < 0.8:
-                return REGISTERS[rng.choice(registers)].offset
-            return rng.choice(tuple(OFFSET) if chosen < 0.95 else UNMAPPED)
+                return self.offset[rng.choice(registers)]
+            return rng.choice(tuple(self.name_at) if chosen < 0.95 else unmapped)
 
         for _ in range(count):
             data = rng.choice((rng.getrandbits(32), 1 << rng.randrange(32), rng.getrandbits(4), (1 << 32) - 1))
@@ -144,7 +146,7 @@ class RegisterBench:
         """Write and read at every offset that differs in one bit from that of a register, which was written before."""
         for name in registers * 8:
             for bit in range(32):
-                offset = REGISTERS[name].offset ^ 1 << bit
+                offset = self.offset[name] ^ 1 << bit
                 await self.clock((name, WORD, WHOLE), **self.random_inputs())
                 await self.clock((offset, self.random.getrandbits(32) | 1, WHOLE), offset, **self.random_inputs())
                 await self.clock(read_at=name, **self.random_inputs())

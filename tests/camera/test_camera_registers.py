@@ -15,7 +15,7 @@ VGA: dict[str, Any] = {"picture": (480, 640), "grid": (128, 128), "pixel_format"
 OTHER: dict[str, Any] = {
     "picture": (240, 320),
     "grid": (96, 128),
-    "pixel_format": "yuyv",
+    "pixel_format": "yuyv_bytes",
     "window": (7, 5, 256, 192),
     "black_level": 341,
     "gains": (1.5, 0.25, 15.75),

@@ -11,27 +11,31 @@ import pytest
 
 from tactile_depth.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format, pixel_format_parameters
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
+from tactile_depth.registers.register_map import CAMERA_REGISTERS
 
 PICTURE, GRID = (96, 64), (2, 2)
 RAW = [name for name, form in FORMATS.items() if form.bayer]
 
 
 @pytest.mark.structures(
-    "form phase choice",
-    verilator=[("yuyv", 0, 0), ("raw10", 1, 0)],
-    icarus=[("yuyv", 0, 0), ("raw10", 2, 1), ("rgb565", 0, 1), ("rgb888", 0, 0)],
+    "form phase",
+    verilator=[("yuyv", 0), ("raw10", 1)],
+    icarus=[("yuyv", 0), ("raw10_lsb", 2), ("rgb565_bytes", 0), ("rgb888", 0)],
     regress=[
-        *((form, phase, choice) for form in RAW for phase in range(4) for choice in (0, 1)),
-        *((form, 0, choice) for form in ("rgb565", "yuyv") for choice in (0, 1)),
+        *((form, phase) for form in RAW for phase in range(4)),
+        *((form, 0) for form in FORMATS if form not in RAW),
     ],
-    regress_verilator=[("rgb888", 0, 0), ("rgb565", 0, 0), ("raw8", 3, 0), ("raw12", 2, 1)],
+    regress_verilator=[("rgb888", 0), ("rgb565", 0), ("raw8", 3), ("raw12_lsb", 2)],
 )
-def test_rtl(run_tb: Callable[..., None], form: str, phase: int, choice: int) -> None:
-    """Run a format; `choice` selects its second order of bits or bytes."""
+def test_rtl(run_tb: Callable[..., None], form: str, phase: int) -> None:
     arguments: dict[str, Any] = {"picture": PICTURE, "grid": GRID, "pixel_format": form, "phase": PHASES[phase]}
-    arguments |= {"msb_aligned": not choice} if form in RAW else {"byte_serial": bool(choice)}
     camera = CameraConfiguration(**arguments)
     run_tb("pixel_format", pixel_format_parameters(camera), environment={"CAMERA": json.dumps(arguments)})
+
+
+def test_the_formats_are_those_of_the_register() -> None:
+    field = CAMERA_REGISTERS["CAMERA_FORMAT"].field("pixel_format")
+    assert field.values == {name: form.code for name, form in FORMATS.items()}
 
 
 def words(*values: int) -> np.ndarray:
@@ -44,8 +48,9 @@ def camera(form: str, **choices: Any) -> CameraConfiguration:
 
 def test_raw_is_aligned_to_either_end_of_16_bits() -> None:
     assert pixel_format(words(0xFFC0, 0x0040), camera("raw10")).tolist()[0] == [1023, 1]
-    assert pixel_format(words(0x03FF, 0x0001), camera("raw10", msb_aligned=False)).tolist()[0] == [1023, 1]
+    assert pixel_format(words(0x03FF, 0x0001), camera("raw10_lsb")).tolist()[0] == [1023, 1]
     assert pixel_format(words(0xFFF0, 0x0010), camera("raw12")).tolist()[0] == [4095, 1]
+    assert pixel_format(words(0x0FFF, 0x0001), camera("raw12_lsb")).tolist()[0] == [4095, 1]
     assert pixel_format(words(0xFF, 0x01), camera("raw8")).tolist()[0] == [255, 1]
 
 
@@ -58,7 +63,7 @@ def test_components_are_where_vendors_put_them() -> None:
         [0, 0, 255],
         [8, 4, 8],
     ]
-    serial = camera("rgb565", byte_serial=True)
+    serial = camera("rgb565_bytes")
     assert pixel_format(words(0x00F8), serial).tolist()[0] == [[255, 0, 0]]  # the high byte comes first
 
 
@@ -78,7 +83,7 @@ def test_a_grey_picture_comes_back(form: str) -> None:
     grey = np.repeat(np.arange(256, dtype=np.uint8).reshape(16, 16), 3).reshape(16, 16, 3)
     device = CameraConfiguration((16, 16), (1, 1), form)
     samples = pixel_format(photograph(grey, device), device) / (1 << device.bits - 8)
-    coarsest = 255 / 31 / 2 if form == "rgb565" else 0
+    coarsest = 255 / 31 / 2 if form.startswith("rgb565") else 0
     want = grey[..., 0] if device.format.bayer else grey
     assert np.abs(samples - want).max() <= coarsest
 
@@ -94,7 +99,7 @@ def test_a_pattern_has_the_colours_of_its_name(phase: int) -> None:
 def test_bytes_of_a_pixel_come_back_in_either_order() -> None:
     picture = np.random.default_rng(1).integers(0, 256, (4, 8, 3), dtype=np.uint8)
     parallel = CameraConfiguration((4, 8), (1, 1), "rgb565")
-    serial = replace(parallel, byte_serial=True)
+    serial = replace(parallel, pixel_format="rgb565_bytes")
     np.testing.assert_array_equal(
         pixel_format(photograph(picture, parallel), parallel), pixel_format(photograph(picture, serial), serial)
     )

@@ -55,7 +55,7 @@ def run(folder: Path, *arguments: str) -> dict[str, Any]:
     ("form", "arguments"),
     [
         ("raw10", ("BAYER=grbg", "GAPS=0.3")),
-        ("yuyv", ("WINDOW=7,1,33,33",)),  # the window ends between the two pixels of a pair
+        ("yuyv_bytes", ("WINDOW=7,1,33,33",)),  # the window ends between the two pixels of a pair
         *(pytest.param(form, ("GAPS=0.3",), marks=pytest.mark.regress) for form in FORMATS),
         pytest.param("raw12", ("BAYER=bggr", "WINDOW=3,2,33,33", "REPEAT=2"), marks=pytest.mark.regress),
     ],
@@ -125,7 +125,7 @@ def refused(*arguments: str) -> str:
     [
         (("CAMERA=raw11",), "=raw11 is unknown: accepted are rgb888, rgb565"),
         (("CAMERA=raw10", "BAYER=rgbg"), "=rgbg is unknown: accepted are rggb, grbg, gbrg, bggr"),
-        (("CAMERA=yuyv", "BAYER=grbg"), "it goes with raw8, raw10, raw12"),
+        (("CAMERA=yuyv", "BAYER=grbg"), "it goes with raw8, raw10, raw10_lsb, raw12"),
         (("BAYER=grbg",), "BAYER=grbg goes with CAMERA"),
         (("WINDOW=0,0,16,16",), "WINDOW=0,0,16,16 goes with CAMERA"),
         (("CAMERA=raw10", "WINDOW=0,0,16"), "accepted is x,y,width,height in pixels"),

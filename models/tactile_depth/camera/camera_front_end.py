@@ -17,15 +17,11 @@ SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN_WIDTH)
 
 def camera_front_end_parameters(camera: CameraConfiguration) -> dict[str, int]:
     """Parameters of hdl/camera/camera_front_end.sv."""
-    _, _, width, height = camera.crop
     return {
         "Rows": camera.grid[0],
         "Columns": camera.grid[1],
         "Numerator": camera.ratio.numerator,
         "Denominator": camera.ratio.denominator,
-        "WindowColumns": width,
-        "WindowRows": height,
-        "WordsPerPixel": camera.words_per_pixel,
         **pixel_format_parameters(camera),
     }
 

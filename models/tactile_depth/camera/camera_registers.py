@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Behavioural model of hdl/camera/camera_registers.sv: the results of reads, and the effects of writes and events.
 
-The model does not count cycles; registers/axil_port.py does. In one cycle a read sees the registers first, then the
+The model does not count cycles. In one cycle a read sees the registers first, then the
 write takes effect, then the events of the cycle before. This order makes setting win over clearing.
 """
 
@@ -10,23 +10,21 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
-from tactile_depth.camera.camera_front_end import camera_front_end_parameters, camera_settings
+from tactile_depth.camera.camera_front_end import camera_settings
 from tactile_depth.camera.camera_window import FAULTS
-from tactile_depth.camera_configuration import CameraConfiguration
-from tactile_depth.registers.axil_port import Response, offset_of, strobed_bits
+from tactile_depth.camera.pixel_format import pixel_format_parameters
+from tactile_depth.camera_configuration import FORMATS, CameraConfiguration
 from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, WORD
 from tactile_depth.registers.setting_registers import SettingRegisters
 
-BY_OFFSET = {register.offset: register for register in CAMERA_MAP}
 STATUS, CONTROL = CAMERA_REGISTERS["CAMERA_STATUS"], CAMERA_REGISTERS["CAMERA_CONTROL"]
 COUNTERS = ("CAMERA_DROPPED", "CAMERA_LOST")
 GAINS = ("red_gain", "green_gain", "blue_gain")
-OF_FRONT_END = ("WindowColumns", "WindowRows", "Format", "Bits", "Phase")
 
 
 def camera_registers_parameters(camera: CameraConfiguration) -> dict[str, int]:
     """Parameters of hdl/camera/camera_registers.sv."""
-    settings, front_end = camera_settings(camera), camera_front_end_parameters(camera)
+    settings = camera_settings(camera)
     return {
         "PictureColumns": settings["columns"],
         "PictureRows": settings["rows"],
@@ -36,7 +34,9 @@ def camera_registers_parameters(camera: CameraConfiguration) -> dict[str, int]:
         "RedGain": settings["red_gain"],
         "GreenGain": settings["green_gain"],
         "BlueGain": settings["blue_gain"],
-        **{name: front_end[name] for name in OF_FRONT_END},
+        "WindowColumns": camera.crop[2],
+        "WindowRows": camera.crop[3],
+        **pixel_format_parameters(camera),
     }
 
 
@@ -68,7 +68,8 @@ class CameraRegisters:
     def __post_init__(self) -> None:
         p, named = self.parameters, CAMERA_REGISTERS
         window = named["CAMERA_WINDOW_SIZE"].pack(columns=p["WindowColumns"], rows=p["WindowRows"])
-        form = named["CAMERA_FORMAT"].pack(pixel_format=p["Format"], phase=p["Phase"], bits=p["Bits"])
+        bits = tuple(FORMATS.values())[p["Format"]].bits
+        form = named["CAMERA_FORMAT"].pack(pixel_format=p["Format"], phase=p["Phase"], bits=bits)
         self.values.update(dict.fromkeys(named, 0) | {"CAMERA_WINDOW_SIZE": window, "CAMERA_FORMAT": form})
         resets = {
             "CAMERA_PICTURE": named["CAMERA_PICTURE"].pack(columns=p["PictureColumns"], rows=p["PictureRows"]),
@@ -100,31 +101,21 @@ class CameraRegisters:
             **{gain: self.values[f"CAMERA_{gain.upper()}"] for gain in GAINS},
         }
 
-    def read(self, address: int, setup: Setup = Setup()) -> tuple[int, Response]:
-        """Return data and response of a read."""
-        register = BY_OFFSET.get(offset_of(address))
-        if register is None:
-            return 0, Response.SLVERR
+    def read(self, name: str, setup: Setup = Setup()) -> int:
+        """Return the word of a register."""
         shown = {
             STATUS.name: STATUS.pack(setup_done=int(setup.done), setup_failed=int(setup.failed)),
             "CAMERA_SETUP": CAMERA_REGISTERS["CAMERA_SETUP"].pack(entry=setup.entry, found=setup.found),
         }
-        return self.values[register.name] | shown.get(register.name, 0), Response.OKAY
+        return self.values[name] | shown.get(name, 0)
 
-    def write(self, address: int, data: int, strobe: int = 0xF) -> tuple[Response, bool]:
-        """Return the response of a write, and whether it starts the set-up of the camera afresh."""
-        register = BY_OFFSET.get(offset_of(address))
-        if register is None or not register.writable:
-            return Response.SLVERR, False
-        mask = strobed_bits(strobe)
-        ones = data & mask
-        self._settings.write(register.name, ones, mask)
-        if register is STATUS:
-            self.values[STATUS.name] &= ~ones
-        written = CONTROL.unpack(ones) if register is CONTROL else {}
-        if written.get("clear_counters"):
+    def write(self, name: str, ones: int, mask: int) -> None:
+        """Take a write: its data, 0 in bytes without strobe, and a mask of the bytes with strobe."""
+        self._settings.write(name, ones, mask)
+        if name == STATUS.name:
+            self.values[name] &= ~ones
+        if name == CONTROL.name and CONTROL.unpack(ones)["clear_counters"]:
             self.values.update(dict.fromkeys(COUNTERS, 0))
-        return Response.OKAY, bool(written.get("restart_setup"))
 
     def clock(self, faults: Collection[str], frames_lost: int) -> None:
         """Take the events of one cycle, after the write of that cycle. The registers see them one cycle later.

@@ -23,25 +23,18 @@ COEFFICIENTS = {
 
 
 def chroma_codes() -> dict[str, int]:
-    """Return the coefficients of BT.601 in units of 2**-CHROMA_FRACTION, by the parameter of the core."""
+    """Return the coefficients of BT.601 in units of 2**-CHROMA_FRACTION, by their names in td_camera_map_pkg."""
     return {name: round(value * (1 << CHROMA_FRACTION)) for name, value in COEFFICIENTS.items()}
 
 
 def pixel_format_parameters(camera: CameraConfiguration) -> dict[str, int]:
     """Parameters of hdl/camera/pixel_format.sv."""
-    return {
-        "Format": camera.format.code,
-        "Bits": camera.bits,
-        "MsbAligned": int(camera.msb_aligned),
-        "HighByteFirst": int(camera.byte_serial),
-        "Phase": camera.phase_code,
-        **chroma_codes(),
-    }
+    return {"Format": camera.format.code, "Phase": camera.phase_code}
 
 
 def raw_shift(camera: CameraConfiguration) -> int:
     """Return the lowest bit of a RAW sample in its word."""
-    return WORD - camera.bits if camera.msb_aligned and camera.bits > GREY else 0
+    return WORD - camera.bits if camera.pixel_format in ("raw10", "raw12") else 0
 
 
 def pixel_format(words: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
@@ -60,12 +53,12 @@ def pixel_format(words: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
     match camera.pixel_format:
         case "rgb888":
             return np.stack((words >> 16 & 255, words & 255, words >> 8 & 255), axis=-1)
-        case "rgb565":
-            if camera.byte_serial:
+        case "rgb565" | "rgb565_bytes":
+            if camera.pixel_format == "rgb565_bytes":
                 words = (words & 255) << 8 | words >> 8 & 255
             red, green, blue = words >> 11 & 31, words >> 5 & 63, words & 31
             return np.stack((red << 3 | red >> 2, green << 2 | green >> 4, blue << 3 | blue >> 2), axis=-1)
-        case "yuyv":
+        case "yuyv" | "yuyv_bytes":
             luma, chroma = words & 255, (words >> 8 & 255) - CHROMA_OFFSET
             cb, cr = (np.repeat(chroma[:, first::2], 2, axis=1) for first in (0, 1))
             codes = chroma_codes()
@@ -81,6 +74,14 @@ def colours(camera: CameraConfiguration) -> np.ndarray:
     blue_row, blue_column = camera.phase_code >> 1, camera.phase_code & 1
     row, column = np.indices(camera.picture)
     return (row + blue_row) % 2 + (column + blue_column) % 2
+
+
+def stream(words: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
+    """Return the words of pictures as they arrive, (..., rows, words of a row): of a pixel of bytes the first below."""
+    count = camera.words_per_pixel
+    if count == 1:
+        return words
+    return np.stack([words >> 8 * place & 255 for place in range(count)], -1).reshape(*words.shape[:-1], -1)
 
 
 def photograph(picture: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
@@ -100,13 +101,13 @@ def photograph(picture: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
     match camera.pixel_format:
         case "rgb888":
             words = red << 16 | blue << 8 | green
-        case "rgb565":
+        case "rgb565" | "rgb565_bytes":
             five, six = 31 / 255, 63 / 255
             red, green, blue = (np.rint(value).astype(np.int64) for value in (red * five, green * six, blue * five))
             words = red << 11 | green << 5 | blue
-            if camera.byte_serial:
+            if camera.pixel_format == "rgb565_bytes":
                 words = (words & 255) << 8 | words >> 8
-        case "yuyv":
+        case "yuyv" | "yuyv_bytes":
             luma = LUMA[0] * red + LUMA[1] * green + LUMA[2] * blue
             cb, cr = (blue - luma) / BLUE_CB, (red - luma) / RED_CR
             chroma = np.stack([(value[:, ::2] + value[:, 1::2]) / 2 for value in (cb, cr)], axis=-1)
