@@ -308,19 +308,3 @@ def test_a_certificate_that_is_wrong_is_found_out(tmp_path: Path) -> None:
     assert any(fault.startswith("spectral_divide reached") for fault in faults)
     assert any(fault.startswith("column_forward.input saturated") for fault in faults)
     assert output.slopes_headroom_bits < 0
-
-
-@pytest.mark.parametrize(
-    ("words", "named"), [("N=100", "N=100"), ("DEPTH_RANGE=deep", "DEPTH_RANGE=deep"), ("RTL=2", "RTL=2")]
-)
-def test_bad_input(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, words: Any, named: str
-) -> None:
-    monkeypatch.setattr("sys.argv", ["certify", words, f"OUT={tmp_path / 'out'}"])
-    with pytest.raises(SystemExit) as stop:
-        command.main()
-    assert stop.value.code == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1
-    assert named in lines[0]
-    assert not (tmp_path / "out").exists()

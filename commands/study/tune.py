@@ -328,8 +328,8 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     assert widest is not None
     exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
-    print(how)
     files.check(out, ("config.json", "report.json"))
+    print(how)
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:
         measure = _measurement(tuning, calibration, widest, bar)

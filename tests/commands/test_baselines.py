@@ -14,30 +14,7 @@ from commands.study import baseline_methods, baselines, report
 from commands.study.baseline_methods import METHODS, Method, Prepared
 from commands.study.baselines import WARM_UPS
 from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth
-
-
-@pytest.mark.parametrize(
-    ("word", "says"),
-    [
-        ("GRID=64", "unknown variable"),
-        ("GRIDS=64,100", "powers of two from 16 to 512"),
-        ("GRIDS=1024", "powers of two from 16 to 512"),
-        ("GRIDS=,", "powers of two from 16 to 512"),
-        ("RUNS=1", "a whole number from 10"),
-        ("CLOCK_MHZ=nan", "a number from"),
-    ],
-)
-def test_bad_input(word: Any, says: str) -> None:
-    with pytest.raises(InputError, match=says):
-        baselines.parse([word])
-
-
-def test_out_is_a_file(tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="is a file: give a folder"):
-        baselines.run(baselines.parse([f"OUT={tmp_path / 'file'}"]))
 
 
 @pytest.mark.parametrize("threads", [1, 2])

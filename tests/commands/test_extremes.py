@@ -2,7 +2,6 @@
 """Rows of `make extremes`, short: RTL equals the model, saturations are flagged, no code wraps, errors are small."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -123,20 +122,3 @@ def test_the_file_it_leaves() -> None:
     for module, rows in ((extremes, document["extremes"]), (transform_noise, document["compliance"])):
         for each in rows:
             assert len(module.cells(each)) == len(module.HEAD)
-
-
-@pytest.mark.parametrize(
-    ("word", "named"),
-    [("N=100", "N=100"), ("SIM=other", "SIM=other"), ("SHORT=2", "SHORT=2"), ("FRAMES=a", "FRAMES=a")],
-)
-def test_bad_input(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, word: Any, named: str
-) -> None:
-    monkeypatch.setattr("sys.argv", ["extremes", word, f"OUT={tmp_path / 'out'}"])
-    with pytest.raises(SystemExit) as stop:
-        extremes.main()
-    assert stop.value.code == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1
-    assert named in lines[0]
-    assert not (tmp_path / "out").exists()

@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -128,40 +127,6 @@ def test_only_registers_without_reset_are_packed() -> None:
         "connections": {"A": [50], "B": [52], "C": ["0"], "D": ["0"], "Z": [1100]},
     }
     assert ecp5.pack(module({"memory": memory, "chosen": chosen})) == left
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ([], "TARGET= is unknown: accepted is ulx3s"),
-        (["TARGET=ulx3s", "SEEDS=1,x"], "SEEDS=1,x: accepted are different whole numbers"),
-        (["TARGET=ulx3s", "SEEDS=2,2"], "SEEDS=2,2"),
-        (["TARGET=ulx3s", "SEEDS=0"], "whole numbers from 1 with commas"),
-        (["TARGET=ulx3s", "GAPS=0.5"], "GAPS=0.5: unknown variable"),
-        (["TARGET=ulx3s", "N=100"], "100"),
-        (["TARGET=ulx3s", "CLOCK_MHZ=90"], "CLOCK_MHZ=90: accepted are 25, 50, 75, 100, 150"),
-        (["TARGET=ulx3s", "SENSOR=ov7725"], "SENSOR=ov7725 goes with CAMERA=raw8"),
-        (["TARGET=ulx3s", "CAMERA=yuyv"], "CAMERA=yuyv: the board sets cameras to raw8"),
-        (["TARGET=ulx3s", "CAMERA=raw8", "SENSOR=ov2640"], "SENSOR=ov2640 is unknown: accepted are ov7670, ov7725"),
-        (["TARGET=ulx3s", "CAMERA=raw8", "SENSOR=ov5640"], "SENSOR=ov5640 sends pictures of 1280 x 960 pixels"),
-        (["TARGET=ulx3s", "GAIN_WIDTH=12", "REFERENCE=flat"], "gain_width=12 is out of range"),
-        (["TARGET=ulx3s", "CALIBRATION=none.npz"], "none.npz"),
-        (["TARGET=ulx3s", "REFERENCE=none.png"], "none.png"),
-    ],
-)
-def test_bad_input(arguments: Any, message: str, tmp_path: Path) -> None:
-    """Refuse bad input before anything is written."""
-    out = tmp_path / "out"
-    with pytest.raises(InputError, match=message):
-        fpga.run(fpga.parse([*arguments, f"OUT={out}"]), "")
-    assert not out.exists()
-
-
-def test_bad_input_is_one_line() -> None:
-    command = [sys.executable, "-m", "commands", "fpga", "TARGET=ulx4m"]
-    result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=False)
-    assert result.returncode == 2
-    assert result.stderr == "make fpga: TARGET=ulx4m is unknown: accepted is ulx3s\n"
 
 
 @pytest.mark.parametrize(("error", "logs"), [(RuntimeError, 1), (InputError, 0), (KeyboardInterrupt, 0), (None, 0)])

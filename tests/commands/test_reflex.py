@@ -14,42 +14,10 @@ from commands.common import published
 from commands.run import bench, reflex, reflex_model
 from commands.study import report
 from tactile_depth.configuration import COLUMNS, Configuration
-from tactile_depth.errors import InputError
 from tactile_depth.latency import last_pixel_to_first_depth
 
 SMALL = ("N=16", "SIM=icarus", "CLOCK_MHZ=0.5", "TRIALS=2")
 TRIALS = 20_000
-
-
-@pytest.mark.parametrize(
-    ("word", "says"),
-    [
-        ("NN=3", "unknown variable"),
-        ("N", "unknown variable"),
-        ("N=100", "power of two"),
-        ("N=1024", "16 to 512"),
-        ("SPEED=fast", "a number from 5 to 200"),
-        ("SPEED=nan", "a number from 5 to 200"),
-        ("TRIALS=1", "a whole number from 2"),
-        ("HOST_TRIALS=2.5", "a whole number"),
-        ("SEED=-1", "a whole number"),
-        ("CLOCK_MHZ=1", "come faster: accepted is 6.554"),
-    ],
-)
-def test_bad_input(word: Any, says: str) -> None:
-    with pytest.raises(InputError, match=says):
-        reflex.parse([word])
-
-
-def test_an_unknown_simulator(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="SIM=vcs is unknown"):
-        reflex.run(reflex.parse(["SIM=vcs", f"OUT={tmp_path}"]))
-
-
-def test_out_is_a_file(tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="is a file: give a folder"):
-        reflex.run(reflex.parse([*SMALL, f"OUT={tmp_path / 'file'}"]))
 
 
 def setup(**changes: Any) -> Any:

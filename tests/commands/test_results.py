@@ -8,6 +8,7 @@ import resource
 import shutil
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,13 +27,10 @@ SMALL = ["N=16", "SIM=icarus"]
 NAMES = ["depth.npy", "depth.png", "report.json"]
 
 
-def run(monkeypatch: Any, capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
-    """Run `make sim` as the command line does; returns its exit status, its output and the lines on stderr."""
-    monkeypatch.setattr("sys.argv", ["sim", *words])
-    with pytest.raises(SystemExit) as ended:
-        sim.main()
-    output = capsys.readouterr()
-    return ended.value.code, output.out, output.err.splitlines()
+@pytest.fixture
+def run(run_command: Any) -> Any:
+    """Run `make sim` on a small grid; return its exit status, its output and the lines on stderr."""
+    return partial(run_command, "sim", *SMALL)
 
 
 def content(folder: Path) -> dict[Any, Any]:
@@ -56,7 +54,7 @@ def alter(monkeypatch: pytest.MonkeyPatch, change: Any) -> None:
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
 def test_differing_codes_are_counted_and_the_first_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], solver: str
+    tmp_path: Path, run: Any, monkeypatch: pytest.MonkeyPatch, solver: str
 ) -> None:
     left = {"spectral": 12, "tridiagonal": 15 - 12}[solver]  # the last row leaves first
 
@@ -68,14 +66,13 @@ def test_differing_codes_are_counted_and_the_first_is_named(
     alter(monkeypatch, change)
     np.save(tmp_path / "two.npy", np.random.default_rng(1).integers(0, 256, (2, 16, 16, 3), dtype=np.uint8))
     words = [
-        *SMALL,
         f"SOLVER={solver}",
         "REPEAT=3",
         "CALIBRATION=synthetic",
         f"FRAMES={tmp_path / 'two.npy'}",
         f"OUT={tmp_path / 'out'}",
     ]
-    status, output, lines = run(monkeypatch, capsys, *words)
+    status, output, lines = run(*words)
     code = np.load(tmp_path / "out" / "depth.npy")[3, 12, 5]
     assert status == 1
     assert lines == []
@@ -88,10 +85,8 @@ def test_differing_codes_are_counted_and_the_first_is_named(
     assert not report["bit_exact"]
 
 
-def test_equal_codes_are_counted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    status, output, _ = run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'out'}")
+def test_equal_codes_are_counted(tmp_path: Path, run: Any) -> None:
+    status, output, _ = run(f"OUT={tmp_path / 'out'}")
     assert status == 0
     assert "RTL equals the model on every code: 256 codes in 1 frames\n" in output
     report = json.loads((tmp_path / "out" / "report.json").read_text())
@@ -115,29 +110,27 @@ def red(picture: np.ndarray) -> Any:
 
 
 def test_the_picture_marks_differing_codes_in_any_frame(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, run: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     np.save(tmp_path / "grey.npy", np.full((8, 16, 16, 3), 128, np.uint8))
-    words = [*SMALL, f"FRAMES={tmp_path / 'grey.npy'}", "CALIBRATION=synthetic", f"OUT={tmp_path / 'out'}"]
-    run(monkeypatch, capsys, *words)
+    words = [f"FRAMES={tmp_path / 'grey.npy'}", "CALIBRATION=synthetic", f"OUT={tmp_path / 'out'}"]
+    run(*words)
     assert red(io.imread(tmp_path / "out" / "depth.png")) == 0
 
     def change(codes: np.ndarray) -> None:
         codes.reshape(8, 16, 16)[7, 3, 3] += 1  # beyond the frames that are drawn by default
 
     alter(monkeypatch, change)
-    run(monkeypatch, capsys, *words)
+    run(*words)
     assert red(io.imread(tmp_path / "out" / "depth.png")) > 0
 
 
 # Warnings.
 
 
-def test_a_large_error_gives_a_warning(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = [*SMALL, "DATA_WIDTH=12", "FRAMES=contacts", "DEPTH_RANGE=100", f"OUT={tmp_path / 'out'}"]
-    status, _, lines = run(monkeypatch, capsys, *words)
+def test_a_large_error_gives_a_warning(tmp_path: Path, run: Any) -> None:
+    words = ["DATA_WIDTH=12", "FRAMES=contacts", "DEPTH_RANGE=100", f"OUT={tmp_path / 'out'}"]
+    status, _, lines = run(*words)
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     mean = np.mean([error for error in report["rms_percent_of_peak"] if error is not None])
     assert status == 0
@@ -192,37 +185,24 @@ BAD_OUT: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("case", BAD_OUT)
-def test_an_out_that_cannot_be_used_is_refused(
-    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
-) -> None:
+def test_an_out_that_cannot_be_used_is_refused(tmp_path: Any, refused: Any, case: Any) -> None:
     place, reason = BAD_OUT[case]
     out = place(tmp_path)
     before = sorted(tmp_path.rglob("*"))
-    status, _, lines = run(monkeypatch, capsys, *SMALL, f"OUT={out}")
-    assert status == 2
-    assert len(lines) == 1, lines
-    assert lines[0].startswith("make sim: OUT=")
-    assert reason in lines[0]
+    line = refused("sim", *SMALL, f"OUT={out}")
+    assert line.startswith("make sim: OUT=")
+    assert reason in line
     assert sorted(tmp_path.rglob("*")) == before
 
 
 @pytest.mark.parametrize("text", ["a\0b", "\ud800"], ids=["NUL", "half a character"])
 @pytest.mark.parametrize("name", ["OUT", "FRAMES", "REFERENCE", "CALIBRATION", "ZERO", "SOLVER", "AT"])
 def test_a_configuration_file_with_a_character_that_no_path_holds_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, text: str
+    tmp_path: Path, refused: Any, name: str, text: str
 ) -> None:
     (tmp_path / "c.json").write_text(json.dumps({name: text}))
-    status, _, lines = run(monkeypatch, capsys, *SMALL, f"CONFIG={tmp_path / 'c.json'}")
-    assert status == 2
-    assert len(lines) == 1
-    assert f"{name} is {json.dumps(text)}: it holds a character that no path can hold" in lines[0]
-
-
-@pytest.mark.parametrize("word", ["AT=0,nan", "AT=nan,0", "AT=inf,0", "AT=0,-inf"])
-def test_a_position_is_finite(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], word: Any) -> None:
-    status, _, lines = run(monkeypatch, capsys, *SMALL, word)
-    assert status == 2
-    assert lines == [f"make sim: {word}: accepted is x,y in mm from the middle of the frame, as 2.5,-1"]
+    line = refused("sim", *SMALL, f"CONFIG={tmp_path / 'c.json'}")
+    assert f"{name} is {json.dumps(text)}: it holds a character that no path can hold" in line
 
 
 NUMBERS = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPTH_RANGE", "PRESS", "NOISE", "REPEAT")
@@ -230,29 +210,19 @@ NUMBERS = ("N", "ROWS", "COLS", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "DEPT
 
 @pytest.mark.parametrize("name", [*NUMBERS, "SEED", "GAPS", "STALLS", "WAVES"])
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e999"])
-def test_every_number_is_finite(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, value: Any
-) -> None:
-    status, _, lines = run(monkeypatch, capsys, *SMALL, f"{name}={value}")
-    assert status == 2
-    assert len(lines) == 1
-    assert lines[0].startswith(f"make sim: {name}={value}: accepted is a")
+def test_every_number_is_finite(refused: Any, name: str, value: Any) -> None:
+    assert refused("sim", *SMALL, f"{name}={value}").startswith(f"make sim: {name}={value}: accepted is a")
 
 
 # Results replace earlier ones together.
 
 
 @pytest.fixture
-def earlier(
-    tmp_path: Path,
-    tmp_path_factory: pytest.TempPathFactory,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> Any:
+def earlier(tmp_path: Path, run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Return a folder with the results of a run and a file of the user."""
     kept = tmp_path_factory.getbasetemp() / "results-of-a-run"
     if not kept.exists():
-        assert run(monkeypatch, capsys, *SMALL, f"OUT={kept}")[0] == 0
+        assert run(f"OUT={kept}")[0] == 0
     out = tmp_path / "out"
     shutil.copytree(kept, out)
     (out / "notes.txt").write_text("mine")
@@ -274,7 +244,7 @@ LARGEST_FILE = 65_536  # bytes; 100 frames of 16 x 16 take more
     "failing", [0, 5, *(pytest.param(move, marks=pytest.mark.regress) for move in range(1, 5))]
 )
 def test_a_move_that_fails_brings_earlier_results_back(
-    tmp_path: Path, monkeypatch: Any, capsys: pytest.CaptureFixture[str], earlier: Any, failing: Any
+    tmp_path: Path, run: Any, monkeypatch: Any, earlier: Any, failing: Any
 ) -> None:
     before = content(earlier)
     replace, moves = os.replace, []
@@ -286,7 +256,7 @@ def test_a_move_that_fails_brings_earlier_results_back(
         replace(source, target)
 
     monkeypatch.setattr(files.os, "replace", full)
-    status, _, lines = run(monkeypatch, capsys, *SMALL, "SOLVER=tridiagonal", f"OUT={earlier}")
+    status, _, lines = run("SOLVER=tridiagonal", f"OUT={earlier}")
     assert status == 3
     assert lines == [f"make sim: depth.npy: No space left on device: {HELP}"]
     assert content(earlier) == before
@@ -294,7 +264,7 @@ def test_a_move_that_fails_brings_earlier_results_back(
 
 @pytest.mark.parametrize("fresh", [True, False], ids=["no results before", "results before"])
 def test_a_write_that_fails_leaves_nothing_new(
-    tmp_path: Path, monkeypatch: Any, capsys: pytest.CaptureFixture[str], earlier: Any, fresh: Any
+    tmp_path: Path, run: Any, monkeypatch: Any, earlier: Any, fresh: Any
 ) -> None:
     out = tmp_path / "missing" / "new" if fresh else earlier
     before = sorted(tmp_path.rglob("*")), content(earlier)
@@ -303,7 +273,7 @@ def test_a_write_that_fails_leaves_nothing_new(
         raise OSError("4096 requested and 0 written")  # numpy's words for a full disk
 
     monkeypatch.setattr(sim.np, "save", full)
-    status, _, lines = run(monkeypatch, capsys, *SMALL, f"OUT={out}")
+    status, _, lines = run(f"OUT={out}")
     assert status == 3
     assert lines == [f"make sim: a file could not be written to its end: {HELP}"]
     assert (sorted(tmp_path.rglob("*")), content(earlier)) == before
@@ -331,23 +301,19 @@ def test_a_draft_lies_inside_out_so_that_it_is_on_the_same_disk(tmp_path: Path) 
         assert work.parent == tmp_path / "out"
 
 
-def test_a_link_to_a_folder_is_followed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_link_to_a_folder_is_followed(tmp_path: Path, run: Any) -> None:
     (tmp_path / "real").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "real")
-    assert run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'link'}")[0] == 0
+    assert run(f"OUT={tmp_path / 'link'}")[0] == 0
     assert sorted(content(tmp_path / "real")) == NAMES
 
 
-def test_waveforms_of_an_earlier_run_go_and_other_files_stay(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], earlier: Any
-) -> None:
+def test_waveforms_of_an_earlier_run_go_and_other_files_stay(run: Any, earlier: Any) -> None:
     others = ["mine.vcd", "notes.txt"]
-    assert run(monkeypatch, capsys, *SMALL, "WAVES=1", f"OUT={earlier}")[0] == 0
+    assert run("WAVES=1", f"OUT={earlier}")[0] == 0
     assert sorted(content(earlier)) == sorted([*NAMES, *others, "frame_bench.fst"])
     assert json.loads((earlier / "report.json").read_text())["waves"] == ["frame_bench.fst"]
-    assert run(monkeypatch, capsys, *SMALL, f"OUT={earlier}")[0] == 0
+    assert run(f"OUT={earlier}")[0] == 0
     assert sorted(content(earlier)) == sorted([*NAMES, *others])
 
 
@@ -359,24 +325,20 @@ def test_waveforms_of_an_earlier_run_go_and_other_files_stay(
         *(pytest.param(report, marks=pytest.mark.regress) for report in ("[]", '{"waves": "mine.vcd"}', "{}")),
     ],
 )
-def test_a_report_of_something_else_removes_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], earlier: Any, report: Any
-) -> None:
+def test_a_report_of_something_else_removes_nothing(tmp_path: Path, run: Any, earlier: Any, report: Any) -> None:
     (tmp_path / "outside.vcd").touch()
     (earlier / "report.json").write_text(report)
-    assert run(monkeypatch, capsys, *SMALL, f"OUT={earlier}")[0] == 0
+    assert run(f"OUT={earlier}")[0] == 0
     assert sorted(content(earlier)) == sorted([*NAMES, "mine.vcd", "notes.txt"])
     assert (tmp_path / "outside.vcd").exists()
 
 
-def test_a_simulation_that_fails_has_status_3(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_simulation_that_fails_has_status_3(tmp_path: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def crash(*_: Any, **__: Any) -> None:
         raise RuntimeError("the simulation failed: see simulation.log")
 
     monkeypatch.setattr(bench, "play", crash)
-    status, _, lines = run(monkeypatch, capsys, *SMALL, f"OUT={tmp_path / 'out'}")
+    status, _, lines = run(f"OUT={tmp_path / 'out'}")
     assert status == variables.FAILURE
     assert lines == ["make sim: the simulation failed: see simulation.log"]
     assert list(tmp_path.iterdir()) == []

@@ -441,41 +441,24 @@ BAD_INPUT: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("case", BAD_INPUT)
-def test_bad_input(
-    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], case: Any
-) -> None:
+def test_bad_input(tmp_path: Any, refused: Any, case: Any) -> None:
     words = BAD_INPUT[case](tmp_path).split()
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
     arguments = [*([] if any(a.startswith("N=") for a in words) else ["N=16"]), *words, f"OUT={out}"]
-    monkeypatch.setattr("sys.argv", ["sim", *arguments])
-    with pytest.raises(SystemExit) as stop:
-        sim.main()
-    assert stop.value.code == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1, lines
+    line = refused("sim", *arguments)
     value = words[0].partition("=")[2]
-    assert os.path.basename(value) in lines[0], "the line must name what was given"
+    assert os.path.basename(value) in line, "the line must name what was given"
     assert list(out.parent.rglob("*")) == [out], "something was left behind"
 
 
-def test_missing_libpython(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_libpython(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: Any) -> None:
     monkeypatch.setattr("find_libpython.find_libpython", lambda: None)
-    monkeypatch.setattr("sys.argv", ["sim", "N=16", f"OUT={tmp_path / 'out'}"])
-    with pytest.raises(SystemExit) as stop:
-        sim.main()
-    assert stop.value.code == 2
-    assert capsys.readouterr().err.splitlines() == [
-        "make sim: cocotb needs Python's shared library: run `apt-get install libpython3-dev`"
-    ]
+    message = "make sim: cocotb needs Python's shared library: run `apt-get install libpython3-dev`"
+    assert refused("sim", "N=16", f"OUT={tmp_path / 'out'}") == message
 
 
-def test_missing_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: Any) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr("sys.argv", ["sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}"])
-    with pytest.raises(SystemExit) as stop:
-        sim.main()
-    assert stop.value.code == 2
-    assert capsys.readouterr().err.splitlines() == [
-        "make sim: SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`"
-    ]
+    message = "make sim: SIM=icarus, but Icarus Verilog is not installed: run `apt-get install iverilog`"
+    assert refused("sim", "N=16", "SIM=icarus", f"OUT={tmp_path / 'out'}") == message
