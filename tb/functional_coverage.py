@@ -7,7 +7,6 @@ counts to the run folder; commands/verify/coverage.py adds the counts of all run
 """
 
 import json
-import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import product
@@ -23,6 +22,7 @@ from tactile_depth.registers.register_map import MAP
 from tactile_depth.video.frame_guard import FAULTS
 from tb import structs
 from tb.axis import PROFILES
+from tb.settings import RUN
 
 FILE = "functional_coverage.json"
 
@@ -242,6 +242,6 @@ class FunctionalCoverage:
 
 
 def start(dut: Any, config: Configuration, offers: str, accepts: str) -> None:
-    """Count from now to the end of the test, in a run with HDL_COVERAGE=1."""
-    if os.environ.get("HDL_COVERAGE") == "1":
+    """Count from now to the end of the test, in a run that counts coverage."""
+    if RUN.coverage:
         cocotb.start_soon(FunctionalCoverage(dut, config, offers, accepts).watch())

@@ -3,8 +3,8 @@
 
 The device is a netlist with all mutants; its register `mutsel` selects one, and 0 selects none. Starting a simulator
 and importing its testbench takes longer than most mutants need to fail, so one process does both and then forks. The
-child sets the register, runs the tests and ends with the first that fails. Environment: MUTANT_NUMBERS, the mutants to
-run, with commas; MUTANT_JOBS, the number of children at a time; MUTANT_RESULTS, the file that gets a line per result.
+child sets the register, runs the tests and ends with the first that fails. The settings of the run name `mutants`: the
+`numbers` to run, `jobs`, the children at a time, and `results`, the file that gets a line per result.
 """
 
 import json
@@ -18,6 +18,8 @@ from typing import Any
 import cocotb
 import cocotb.regression
 from cocotb.triggers import Timer
+
+from tb.settings import RUN
 
 SURVIVED, KILLED = 0, 1  # exit status of a child
 # A mutant hangs if it takes this many times as long as the unchanged device, plus so many seconds.
@@ -112,11 +114,11 @@ def children(numbers: Any, jobs: int, keep: Any) -> Any:
 
 @cocotb.test(stage=-1)  # before every test of a testbench, whatever their order
 async def every_mutant(dut: Any) -> None:
-    numbers = [int(number) for number in os.environ["MUTANT_NUMBERS"].split(",") if number]
-    with Path(os.environ["MUTANT_RESULTS"]).open("a", buffering=1) as results:
+    wanted = RUN.mutants
+    with Path(wanted["results"]).open("a", buffering=1) as results:
         number = children(
-            numbers,
-            int(os.environ["MUTANT_JOBS"]),
+            wanted["numbers"],
+            wanted["jobs"],
             lambda result: results.write(json.dumps(result) + "\n"),
         )
     if number is None:

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Selection of tests: a test states its level and its needs, and a run states the last level that it plays.
 
-A run with the environment variable LEVEL=formats plays the tests of that level and of the levels before it. The default
-is LEVEL=whole, and LEVEL=long with REGRESS=1. cocotb plays the levels in their order.
+A run with the level `formats` in its settings plays the tests of that level and of the levels before it. The default is
+`whole`, and `long` in a full run. cocotb plays the levels in their order.
 """
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from typing import Any, TypeVar
@@ -13,7 +12,8 @@ from typing import Any, TypeVar
 import cocotb
 
 from tactile_depth.configuration import Configuration
-from tb.stream import REGRESS, configuration
+from tb.settings import RUN
+from tb.stream import configuration
 
 Value = TypeVar("Value")
 
@@ -29,9 +29,7 @@ class Level(IntEnum):
     LONG = 5  # repetitions of a test under another disturbance
 
 
-LEVEL = Level[os.environ.get("LEVEL", "long" if REGRESS else "whole").upper()]
-SECOND_CLIENT = os.environ.get("CLIENT") == "second"  # cocotbext-axi drives the ports
-NETLIST = os.environ.get("NETLIST") == "1"  # the device has pins and parameters, but no names of inner signals
+LEVEL = Level[(RUN.level or ("long" if RUN.full else "whole")).upper()]
 
 
 def up_to(values: Mapping[Level, Sequence[Value]]) -> list[Value]:
@@ -68,7 +66,7 @@ def case(
     chosen = (
         level <= LEVEL
         and (needs is None or needs(configuration()))
-        and (whole_rows or not SECOND_CLIENT)
-        and not (inside and NETLIST)
+        and (whole_rows or not RUN.second_client)
+        and not (inside and RUN.netlist)
     )
     return cocotb.test(timeout_time=milliseconds, timeout_unit="ms", stage=level) if chosen else lambda _: None

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drivers and monitors of the streams between cores, and the loop that most testbenches share."""
 
-import json
-import os
 import random
 from typing import Any
 
@@ -15,11 +13,12 @@ from cocotb_bus.monitors import BusMonitor
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tb.settings import RUN
 
 CLOCK_NS = 6
-REGRESS = os.environ.get("REGRESS", "0") != "0"  # play the full product instead of a selection
+REGRESS = RUN.full  # play the full product instead of a selection
 # Frames or bursts of tests whose cases are rare: ties, values that just clip. Mutants and coverage get more.
-MANY = int(os.environ.get("MANY", "15" if REGRESS else "2"))
+MANY = RUN.repeats or (15 if REGRESS else 2)
 
 
 def sample(values: list[Any]) -> list[Any]:
@@ -33,8 +32,8 @@ def parameters(dut: Any, *names: str) -> tuple[int, ...]:
 
 
 def configuration() -> Configuration:
-    """Return the configuration of the device, from the environment variable CONFIGURATION."""
-    return Configuration(**json.loads(os.environ["CONFIGURATION"]))
+    """Return the configuration of the device."""
+    return Configuration(**RUN.device["configuration"])
 
 
 def uniform(shape: int | tuple[int, ...], width: int, amplitude: float = 1.0) -> np.ndarray:

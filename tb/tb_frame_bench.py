@@ -3,7 +3,6 @@
 registers."""
 
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
 from cocotb_bus.drivers.amba import AXI4LiteMaster
 
 from tactile_depth.registers.register_map import REGISTERS
+from tb.settings import RUN
 
 CLOCK_NS = 6
 READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "FIRST_DEPTH_LATENCY")
@@ -20,7 +20,7 @@ READ = ("STATUS", "FRAMES_IN", "FRAMES_OUT", "FRAMES_DROPPED", "SATURATIONS", "F
 
 @cocotb.test()
 async def play(dut: Any) -> None:
-    wanted = json.loads(os.environ["FRAME_BENCH"])
+    wanted = RUN.device["frame_bench"]
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     dut.rst.value, dut.go.value = 1, 0
     for name, value in wanted["inputs"].items():

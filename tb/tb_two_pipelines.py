@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """two_pipelines: each wrapper has the depth of its own configuration and its own calibration."""
 
-import json
-import os
 import random
 from dataclasses import replace
 from typing import Any
@@ -19,6 +17,7 @@ from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
 from tb.axis import AxisMonitor, AxisSource, video
 from tb.pixels import unpack
+from tb.settings import RUN
 from tb.stream import CLOCK_NS
 
 STEEPNESS = {"left": 1.0, "right": -0.5}  # slope of each gel, relative to the synthetic sensor
@@ -36,7 +35,7 @@ async def codes(dut: Any) -> None:
     """Send a frame to each pipeline at the same time, and compare each depth map with its model."""
     Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
     rng = random.Random(cocotb.RANDOM_SEED)
-    configs = {side: Configuration(**choices) for side, choices in json.loads(os.environ["CONFIGURATIONS"]).items()}
+    configs = {side: Configuration(**choices) for side, choices in RUN.device["configurations"].items()}
     sources = {side: AxisSource(dut, f"{side}_s_axis", prefix="t") for side in configs}
     outputs = {side: AxisMonitor(dut, f"{side}_m_axis", prefix="t") for side in configs}
     dut.rst.value = dut.left_m_axis_tready.value = dut.right_m_axis_tready.value = 1

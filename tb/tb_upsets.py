@@ -7,7 +7,6 @@ modules count as much as memories. Results go to upsets.json in the run folder.
 """
 
 import json
-import os
 import random
 import re
 from dataclasses import dataclass
@@ -27,6 +26,7 @@ from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.tactile_depth import tactile_depth
 from tb.axis import video
 from tb.pixels import pack
+from tb.settings import RUN
 from tb.stream import CLOCK_NS, configuration
 
 FRAMES = 6
@@ -214,7 +214,7 @@ async def upsets(dut: Any) -> None:
     results: list[Any] = []
     first = FLIPPED_IN * device.pixels
     for name, places_of_module in sorted(by_module.items()):
-        wanted = len(results) + int(os.environ["UPSETS"])
+        wanted = len(results) + RUN.device["upsets"]
         while len(results) < wanted:
             place = rng.choice(places_of_module)
             bit = rng.randrange(len(place.handle))

@@ -26,12 +26,12 @@ from tactile_depth.built_in import load, synthetic
 from tactile_depth.errors import InputError
 from tactile_depth.frames import load_frames
 from tactile_depth.press_folder import read_presses
-from tb.stream import REGRESS
+from tb.settings import RUN
 
 EXAMPLES, FULL = 40, 50
 GRID, CAMERA = (16, 16), (20, 24)
 thorough = settings(
-    max_examples=EXAMPLES * (FULL if REGRESS else 1), suppress_health_check=list(HealthCheck), print_blob=True
+    max_examples=EXAMPLES * (FULL if RUN.full else 1), suppress_health_check=list(HealthCheck), print_blob=True
 )
 pytestmark = pytest.mark.filterwarnings("ignore")
 

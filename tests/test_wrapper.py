@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrappers with a configuration inside, and the package of default parameters."""
 
-import json
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,6 +18,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.scenes import render
 from tactile_depth.tactile_depth import tactile_depth, top_parameters, write_roms
+from tb.structures import Structure
 from tb.tb_two_pipelines import calibration
 
 CONFIGURATIONS: dict[str, dict[str, Any]] = {
@@ -58,13 +58,8 @@ def test_two_pipelines_with_two_calibrations_in_one_simulation(
             (folder / side).mkdir(exist_ok=True)
             write_roms(folder / side, calibration(side, config), config)
 
-    run_tb(
-        "two_pipelines",
-        test_module="tb.tb_two_pipelines",
-        roms=tables,
-        environment={"CONFIGURATIONS": json.dumps(CONFIGURATIONS)},
-        files=files,
-    )
+    structure = Structure(device={"configurations": CONFIGURATIONS}, roms=tables)
+    run_tb(structure, toplevel="two_pipelines", test_module="tb.tb_two_pipelines", files=files)
 
 
 def command(*arguments: str) -> tuple[int, str]:

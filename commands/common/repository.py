@@ -5,6 +5,7 @@ These folders hold the same units (`hdl/poisson/divergence.sv`, `tb/poisson/tb_d
 from the tree, and no list is kept by hand.
 """
 
+import importlib
 import re
 import subprocess
 from collections.abc import Mapping, Sequence
@@ -12,8 +13,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from tactile_depth.errors import InputError
+from tb.structures import Mutants, Structure
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
@@ -94,6 +97,22 @@ def sources(top: str | None = None) -> list[Path]:
             instances = re.findall(r"^ +(\w+) (?:#\(|u_\w+ \()", files[name].read_text(), re.MULTILINE)
             waiting += [used for used in instances if used in files and used not in needed]
     return [files[name] for name in sorted(needed, key=lambda name: (name not in packages, name))]
+
+
+def stated(core: str, name: str) -> Any:
+    """Return what the test of a core states under a name (tb/structures.py), None if it states nothing."""
+    file = ROOT / "tests" / cores()[core].block / f"test_{core}.py"
+    return getattr(importlib.import_module(module(file)), name, None) if file.is_file() else None
+
+
+def structures(core: str) -> list[Structure]:
+    """Return the structures of a core that are mutated, and that run as netlists; none for a unit."""
+    return [structure for structure in stated(core, "STRUCTURES") or () if structure.mutants]
+
+
+def mutants(core: str) -> Mutants:
+    """Return the settings of a core for its mutants."""
+    return stated(core, "MUTANTS") or Mutants()
 
 
 def formal(name: str) -> Path | None:

@@ -21,6 +21,7 @@ from cocotb_tools.runner import Runner, Verilator, get_runner
 from commands.common.repository import HDL, ROOT
 from tactile_depth import files
 from tactile_depth.errors import InputError
+from tb.settings import RUN
 
 SIMULATORS = ("verilator", "icarus")
 
@@ -30,8 +31,7 @@ SIMULATORS = ("verilator", "icarus")
 NO_REWRITING = {"COCOTB_REWRITE_ASSERTION_FILES": os.environ.get("COCOTB_REWRITE_ASSERTION_FILES", "")}
 # cocotb would write paths of attachments to results.xml, which cannot hold every path.
 NO_ATTACHMENTS = {"COCOTB_RESULTS_ATTACHMENTS": ""}
-# HDL_COVERAGE=1, set by commands/verify/coverage.py: Verilator counts coverage, in separate builds and data.
-COVERAGE = os.environ.get("HDL_COVERAGE") == "1"
+COVERAGE = RUN.coverage  # Verilator counts coverage, in separate builds and data
 BUILD = ROOT / "build" / "coverage" if COVERAGE else ROOT / "build"
 COVERAGE_ARGUMENTS = (
     # --coverage means these three and --coverage-fsm, which fails inside Verilator.

@@ -18,6 +18,7 @@ from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters, write_roms
+from tb.settings import RunSettings
 
 BENCH = "frame_bench"
 KINDS = {"pixel": 0, "idle": 1, "sink": 2, "source": 3, "reset": 4, "arm": 5}
@@ -179,7 +180,7 @@ def play(
             folder,
             simulator=simulator,
             seed=seed,
-            environment={"FRAME_BENCH": json.dumps(wanted)},
+            environment=RunSettings(device={"frame_bench": wanted}).environment,
             waves=waves,
             log=folder / "simulation.log",
         )

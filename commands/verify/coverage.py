@@ -26,13 +26,14 @@ from typing import NamedTuple
 import tomllib
 
 from commands.common import markdown, repository, variables
-from commands.verify.mutants import MANY
+from tb.settings import RunSettings
 
 DATA = repository.ROOT / "build" / "coverage"
 WAIVERS = Path(__file__).with_name("coverage_waivers.toml")
 GATES = {"line": 100.0, "branch": 100.0, "expr": 100.0, "toggle": 95.0}
 BINS = "functional_coverage.json"
 TOP = "tactile_depth"
+REPEATS = 60  # of rare cases in the tests of the top
 
 LINE = re.compile(r"^C '(.*)' (\d+)$")
 WIDTH = re.compile(r"\b\d+(?='s?h)|(?<=[)\w])\[\d+:0\]")  # widths of literals and of slices, which depend on parameters
@@ -189,11 +190,11 @@ def run_tests() -> int:
     cores = [test for name, test in tests.items() if name != TOP]
     worst = 0
     # The bins need every fault and disturbance with both solvers, so the top repeats its rare cases more often.
-    for more, chosen in (({"MANY": str(MANY)}, [tests[TOP]]), ({}, cores)):
+    for repeats, chosen in ((REPEATS, [tests[TOP]]), (0, cores)):
         command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", "--timeout=3600"]
         command += ["-m", "verilator", *chosen]
-        settings = {"HDL_COVERAGE": "1", "SIM": "verilator", "POWER_UPS": "1", "REGRESS": "1", **more}
-        run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | settings, check=False)
+        settings = RunSettings(full=True, repeats=repeats, power_ups=1, coverage=True)
+        run = subprocess.run(command, cwd=repository.ROOT, env=os.environ | settings.environment, check=False)
         worst = max(worst, run.returncode)
     return worst
 

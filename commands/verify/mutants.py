@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Netlist with all mutants of a core and a register that selects one, and runs of the testbench on each mutant.
 
-structures.py reads the structure of the core from its test.
+The structure of the core stands in its test (tb/structures.py).
 """
 
 import json
@@ -15,10 +15,10 @@ from pathlib import Path
 
 from commands.common import repository
 from commands.common import simulator as simulation
-from commands.verify.structures import Structure
+from tb.settings import RunSettings
+from tb.structures import Structure
 
 SELECTOR = "mutsel"
-MANY = 60  # repetitions of rare cases in tests (tb/stream.py), for mutants and coverage
 # A register becomes an input (its value) and an output (its next value).
 OUTSIDE = """select -set register w:{name} %ci1:+[Q] w:{name} %d
 dffunmap @register
@@ -187,11 +187,11 @@ def run(
     simulator: str,
     jobs: int,
     seed: int,
-    repeats: int = MANY,
+    repeats: int,
 ) -> list[dict]:
     """Run the testbench of the core on each mutant; return a dict with the verdict of each, with the core as number 0.
 
-    `repeats`: of what the testbench repeats (MANY of tb/stream.py).
+    `repeats`: repetitions of rare cases.
 
     Raises RuntimeError: the netlist without a mutant fails, or the simulator does.
     """
@@ -210,19 +210,18 @@ def run(
     )
     results = folder / f"{simulator}.jsonl"
     results.unlink(missing_ok=True)
-    environment = {
-        **structure.environment,
-        "MUTANT_NUMBERS": ",".join(str(mutant.number) for mutant in mutants),
-        "MUTANT_JOBS": str(jobs),
-        "MUTANT_RESULTS": str(results),
-        "OPENBLAS_NUM_THREADS": "1",
-        "REGRESS": "1",
-        "NETLIST": "1",
-        "MANY": str(repeats),
-    }
+    settings = RunSettings(
+        full=True,
+        repeats=repeats,
+        netlist=True,
+        level=structure.level,
+        device=structure.device,
+        mutants={"numbers": [mutant.number for mutant in mutants], "jobs": jobs, "results": str(results)},
+    )
+    environment = {**structure.environment, **settings.environment, "OPENBLAS_NUM_THREADS": "1"}
     _, failed = simulation.run(
         core,
-        f"tb.mutants,{structure.test_module}",
+        f"tb.mutants,{repository.testbench(core)}",
         build,
         folder,
         simulator=simulator,

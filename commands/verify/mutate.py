@@ -16,7 +16,6 @@ import json
 import os
 import sys
 import time
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing.pool import ThreadPool
@@ -28,110 +27,10 @@ from commands.common import repository, variables
 from commands.common.progress import following
 from commands.verify import equivalence, mutants
 from commands.verify.equivalence import EQUIVALENT, settle
-from commands.verify.structures import structure
 
 OUT = repository.ROOT / "build" / "mutate"
 CORE_BAR, TOTAL_BAR = 95.0, 97.0  # per cent of the mutants that are not equivalent: each core, all cores together
 CONTROLS = 4  # killed mutants of each structure that the solver checks too
-
-
-@dataclass(frozen=True)
-class Core:
-    """Settings for mutating a core.
-
-    `structures` are positions in `structures.structures`, of small builds that together contain every relevant generate
-    branch.
-    """
-
-    structures: tuple[int, ...] = (0,)
-    protocol: str = ""  # formal/protocols/protocol_<protocol>.sv; by default protocol_<name>.sv, if there is one
-    rows_are: str = ""  # parameter of the core that the protocol calls Rows
-    columns_are: str = ""  # parameter of the core that the protocol calls Columns
-    # Each simulator gets the survivors of the one before. Icarus needs no build, and sees X.
-    simulators: Sequence[str] = ("icarus",)
-    outside: Sequence[str] = ()  # registers of the core that its testbench writes
-    repeats: int = mutants.MANY  # repetitions of rare cases; fewer if each repetition reaches every case
-    flat: bool = True  # False: mutants of its own cells and of the pins of the cores inside, which have their own runs
-
-
-QUICK_FIRST = ("verilator", "icarus")
-CORES = {
-    "td_round_saturate": Core((0, 1, 11)),
-    "td_multiply": Core((2,)),
-    "td_ramp": Core((2,)),
-    "td_dot_product": Core((3,)),
-    "td_divide": Core((1,)),
-    "td_banked_table": Core((1,)),
-    "td_block_sum": Core((1, 3)),
-    "td_ram": Core((1,)),
-    "td_rom": Core((1,)),
-    "td_delay_line": Core((4, 3)),
-    "td_burst_counter": Core((1,)),
-    "td_axis_skid": Core(),
-    "td_async_fifo": Core((1,)),
-    "threshold_comparator": Core((0, 2)),
-    "frame_guard": Core((1,), outside=("silence",)),
-    "beat_sums": Core((1,)),
-    "contact_sums": Core((1, 2)),
-    "contact_debounce": Core((1,)),
-    "centroid": Core((1,)),
-    "record_packets": Core((1,)),
-    "contact_events": Core((1,), outside=("frame",), simulators=QUICK_FIRST, flat=False),
-    "depth_gate": Core(),
-    "dvp_receive": Core((1,)),
-    "gradient_lookup": Core((1,)),
-    "quadratic_gradient": Core((1,)),
-    "td_gain_map": Core(),
-    "flat_field": Core((0, 2)),
-    "zero_offset": Core((0, 4)),
-    "td_node_map": Core((1, 3)),
-    "reference_capture": Core((1,)),
-    "zero_capture": Core((2, 5)),
-    "thomas_table": Core(),
-    "block_weights": Core((2, 3)),
-    "round_divide": Core((3,), repeats=2),
-    "row_sums": Core((2, 3)),
-    "block_totals": Core((1, 2)),
-    "area_average": Core((2, 4), repeats=2, flat=False),
-    "black_level": Core((1, 2), repeats=2),
-    "pixel_format": Core((2, 3, 4), repeats=2),
-    "camera_setup": Core((1,), "after_reset"),
-    "camera_window": Core((1, 2), repeats=2),
-    "camera_front_end": Core((1, 2), repeats=2, flat=False),
-    "camera_registers": Core((1,), "after_reset", outside=("dropped", "lost"), flat=False),
-    "row_reorder": Core((2,), "words"),
-    "corner_turn": Core((2,)),
-    "divergence": Core((5,)),
-    "transpose": Core((5,), "bursts", rows_are="Columns"),
-    "frame_stack": Core((5, 6)),
-    "spectral_divide": Core((2,), "bursts", rows_are="Columns"),
-    "forward_elimination": Core((2,), "bursts"),
-    "back_substitution": Core((5, 4, 6)),
-    "mode_pairs": Core((4,), "bursts", columns_are="Size"),
-    "sdf_butterfly": Core((2,), "bursts", columns_are="Size"),
-    "twiddle_multiply": Core((6,), "bursts", columns_are="Size"),
-    "sdf_fft": Core((3,), "bursts", columns_are="Size"),
-    "dst_forward": Core((5,), "bursts", columns_are="Size", flat=False),
-    "dst_inverse": Core((5,), "bursts", columns_are="Size", flat=False),
-    "frame_output": Core((1,)),
-    "frame_tags": Core((4,)),
-    "axil_port": Core(protocol="axil_registers"),
-    "setting_registers": Core(protocol="after_reset"),
-    "event_registers": Core(protocol="after_reset", outside=("counts",)),
-    "table_access": Core(),
-    "table_banks": Core(),
-    "axil_registers": Core((1,), simulators=QUICK_FIRST, flat=False),
-    "spectral_solver": Core((2,), "words", rows_are="Columns", simulators=QUICK_FIRST, flat=False),
-    "tridiagonal_solver": Core((4, 9), "words", simulators=QUICK_FIRST, flat=False),
-    "tactile_depth": Core((1,), simulators=("verilator",), flat=False),
-}
-# Files without mutants of their own.
-LEFT_OUT = {
-    **dict.fromkeys(("td_register_map_pkg", "td_camera_map_pkg"), "constants, which the registers are built of"),
-    "td_config_pkg": "constants",
-    "td_types_pkg": "types",
-    **dict.fromkeys(repository.units(), "a part of tactile_depth"),
-}
 
 
 def score(killed: int, counted: int) -> float:
@@ -169,11 +68,17 @@ def lines_of(path: Path) -> int:
     return path.read_bytes().count(b"\n") if path.is_file() else 0
 
 
-def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int) -> Outcome:
+def cores() -> list[str]:
+    """Return the cores that are mutated: every core with structures. The units are parts of tactile_depth."""
+    return [name for name in repository.cores() if repository.structures(name)]
+
+
+def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome:
+    """Mutate each structure of a core, run the mutants, and settle the survivors."""
     outcome, began = Outcome(name), time.monotonic()
-    for index in core.structures:
-        built = structure(name, index)
-        folder = OUT / name / str(index)
+    core = repository.mutants(name)
+    for built in repository.structures(name):
+        folder = OUT / name / built.label
         folder.mkdir(parents=True, exist_ok=True)
         made, every = mutants.make(name, built, count, seed, folder, core.outside, core.flat)
         outcome.every &= every
@@ -199,12 +104,23 @@ def mutate(name: str, core: Core, count: int, seed: int, jobs: int, seconds: int
             for number, (verdict, how) in zip(numbers, shown, strict=True):
                 setattr(outcome, verdict, getattr(outcome, verdict) + 1)
                 outcome.settled_by[how] = outcome.settled_by.get(how, 0) + 1
-                survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
+                survivor = {
+                    "structure": built.label,
+                    "mutant": number,
+                    "what": what[number],
+                    "verdict": verdict,
+                    "how": how,
+                }
                 outcome.survivors.append(survivor)
         for number in sorted(killed)[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
             if settle(graph, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
-                survivor = {"structure": index, "mutant": number, "what": what[number], "verdict": "contradiction"}
+                survivor = {
+                    "structure": built.label,
+                    "mutant": number,
+                    "what": what[number],
+                    "verdict": "contradiction",
+                }
                 outcome.survivors.append(survivor | {"how": "killed, but proven equivalent"})
     outcome.seconds = time.monotonic() - began
     (OUT / name / "outcome.json").write_text(json.dumps(asdict(outcome) | {"score": outcome.score}, indent=1) + "\n")
@@ -229,7 +145,7 @@ RANGES = {"MUTANTS": (1, 100_000), "SEED": (0, 10**9), "JOBS": (1, 1000), "SECON
 
 def parse(arguments: list[str]) -> dict[str, str]:
     choices = {"MUTANTS": "200", "SEED": "1", "JOBS": str(os.cpu_count() or 1), "SECONDS": "60"}
-    choices["CORE"] = ",".join(CORES)
+    choices["CORE"] = ",".join(cores())
     choices |= variables.given(arguments, choices)
     for name, (low, high) in RANGES.items():
         variables.number(choices, name, None, low, high)
@@ -240,11 +156,6 @@ def main() -> None:
     with variables.reported("mutate"):
         choices = parse(sys.argv[1:])
         names = repository.tested(repository.chosen(choices["CORE"]))
-        modules = {path.stem for path in repository.sources()}
-        if modules != CORES.keys() | LEFT_OUT.keys():
-            raise variables.Mismatch(
-                f"commands/verify/mutate.py does not list what is in hdl/: {modules ^ (CORES.keys() | LEFT_OUT.keys())}"
-            )
         sys.exit(run(names, choices))
 
 
@@ -255,7 +166,7 @@ def run(names: list[str], choices: dict[str, str]) -> int:
     outcomes = []
     print(HEAD)
     for name in names:
-        outcomes.append(mutate(name, CORES[name], int(choices["MUTANTS"]), **numbers))
+        outcomes.append(mutate(name, int(choices["MUTANTS"]), **numbers))
         print(row(outcomes[-1]), flush=True)
         for survivor in outcomes[-1].survivors:
             if survivor["verdict"] != EQUIVALENT:

@@ -22,10 +22,11 @@ from commands.common import repository, variables
 from commands.common import simulator as simulation
 from commands.hardware import yosys
 from commands.verify import mutants, mutate
-from commands.verify.structures import Structure, structure
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tb.settings import RunSettings
+from tb.structures import Structure
 
 OUT = repository.ROOT / "build" / "netlists"
 LIBRARY = "share/xilinx/cells_sim.v"  # Yosys' simulation models of the cells
@@ -68,8 +69,7 @@ def cases(names: Sequence[str]) -> list[Case]:
         if name == WHOLE:
             listed += [whole_design(solver) for solver in COLUMNS]
             continue
-        for index in mutate.CORES[name].structures:
-            listed.append(Case(name, f"{name}-{index}", structure(name, index)))
+        listed += [Case(name, f"{name}-{built.label}", built) for built in repository.structures(name)]
     return listed
 
 
@@ -77,18 +77,16 @@ def whole_design(solver: str) -> Case:
     choices: dict[str, Any] = {"columns": WHOLE_SIZE, "rows": WHOLE_SIZE, "solver": solver, "bits_per_channel": 2}
     config = Configuration(**choices)
     built = Structure(
-        WHOLE,
         hdl_parameters(config),
-        repository.testbench(WHOLE),
-        lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
-        {"CONFIGURATION": json.dumps(choices)},
+        device={"configuration": choices},
+        roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
     )
     return Case(WHOLE, f"{WHOLE}-{solver}", built, WHOLE_LEVELS)
 
 
 def netlist(case: Case, folder: Path) -> dict[str, int]:
     """Write netlist.v and wrapper.sv; return the number of cells by type. Raises RuntimeError."""
-    core, outside = case.core, mutate.CORES[case.core].outside
+    core, outside = case.core, repository.mutants(case.core).outside
     if case.structure.roms:
         case.structure.roms(folder)
     top = f"{core}_netlist"
@@ -126,12 +124,12 @@ def run(case: Case, seed: int) -> Result:
         )
         ran, wrong = simulation.run(
             case.core,
-            case.structure.test_module,
+            repository.testbench(case.core),
             place,
             folder,
             simulator=simulator,
             seed=seed,
-            environment={**case.structure.environment, "LEVEL": level, "NETLIST": "1"},
+            environment=RunSettings(netlist=True, level=level, device=case.structure.device).environment,
             log=folder / f"{simulator}.log",
         )
         count, failed = count + ran, failed + wrong
@@ -154,7 +152,7 @@ def row(result: Result) -> str:
 
 def parse(arguments: list[str]) -> tuple[list[str], int]:
     """Return the names of cores, and the seed. Raises InputError."""
-    values = {"CORE": ",".join(mutate.CORES), "SEED": "1"}
+    values = {"CORE": ",".join(mutate.cores()), "SEED": "1"}
     values |= variables.given(arguments, values)
     names = repository.tested(repository.chosen(values["CORE"]))
     return names, variables.number(values, "SEED", 1, 0, 10**9)

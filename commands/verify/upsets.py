@@ -13,6 +13,7 @@ from commands.common import simulator as simulation
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tb.settings import RunSettings
 
 CASES: dict[str, dict[str, Any]] = {
     "spectral": {"columns": 16, "bits_per_channel": 2},
@@ -43,7 +44,7 @@ def run(case: str, upsets: int, seed: int, folder: Path) -> list[dict[str, Any]]
         folder,
         simulator="icarus",
         seed=seed,
-        environment={"CONFIGURATION": json.dumps(CASES[case]), "UPSETS": str(upsets)},
+        environment=RunSettings(device={"configuration": CASES[case], "upsets": upsets}).environment,
         log=log,
     )
     if failed or not count:

@@ -5,8 +5,6 @@ The output goes through the model of frame_guard, which follows the core: each b
 frame.
 """
 
-import json
-import os
 import random
 from dataclasses import replace
 from typing import Any
@@ -23,6 +21,7 @@ from tactile_depth.latency import camera_front_end_latency
 from tactile_depth.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
+from tb.settings import RUN
 from tb.stream import CLOCK_NS, MANY, sample
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
@@ -32,7 +31,7 @@ SETTLE = 60
 class Bench:
     def __init__(self, dut: Any, offers: str = "none", stalls: str = "none") -> None:
         self.dut = dut
-        self.camera = CameraConfiguration(**json.loads(os.environ["CAMERA"]))
+        self.camera = CameraConfiguration(**RUN.device["camera"])
         self.random = random.Random(cocotb.RANDOM_SEED)
         self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
         dut.rst.value = 1

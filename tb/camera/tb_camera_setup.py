@@ -13,6 +13,7 @@ from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
 from tactile_depth.camera.camera_setup import CameraSetup, Entry, Kind
 from tb.camera.sccb_camera import SccbCamera
+from tb.settings import RUN
 from tb.stream import CLOCK_NS, REGRESS, parameters, sample
 
 Fault = Callable[[str, int, int], int | None]
@@ -45,7 +46,7 @@ class Bench:
     """Device, its model in step with it, and a camera on its lines."""
 
     def __init__(self, dut: Any, faults: Fault | None = None, acknowledges: bool = True) -> None:
-        self.dut, self.list = dut, LISTS[os.environ["LIST"]]
+        self.dut, self.list = dut, LISTS[RUN.device["list"]]
         self.address_bytes, self.device_id, quarter, millisecond, attempts = parameters(dut, *COUNTS)
         self.model = CameraSetup(self.list, self.address_bytes, self.device_id, quarter, millisecond, attempts)
         checks = {entry.address: entry.data for entry in self.list if entry.kind == Kind.CHECK}
@@ -146,7 +147,7 @@ async def faults_that_end(dut: Any, kind: str, times: int) -> None:
 async def faults_that_stay(dut: Any) -> None:
     """Let an entry fail always: the list ends after the set number of attempts, with the entry's number and the value
     read."""
-    list_of = LISTS[os.environ["LIST"]]
+    list_of = LISTS[RUN.device["list"]]
     attempts = parameters(dut, "Attempts")[0]
     compared = [index for index, entry in enumerate(list_of) if entry.kind in (Kind.WRITE, Kind.CHECK)]
     bench, wrong = Bench(dut), 0

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """pixel_format against its model: every code of every field, any window, gaps, pauses, broken pictures, resets."""
 
-import json
-import os
 from typing import Any
 
 import cocotb
@@ -12,6 +10,7 @@ from tactile_depth.camera.pixel_format import colours, pixel_format, raw_shift
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.latency import pixel_format_latency
 from tb.camera.slots import Slot, Slots, unpacked
+from tb.settings import RUN
 from tb.stream import MANY, drive
 
 OUTPUTS = ["out_valid", "out_samples", "out_colour", "out_row_start", "out_frame_start", "out_abort"]
@@ -22,7 +21,7 @@ MARKS = ("in_inside", "in_odd_row", "in_odd_column", "in_row_start", "in_frame_s
 class Bench:
     def __init__(self, dut: Any) -> None:
         self.dut = dut
-        self.camera = CameraConfiguration(**json.loads(os.environ["CAMERA"]))
+        self.camera = CameraConfiguration(**RUN.device["camera"])
         self.bayer, self.yuyv = self.camera.format.bayer, self.camera.format.is_yuyv
         self.latency = pixel_format_latency(self.camera)
         self.slots = Slots({"in_data": 24, **dict.fromkeys(MARKS, 1)})
@@ -127,7 +126,7 @@ async def windows(dut: Any, gap: float, pause: float) -> None:
     """Send whole and broken pictures with random windows; the picture after a broken one follows at once or later."""
     bench = Bench(dut)
     small = bench.rng.integers(0, 1 << 24, (4, 6))
-    bench.camera = CameraConfiguration(**{**json.loads(os.environ["CAMERA"]), "picture": small.shape, "grid": (2, 2)})
+    bench.camera = CameraConfiguration(**{**RUN.device["camera"], "picture": small.shape, "grid": (2, 2)})
     for _ in range(10 * MANY):
         bench.picture(small, bench.window(), gap)
         if bench.slots.random.random() < 0.5:
@@ -142,7 +141,7 @@ async def windows(dut: Any, gap: float, pause: float) -> None:
 async def resets(dut: Any) -> None:
     bench = Bench(dut)
     small = bench.rng.integers(0, 1 << 24, (4, 6))
-    bench.camera = CameraConfiguration(**{**json.loads(os.environ["CAMERA"]), "picture": small.shape, "grid": (2, 2)})
+    bench.camera = CameraConfiguration(**{**RUN.device["camera"], "picture": small.shape, "grid": (2, 2)})
     for age in range(bench.latency + 2):
         for pixels in (6, 5, 4):
             bench.picture(small, (0, 0, 6, 4), 0.0, pixels)

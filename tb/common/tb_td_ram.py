@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_ram against its model: every word read, with reads and writes of different addresses in the same cycle."""
 
-import os
 import random
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 import cocotb
 
 from tactile_depth.common.td_ram import ram
+from tb.settings import RUN
 from tb.stream import drive, parameters
 
 
@@ -16,7 +16,7 @@ from tb.stream import drive, parameters
 async def reads_and_writes(dut: Any) -> None:
     width, depth = parameters(dut, "Width", "Depth")
     chance = random.Random(cocotb.RANDOM_SEED)
-    file = os.environ.get("FILE")
+    file = RUN.device["file"]
     before = [int(line, 16) for line in Path(file).read_text().split()] if file else [None] * depth
 
     def clock(read_address: Any = None, write_address: Any = None) -> Any:

@@ -25,7 +25,7 @@ from tb.axil import Master, RegisterClient
 from tb.axis import AxisMonitor, AxisSink, AxisSource, BeatMonitor, positions, profile, video
 from tb.pixels import pack
 from tb.second_client import SecondMaster, SecondSink, SecondSource
-from tb.selection import SECOND_CLIENT
+from tb.settings import RUN
 from tb.stream import CLOCK_NS, configuration
 from tb.tactile_depth import device_tables
 from tb.tactile_depth.contact_watch import RECORD, ContactWatch
@@ -57,7 +57,7 @@ class Pipeline:
         master: Any
         self.source: Any
         self.sink: Any
-        if SECOND_CLIENT:
+        if RUN.second_client:
             self.source = SecondSource(dut, profile(offers, 1))
             self.sink = SecondSink(dut, profile(accepts, 2))
             master = SecondMaster(dut)
@@ -108,7 +108,7 @@ class Pipeline:
 
     def forget(self) -> None:
         """Clear the records of the monitors."""
-        if SECOND_CLIENT:
+        if RUN.second_client:
             self.sink.words()
         self.into.forget()
         self.out.forget()
@@ -194,7 +194,7 @@ class Pipeline:
         `contents` holds the content of the tables for each frame, if it changes.
         """
         await self.drain()
-        if SECOND_CLIENT:
+        if RUN.second_client:
             assert self.sink.words() == self.out.words, "the second client's sink saw other words than the monitor"
         checked = self.scoreboard.compare(
             self.into, self.out, self.timeout, contents or self.tables.content, not self.stalled

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames through tactile_depth: codes, latencies and intervals with gaps and stalls, at the limits of the words."""
 
-import json
-import os
 from itertools import pairwise, product, repeat
 from typing import Any
 
@@ -15,6 +13,7 @@ from tactile_depth.registers.register_map import REGISTERS
 from tactile_depth.tactile_depth import default_parameters, top_parameters
 from tb.axis import PROFILES
 from tb.selection import Level, case, up_to
+from tb.settings import RUN
 from tb.stream import MANY, configuration
 from tb.tactile_depth.bench import CONTROL, started
 from tb.tactile_depth.scoreboard import STATUS
@@ -40,7 +39,7 @@ async def the_configuration_is_that_of_the_models(dut: Any) -> None:
     The pitch belongs to a calibration and is not derived.
     """
     pipeline = await started(dut)
-    derived = top_parameters(pipeline.config) | json.loads(os.environ.get("PARAMETERS", "{}"))
+    derived = top_parameters(pipeline.config) | RUN.device.get("parameters", {})
     del derived["PitchNm"]
     word = dut.Config.value
     device = {name: word[32 * n + 31 : 32 * n].to_signed() for n, name in enumerate(default_parameters())}

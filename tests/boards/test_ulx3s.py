@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tops of the ULX3S board in simulation, at a small grid and a fast line."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from tactile_depth.camera.register_lists import setup_parameters, write_list
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import top_parameters, write_roms
 from tb.boards.tb_ulx3s_camera_bench import camera_of, sensor
+from tb.structures import ICARUS, VERILATOR, Structure
 
 CLOCK_MHZ = 100
 CLOCKS_A_BIT = 4
@@ -35,38 +35,52 @@ def board_values(config: Configuration) -> dict[str, int]:
     }
 
 
-@pytest.mark.seeds
-@pytest.mark.structures("", verilator=[()], regress=[()])
-def test_rtl(run_tb: Callable[..., None], simulator: str, tmp_path: Path) -> None:
-    level = {"LEVEL": "first"} if simulator == "icarus" else {}  # 20 times slower there
-    choices: dict[str, Any] = SMALL | {"bits_per_channel": 2}
-    config = Configuration(**choices)
-    run_tb(
-        "ulx3s",
+DEVICE = SMALL | {"bits_per_channel": 2}
+BEHIND_A_CAMERA = SMALL | REAL_SENSOR
+
+
+def built() -> Structure:
+    config = Configuration(**DEVICE)
+    return Structure(
         board_values(config),
+        on=VERILATOR,
+        device={"configuration": DEVICE},
         roms=lambda folder: write_roms(folder, synthetic(config.bits_per_channel), config),
-        environment={"CONFIGURATION": json.dumps(choices), **level},
-        files=[*SOURCES["ulx3s"], wrapper.write(tmp_path, "ulx3s", top_parameters(config))],
+        name="ulx3s",
     )
 
 
-@pytest.mark.seeds
-@pytest.mark.structures("", icarus=[()], regress_verilator=[()])
-def test_camera(run_tb: Callable[..., None], tmp_path: Path) -> None:
-    """The top behind a camera, with the real-sensor build: RAW8, two by two pixels for each of the grid."""
-    choices = SMALL | REAL_SENSOR
-    config = Configuration(**choices)
+def built_camera() -> Structure:
+    config = Configuration(**BEHIND_A_CAMERA)
     device = sensor(config)
-    inside = wrapper.write(tmp_path, "ulx3s", top_parameters(config), camera=camera_of(config))
 
     def roms(folder: Path) -> None:
         write_roms(folder, synthetic(config.bits_per_channel), config)
         write_list(folder, device.entries)
 
-    run_tb(
-        "ulx3s_camera_bench",
+    return Structure(
         board_values(config) | setup_parameters(device),
+        on=ICARUS,
+        late=VERILATOR,
+        device={"configuration": BEHIND_A_CAMERA},
         roms=roms,
-        environment={"CONFIGURATION": json.dumps(choices)},
-        files=[*SOURCES["ulx3s"], inside, ROOT / "tb" / "ulx3s_camera_bench.sv"],
+        name="camera",
     )
+
+
+@pytest.mark.seeds
+@pytest.mark.structures([built()])
+def test_rtl(run_tb: Callable[..., None], simulator: str, structure: Structure, tmp_path: Path) -> None:
+    inside = wrapper.write(tmp_path, "ulx3s", top_parameters(Configuration(**DEVICE)))
+    level = "first" if simulator == "icarus" else ""  # 20 times slower there
+    run_tb(structure, files=[*SOURCES["ulx3s"], inside], level=level)
+
+
+@pytest.mark.seeds
+@pytest.mark.structures([built_camera()])
+def test_camera(run_tb: Callable[..., None], structure: Structure, tmp_path: Path) -> None:
+    """The top behind a camera, with the real-sensor build: RAW8, two by two pixels for each of the grid."""
+    config = Configuration(**BEHIND_A_CAMERA)
+    inside = wrapper.write(tmp_path, "ulx3s", top_parameters(config), camera=camera_of(config))
+    bench = ROOT / "tb" / "ulx3s_camera_bench.sv"
+    run_tb(structure, toplevel="ulx3s_camera_bench", files=[*SOURCES["ulx3s"], inside, bench])

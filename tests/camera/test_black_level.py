@@ -2,6 +2,7 @@
 """black_level: RTL against the model; samples and black levels stay within the bits of a sample."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,17 +10,25 @@ import pytest
 from tactile_depth.camera.black_level import black_level
 from tactile_depth.camera.pixel_format import pixel_format
 from tactile_depth.camera_configuration import FORMATS, CameraConfiguration
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "bits channels",
-    verilator=[(10, 1)],
-    icarus=[(10, 1), (8, 3)],
-    regress=[(12, 1), (10, 3), (8, 1)],
-    regress_verilator=[(8, 3)],
+def built(bits: int, channels: int, **runs: Any) -> Structure:
+    return Structure({"Bits": bits, "Channels": channels}, **runs)
+
+
+STRUCTURES = (
+    built(10, 1, on=BOTH, mutants=True),
+    built(8, 3, on=ICARUS, late=VERILATOR, mutants=True),
+    built(12, 1),
+    built(10, 3),
+    built(8, 1),
 )
-def test_rtl(run_tb: Callable[..., None], bits: int, channels: int) -> None:
-    run_tb("black_level", {"Bits": bits, "Channels": channels})
+MUTANTS = Mutants(repeats=2)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("form", FORMATS)

@@ -4,23 +4,37 @@
 from collections.abc import Callable
 from fractions import Fraction
 from math import ceil
+from typing import Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.camera.block_weights import block_weights, pixels_of
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "numerator denominator",
-    verilator=[(15, 4)],
-    icarus=[(1, 1), (7, 5), (8, 1)],
-    regress=[(15, 4), (2, 1), (3, 2), (127, 16), (4, 3)],
-    regress_verilator=[(1, 1)],
+def built(numerator: int, denominator: int, **runs: Any) -> Structure:
+    return Structure({"Numerator": numerator, "Denominator": denominator}, **runs)
+
+
+STRUCTURES = (
+    built(15, 4, on=VERILATOR),
+    built(1, 1, on=ICARUS, late=VERILATOR),
+    built(7, 5, on=ICARUS, mutants=True),
+    built(8, 1, on=ICARUS, mutants=True),
+    built(2, 1),
+    built(3, 2),
+    built(127, 16),
+    built(4, 3),
 )
-def test_rtl(run_tb: Callable[..., None], numerator: int, denominator: int) -> None:
-    run_tb("block_weights", {"Numerator": numerator, "Denominator": denominator})
+REFUSED = {
+    "Denominator=0": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
+    "Numerator=3": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.integers(1, 60), st.integers(1, 30), st.integers(1, 40))

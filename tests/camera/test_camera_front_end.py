@@ -2,7 +2,6 @@
 """camera_front_end: RTL against the model, the model against the resampling of the Python package."""
 
 import itertools
-import json
 import math
 import subprocess
 from collections.abc import Callable
@@ -17,6 +16,7 @@ from tactile_depth.camera.camera_front_end import camera_front_end, camera_front
 from tactile_depth.camera.pixel_format import photograph
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.resampling import resampling
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 GRID = (4, 8)
 
@@ -31,34 +31,41 @@ COLOURED = [form for form in FORMATS if not FORMATS[form].bayer]
 PATTERNS = [(form, phase) for form in FORMATS if FORMATS[form].bayer for phase in PHASES]
 
 
-def every_format_phase_and_ratio(each: int) -> list[tuple[dict[str, Any]]]:
+def every_format_phase_and_ratio(each: int) -> list[dict[str, Any]]:
     """Return structures: each format, with each phase and order of bytes or bits, with `each` ratios in turn."""
     sizes = [(math.ceil(GRID[0] * ratio) + 1, int(GRID[1] * ratio)) for ratio in RATIOS]
     pictures = itertools.cycle(sizes)
     coloured = [arguments(form, next(pictures)) for form in COLOURED for _ in range(max(each, 2))]
     pictures = itertools.cycle(sizes[RATIOS.index(Fraction(2)) :])
     patterns = [arguments(form, next(pictures), phase=phase) for form, phase in PATTERNS for _ in range(each)]
-    return [(choices,) for choices in (*coloured, *patterns)]
+    return [*coloured, *patterns]
 
 
-@pytest.mark.structures(
-    "choices",
-    verilator=[(arguments("raw10", (17, 34), phase="gbrg"),)],
-    icarus=[
-        (arguments("raw8", (9, 17), phase="grbg"),),
-        (arguments("yuyv_bytes", (10, 16)),),
-        (arguments("rgb888", (4, 9)),),
-    ],
-    regress=[
-        *every_format_phase_and_ratio(3),
-        (arguments("yuyv", (7, 18), window=[3, 1, 10, 5]),),
-        (arguments("yuyv", (7, 18), window=[4, 1, 9, 5]),),
-    ],
-    regress_verilator=every_format_phase_and_ratio(1),
-)
-def test_rtl(run_tb: Callable[..., None], choices: dict[str, Any]) -> None:
+def built(choices: dict[str, Any], **runs: Any) -> Structure:
     camera = CameraConfiguration(**choices)
-    run_tb("camera_front_end", camera_front_end_parameters(camera), environment={"CAMERA": json.dumps(choices)})
+    return Structure(camera_front_end_parameters(camera), device={"camera": choices}, **runs)
+
+
+STRUCTURES = (
+    built(arguments("raw10", (17, 34), phase="gbrg"), on=VERILATOR),
+    built(arguments("raw8", (9, 17), phase="grbg"), on=ICARUS, mutants=True),
+    built(arguments("yuyv_bytes", (10, 16)), on=ICARUS, mutants=True),
+    built(arguments("rgb888", (4, 9)), on=ICARUS),
+    *(built(choices) for choices in every_format_phase_and_ratio(3)),
+    *(built(choices, late=VERILATOR) for choices in every_format_phase_and_ratio(1)),
+    built(arguments("yuyv", (7, 18), window=[3, 1, 10, 5])),
+    built(arguments("yuyv", (7, 18), window=[4, 1, 9, 5])),
+)
+MUTANTS = Mutants(repeats=2, flat=False)
+REFUSED = {
+    "Format=-1": "Format_is_a_number_of_camera_format_e",
+    "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
+    "Rows=4096": "WindowColumns_and_WindowRows_must_be_2_to_8191",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize(
@@ -80,7 +87,7 @@ def test_verilator_has_no_warning_at_any_ratio(form: str, ratio: Fraction) -> No
 @pytest.mark.parametrize("each", [1, 3])
 def test_every_format_phase_and_ratio_is_among_the_structures(each: int) -> None:
     """On Verilator, and on Icarus."""
-    cameras = [CameraConfiguration(**choices) for (choices,) in every_format_phase_and_ratio(each)]
+    cameras = [CameraConfiguration(**choices) for choices in every_format_phase_and_ratio(each)]
     assert {(camera.pixel_format, camera.phase) for camera in cameras if camera.format.bayer} == set(PATTERNS)
     assert {camera.pixel_format for camera in cameras} == set(FORMATS)
     assert {camera.ratio for camera in cameras if not camera.format.bayer} == set(RATIOS)

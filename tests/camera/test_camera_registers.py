@@ -10,6 +10,7 @@ from tactile_depth.camera.camera_front_end import camera_settings
 from tactile_depth.camera.camera_registers import CameraRegisters, camera_registers_parameters
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.registers.register_map import CAMERA_MAP, MAP
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 VGA: dict[str, Any] = {"picture": (480, 640), "grid": (128, 128), "pixel_format": "raw10", "phase": "grbg"}
 OTHER: dict[str, Any] = {
@@ -22,11 +23,33 @@ OTHER: dict[str, Any] = {
 }
 
 
-@pytest.mark.structures(
-    "choices", verilator=[(VGA,)], icarus=[(OTHER,)], regress=[(VGA,)], regress_verilator=[(OTHER,)]
+def built(choices: dict[str, Any], **runs: Any) -> Structure:
+    return Structure(camera_registers_parameters(CameraConfiguration(**choices)), **runs)
+
+
+STRUCTURES = (
+    built(VGA, on=VERILATOR),
+    built(OTHER, on=ICARUS, late=VERILATOR, mutants=True),
 )
-def test_rtl(run_tb: Callable[..., None], choices: dict[str, Any]) -> None:
-    run_tb("camera_registers", camera_registers_parameters(CameraConfiguration(**choices)))
+MUTANTS = Mutants(
+    "axil_registers",
+    outside=(
+        "dropped",
+        "lost",
+    ),
+    flat=False,
+)
+REFUSED = {
+    "PictureColumns=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
+    "WindowY=-1": "pictures_and_windows_have_up_to_8191_rows_and_columns",
+    "WindowRows=8192": "pictures_and_windows_have_up_to_8191_rows_and_columns",
+    "BlackLevel=4096": "BlackLevel_must_fit_12_bits_and_gains_16",
+    "BlueGain=65536": "BlackLevel_must_fit_12_bits_and_gains_16",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("choices", [VGA, OTHER])

@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import pytest
 
@@ -20,21 +21,41 @@ from tactile_depth.camera.register_lists import (
 from tactile_depth.errors import InputError
 from tb.camera.sccb_camera import SccbCamera
 from tb.camera.tb_camera_setup import LISTS
+from tb.structures import BOTH, ICARUS, Mutants, Structure
 
 XCLK_HZ = 24e6
 TIMES = {"QuarterClocks": 4, "MillisecondClocks": 3, "XclkHalfClocks": 2, "Attempts": 4}
 
 
-@pytest.mark.structures("entries", both=[("short",)], icarus=[("wide",)])
-def test_rtl(run_tb: Callable[..., None], entries: str) -> None:
+def built(entries: str, **runs: Any) -> Structure:
     device = {"short": (1, 0x42), "wide": (2, 0x78)}[entries]
     camera = Camera(entries, *device, picture=(1, 1), bayer="bggr", frames_per_s=1, entries=LISTS[entries])
-    run_tb(
-        "camera_setup",
+    return Structure(
         {**setup_parameters(camera), **TIMES},
+        device={"list": entries},
         roms=partial(write_list, entries=camera.entries),
-        environment={"LIST": entries},
+        name=entries,
+        **runs,
     )
+
+
+STRUCTURES = (
+    built("short", on=BOTH),
+    built("wide", on=ICARUS, mutants=True),
+)
+MUTANTS = Mutants("after_reset")
+REFUSED = {
+    "AddressBytes=3": "AddressBytes_must_be_1_or_2",
+    "QuarterClocks=3": "QuarterClocks_must_be_at_least_4_the_line_takes_three_to_be_seen",
+    "Entries=1": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
+    "Attempts=0": "MillisecondClocks_and_Entries_must_be_at_least_2_XclkHalfClocks_and_Attempts_1",
+    "DeviceId=67": "DeviceId_must_be_an_even_byte",
+    "DeviceId=256": "DeviceId_must_be_an_even_byte",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("name", list(CAMERAS))

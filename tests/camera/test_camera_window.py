@@ -2,28 +2,43 @@
 """camera_window: RTL against the model, the model against the table of its header."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from tactile_depth.camera.camera_window import Settings, Watched, camera_window
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, positions, video
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 PICTURE, WINDOW = Settings(8, 6, 2, 1), (4, 3)
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 
 
-@pytest.mark.structures(
-    "width height words pairs count_width",
-    verilator=[(4, 3, 1, 0, 13)],
-    icarus=[(4, 3, 1, 0, 5), (3, 2, 2, 1, 5)],
-    regress=[(2, 2, 1, 1, 13), (5, 4, 2, 0, 13)],
-    regress_verilator=[(3, 2, 2, 1, 13)],
-)
-def test_rtl(run_tb: Callable[..., None], width: int, height: int, words: int, pairs: int, count_width: int) -> None:
+def built(width: int, height: int, words: int, pairs: int, count_width: int, **runs: Any) -> Structure:
     """With few bits for columns and rows, small pictures reach every bit."""
     window = {"WindowColumns": width, "WindowRows": height, "CountWidth": count_width}
-    run_tb("camera_window", {**window, "WordsPerPixel": words, "PixelPairs": pairs})
+    return Structure({**window, "WordsPerPixel": words, "PixelPairs": pairs}, **runs)
+
+
+STRUCTURES = (
+    built(4, 3, 1, 0, 13, on=VERILATOR),
+    built(4, 3, 1, 0, 5, on=ICARUS, mutants=True),
+    built(3, 2, 2, 1, 5, on=ICARUS, mutants=True),
+    built(2, 2, 1, 1, 13),
+    built(5, 4, 2, 0, 13),
+    built(3, 2, 2, 1, 13, late=VERILATOR),
+)
+MUTANTS = Mutants(repeats=2)
+REFUSED = {
+    "WindowColumns=1": "WindowColumns_and_WindowRows_must_be_2_to_8191",
+    "WindowRows=8192": "WindowColumns_and_WindowRows_must_be_2_to_8191",
+    "WordsPerPixel=3": "WordsPerPixel_is_1_or_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def picture(start: int) -> list[Word]:

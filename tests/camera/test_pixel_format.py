@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """pixel_format: RTL against the model, the model against BT.601 in double precision and against pictures."""
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -12,25 +11,39 @@ import pytest
 from tactile_depth.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format, pixel_format_parameters
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.registers.register_map import CAMERA_REGISTERS
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 PICTURE, GRID = (96, 64), (2, 2)
 RAW = [name for name, form in FORMATS.items() if form.bayer]
 
 
-@pytest.mark.structures(
-    "form phase",
-    verilator=[("yuyv", 0), ("raw10", 1)],
-    icarus=[("yuyv", 0), ("raw10_lsb", 2), ("rgb565_bytes", 0), ("rgb888", 0)],
-    regress=[
-        *((form, phase) for form in RAW for phase in range(4)),
-        *((form, 0) for form in FORMATS if form not in RAW),
-    ],
-    regress_verilator=[("rgb888", 0), ("rgb565", 0), ("raw8", 3), ("raw12_lsb", 2)],
-)
-def test_rtl(run_tb: Callable[..., None], form: str, phase: int) -> None:
+def built(form: str, phase: int, **runs: Any) -> Structure:
     arguments: dict[str, Any] = {"picture": PICTURE, "grid": GRID, "pixel_format": form, "phase": PHASES[phase]}
     camera = CameraConfiguration(**arguments)
-    run_tb("pixel_format", pixel_format_parameters(camera), environment={"CAMERA": json.dumps(arguments)})
+    return Structure(pixel_format_parameters(camera), device={"camera": arguments}, **runs)
+
+
+STRUCTURES = (
+    built("yuyv", 0, on=BOTH, mutants=True),
+    built("raw10", 1, on=VERILATOR, late=()),
+    built("raw10_lsb", 2, on=ICARUS, mutants=True),
+    built("rgb565_bytes", 0, on=ICARUS, mutants=True),
+    built("rgb888", 0, on=ICARUS, late=VERILATOR),
+    built("rgb565", 0, late=BOTH),
+    built("yuyv_bytes", 0),
+    built("raw8", 3, late=VERILATOR),
+    built("raw12_lsb", 2, late=VERILATOR),
+    *(built(form, phase) for form in RAW for phase in range(4)),
+)
+MUTANTS = Mutants(repeats=2)
+REFUSED = {
+    "Format=10": "Format_is_a_number_of_camera_format_e",
+    "Phase=4": "Phase_is_0_to_3",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def test_the_formats_are_those_of_the_register() -> None:
@@ -49,8 +62,8 @@ def camera(form: str, **choices: Any) -> CameraConfiguration:
 def test_raw_is_aligned_to_either_end_of_16_bits() -> None:
     assert pixel_format(words(0xFFC0, 0x0040), camera("raw10")).tolist()[0] == [1023, 1]
     assert pixel_format(words(0x03FF, 0x0001), camera("raw10_lsb")).tolist()[0] == [1023, 1]
-    assert pixel_format(words(0xFFF0, 0x0010), camera("raw12")).tolist()[0] == [4095, 1]
     assert pixel_format(words(0x0FFF, 0x0001), camera("raw12_lsb")).tolist()[0] == [4095, 1]
+    assert pixel_format(words(0xFFF0, 0x0010), camera("raw12")).tolist()[0] == [4095, 1]
     assert pixel_format(words(0xFF, 0x01), camera("raw8")).tolist()[0] == [255, 1]
 
 

@@ -3,24 +3,37 @@
 
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.camera.round_divide import WHITE, round_divide
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "total_width weight_width drop",
-    verilator=[(36, 8, 14)],
-    icarus=[(36, 8, 14), (12, 1, 2), (17, 7, 2)],
-    regress=[(20, 3, 4), (50, 25, 16)],
-    regress_verilator=[(12, 1, 2)],
+def built(total_width: int, weight_width: int, drop: int, **runs: Any) -> Structure:
+    return Structure({"TotalWidth": total_width, "WeightWidth": weight_width, "Drop": drop}, **runs)
+
+
+STRUCTURES = (
+    built(36, 8, 14, on=BOTH),
+    built(12, 1, 2, on=ICARUS, late=VERILATOR),
+    built(17, 7, 2, on=ICARUS, mutants=True),
+    built(20, 3, 4),
+    built(50, 25, 16),
 )
-def test_rtl(run_tb: Callable[..., None], total_width: int, weight_width: int, drop: int) -> None:
-    run_tb("round_divide", {"TotalWidth": total_width, "WeightWidth": weight_width, "Drop": drop})
+MUTANTS = Mutants(repeats=2)
+REFUSED = {
+    "TotalWidth=9": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",
+    "WeightWidth=0": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",
+    "Drop=1": "TotalWidth_must_be_at_least_10_plus_Drop_WeightWidth_at_least_1_and_Drop_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.integers(-(2**37), 2**37 - 1), st.integers(1, 2**25 - 1), st.integers(0, 4))

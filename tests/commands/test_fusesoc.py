@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """tactile_depth.core: its list of files is hdl/, and its generator writes a module and its tables."""
 
-import json
 import os
 import re
 import shutil
@@ -17,6 +16,7 @@ from cocotb_tools.config import pygpi_entry_point
 from find_libpython import find_libpython
 
 from commands.common import repository, simulator
+from tb.settings import RunSettings
 
 CORE = repository.ROOT / "tactile_depth.core"
 
@@ -124,10 +124,9 @@ def test_a_project_that_depends_on_this_one_is_simulated(tmp_path: Path) -> None
 
 def test_the_target_sim_runs_the_testbench_of_the_whole(tmp_path: Path, core: Any) -> None:
     assert core["targets"]["sim"]["flow_options"]["cocotb_module"] == repository.testbench("tactile_depth")
-    choices = json.dumps({"columns": 16, "rows": 8, "solver": "tridiagonal"})
-    environment = cocotb_environment(
-        repository.ROOT, repository.ROOT / "models", COCOTB_RANDOM_SEED="1", LEVEL="first", CONFIGURATION=choices
-    )
+    choices = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
+    settings = RunSettings(level="first", device={"configuration": choices}).environment
+    environment = cocotb_environment(repository.ROOT, repository.ROOT / "models", COCOTB_RANDOM_SEED="1", **settings)
     fusesoc(tmp_path, "--target", "sim", "tactile_depth", **environment)
     assert passed(tmp_path) == 2
 

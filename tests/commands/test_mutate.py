@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`make mutate`: on one small core every verdict is the right one; every core of hdl/ is listed."""
+"""`make mutate`: on one small core every verdict is the right one; every core of hdl/ but the units is mutated."""
 
 import itertools
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ from commands.common import repository
 from commands.verify import mutants, mutate
 from commands.verify.equivalence import HOLDS, Gates, Graph, clocks, confined, graph
 from commands.verify.mutants import SELECTOR
-from commands.verify.structures import structure
 
 SMALL = "td_burst_counter"
 
@@ -23,13 +21,13 @@ def outcome(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
 
     def run() -> Any:
         monkeypatch.setattr(mutate, "OUT", tmp_path)
-        return mutate.mutate(SMALL, mutate.CORES[SMALL], count=40, seed=1, jobs=1, seconds=5)
+        return mutate.mutate(SMALL, count=40, seed=1, jobs=1, seconds=5)
 
     return run
 
 
-def test_every_core_is_listed() -> None:
-    assert {path.stem for path in repository.sources()} == mutate.CORES.keys() | mutate.LEFT_OUT.keys()
+def test_every_core_but_the_units_is_mutated() -> None:
+    assert set(mutate.cores()) == repository.cores().keys() - set(repository.units())
 
 
 def test_mutants_are_killed_or_proven_equivalent(outcome: Any) -> None:
@@ -43,8 +41,7 @@ def test_mutants_are_killed_or_proven_equivalent(outcome: Any) -> None:
 def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a reset inside a burst and without pauses, mutants of the reset and of the enable survive."""
     monkeypatch.setattr(mutate, "CORE_BAR", 99.0)  # of 40 mutants one is a hole
-    built = replace(structure(SMALL, mutate.CORES[SMALL].structures[0]), test_module="tests.commands.weak_bench")
-    monkeypatch.setattr(mutate, "structure", lambda core, index: built)
+    monkeypatch.setattr(repository, "testbench", lambda core: "tests.commands.weak_bench")
     result = outcome()
     assert result.different > 0
     assert not result.passed
@@ -53,15 +50,15 @@ def test_holes_are_seen(outcome: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_survivors_of_a_core_with_cores_inside_can_be_settled(tmp_path: Path) -> None:
     """Build the graph of a core with cores inside: the cores are a part of it."""
-    core, built = "axil_registers", structure("axil_registers", 0)
-    mutants.make(core, built, 20, 1, tmp_path, flat=mutate.CORES[core].flat)
+    core, (built, *_) = "axil_registers", repository.structures("axil_registers")
+    mutants.make(core, built, 20, 1, tmp_path, flat=repository.mutants(core).flat)
     outputs = graph(core, tmp_path, core, built.parameters).outputs
     assert any("s_axil_rdata" in name for name in outputs)
 
 
 @pytest.mark.parametrize(("core", "count"), [("camera_setup", 1), ("td_async_fifo", 2)])
 def test_a_clock_that_a_core_puts_out_is_none_of_its_clocks(tmp_path: Path, core: str, count: int) -> None:
-    mutants.make(core, structure(core, mutate.CORES[core].structures[0]), 1, 1, tmp_path)
+    mutants.make(core, repository.structures(core)[0], 1, 1, tmp_path)
     assert len(clocks(core, tmp_path)) == count
 
 

@@ -2,10 +2,23 @@
 """td_async_fifo: RTL against the model."""
 
 from collections.abc import Callable
+from typing import Any
 
-import pytest
+from tb.structures import BOTH, ICARUS, Structure
 
 
-@pytest.mark.structures("width depth_log2", both=[(10, 4)], icarus=[(3, 2)])
-def test_rtl(run_tb: Callable[..., None], width: int, depth_log2: int) -> None:
-    run_tb("td_async_fifo", {"Width": width, "DepthLog2": depth_log2})
+def built(width: int, depth_log2: int, **runs: Any) -> Structure:
+    return Structure({"Width": width, "DepthLog2": depth_log2}, **runs)
+
+
+STRUCTURES = (
+    built(10, 4, on=BOTH),
+    built(3, 2, on=ICARUS, mutants=True),
+)
+REFUSED = {
+    "DepthLog2=1": "DepthLog2_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

@@ -3,6 +3,10 @@
 
 from collections.abc import Callable
 
+from tb.structures import BOTH, Structure
 
-def test_rtl(run_tb: Callable[..., None]) -> None:
-    run_tb("td_axis_skid", {"Width": 26})
+STRUCTURES = (Structure({"Width": 26}, on=BOTH, mutants=True),)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

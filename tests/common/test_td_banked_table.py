@@ -4,6 +4,7 @@
 import random
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,23 +12,29 @@ from cocotb_tools.runner import as_sv_literal
 
 from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.rom_files import write_words
+from tb.structures import ICARUS, VERILATOR, Structure
 
 DISTRIBUTED, BLOCK = range(2)
 
 
-@pytest.mark.structures(
-    "width depth style",
-    verilator=[(24, 36, BLOCK)],
-    icarus=[(5, 6, DISTRIBUTED)],
-    regress=[(42, 64, BLOCK)],
-)
-def test_rtl(run_tb: Callable[..., None], width: int, depth: int, style: int) -> None:
+def built(width: int, depth: int, style: int, **runs: Any) -> Structure:
     def contents(folder: Path) -> None:
         chance = random.Random(depth)
         write_words(folder / "table.hex", [chance.getrandbits(width) for _ in range(depth)], width)
 
     parameters = {"Width": width, "Depth": depth, "Style": style, "File": as_sv_literal("table.hex")}
-    run_tb("td_banked_table", parameters, roms=contents)
+    return Structure(parameters, roms=contents, **runs)
+
+
+STRUCTURES = (
+    built(24, 36, BLOCK, on=VERILATOR),
+    built(5, 6, DISTRIBUTED, on=ICARUS, mutants=True),
+    built(42, 64, BLOCK),
+)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def test_a_bank_is_written_while_the_other_is_in_use() -> None:

@@ -4,16 +4,29 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_burst_counter import burst_counter
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures("words", verilator=[(16,)], icarus=[(8,)], regress=[(64,), (16,)])
-def test_rtl(run_tb: Callable[..., None], words: int) -> None:
-    run_tb("td_burst_counter", {"Words": words})
+def built(words: int, **runs: Any) -> Structure:
+    return Structure({"Words": words}, **runs)
+
+
+STRUCTURES = (
+    built(16, on=VERILATOR),
+    built(8, on=ICARUS, mutants=True),
+    built(64),
+)
+REFUSED = {
+    "Words=1": "Words_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def test_bursts_apart_back_to_back_and_begun_again() -> None:

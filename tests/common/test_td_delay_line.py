@@ -4,21 +4,34 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_delay_line import delay_line
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "width delay",
-    verilator=[(54, 65)],
-    icarus=[(1, 1), (9, 2), (8, 4), (8, 5)],
-    regress=[(70, 8), (12, 33), (70, 128), (54, 65)],
+def built(width: int, delay: Any, **runs: Any) -> Structure:
+    return Structure({"Width": width, "Delay": delay}, **runs)
+
+
+STRUCTURES = (
+    built(54, 65, on=VERILATOR),
+    built(1, 1, on=ICARUS),
+    built(9, 2, on=ICARUS),
+    built(8, 4, on=ICARUS, mutants=True),
+    built(8, 5, on=ICARUS, mutants=True),
+    built(70, 8),
+    built(12, 33),
+    built(70, 128),
 )
-def test_rtl(run_tb: Callable[..., None], width: int, delay: Any) -> None:
-    run_tb("td_delay_line", {"Width": width, "Delay": delay})
+REFUSED = {
+    "Delay=0": "Delay_must_be_at_least_1",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.lists(st.integers()), st.integers(1, 9))

@@ -2,19 +2,34 @@
 """divide: RTL against the model, the model against its definition."""
 
 from collections.abc import Callable
+from typing import Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_divide import divide
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "divisor_width quotient_width", verilator=[(24, 25)], icarus=[(6, 5), (3, 9)], regress=[(1, 2), (15, 12)]
+def built(divisor_width: int, quotient_width: int, **runs: Any) -> Structure:
+    return Structure({"DivisorWidth": divisor_width, "QuotientWidth": quotient_width}, **runs)
+
+
+STRUCTURES = (
+    built(24, 25, on=VERILATOR),
+    built(6, 5, on=ICARUS, mutants=True),
+    built(3, 9, on=ICARUS),
+    built(1, 2),
+    built(15, 12),
 )
-def test_rtl(run_tb: Callable[..., None], divisor_width: int, quotient_width: int) -> None:
-    run_tb("td_divide", {"DivisorWidth": divisor_width, "QuotientWidth": quotient_width})
+REFUSED = {
+    "DivisorWidth=0": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
+    "QuotientWidth=1": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.integers(0, 2**20 - 1), st.integers(0, 2**10 - 1), st.integers(2, 20))

@@ -5,20 +5,29 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_dot_product import dot_product
+from tb.structures import ICARUS, VERILATOR, Structure
 
 A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the widest that occur
 
 
-@pytest.mark.structures(
-    "a_width b_width", verilator=[(27, 18)], icarus=[(15, 10)], regress=[(35, 24), (4, 3), (27, 18)]
+def built(a_width: int, b_width: int, **runs: Any) -> Structure:
+    return Structure({"AWidth": a_width, "BWidth": b_width}, **runs)
+
+
+STRUCTURES = (
+    built(27, 18, on=VERILATOR),
+    built(15, 10, on=ICARUS),
+    built(35, 24),
+    built(4, 3, mutants=True),
 )
-def test_rtl(run_tb: Callable[..., None], a_width: int, b_width: int) -> None:
-    run_tb("td_dot_product", {"AWidth": a_width, "BWidth": b_width})
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(A, B, A, B)

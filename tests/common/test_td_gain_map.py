@@ -2,28 +2,43 @@
 """td_gain_map: RTL against the model."""
 
 from collections.abc import Callable
-
-import pytest
+from typing import Any
 
 from tactile_depth.common.td_gain_map import ENTRIES_PER_NODE, table_entries
 from tactile_depth.rom_files import write_gains
 from tb.gains import first_gains
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "columns rows block_log2 channels width",
-    # A last row of blocks that the frame cuts above its middle, and below.
-    verilator=[(16, 11, 2, 3, 4)],
-    icarus=[(4, 2, 1, 1, 5), (4, 3, 1, 2, 1)],
-    regress=[(16, 8, 1, 3, 24), (32, 21, 2, 3, 24), (128, 8, 3, 3, 24), (64, 64, 2, 3, 24), (16, 11, 2, 3, 4)],
-)
-def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, channels: int, width: int) -> None:
+def built(columns: int, rows: int, block_log2: int, channels: int, width: int, **runs: Any) -> Structure:
     gains = first_gains(rows >> block_log2, columns >> block_log2, channels, width)
-    run_tb(
-        "td_gain_map",
+    return Structure(
         {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Channels": channels, "Width": width},
         roms=lambda folder: write_gains(folder, gains, width),
+        **runs,
     )
+
+
+# A last row of blocks that the frame cuts above its middle, and below.
+STRUCTURES = (
+    built(16, 11, 2, 3, 4, on=VERILATOR, mutants=True),
+    built(4, 2, 1, 1, 5, on=ICARUS),
+    built(4, 3, 1, 2, 1, on=ICARUS),
+    built(16, 8, 1, 3, 24),
+    built(32, 21, 2, 3, 24),
+    built(128, 8, 3, 3, 24),
+    built(64, 64, 2, 3, 24),
+)
+REFUSED = {
+    "BlockLog2=0": "BlockLog2_must_be_at_least_1_a_node_is_read_in_a_clock_and_two_are_needed",
+    "Columns=96": "Columns_must_be_a_power_of_two",
+    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def test_entries_are_the_channels_of_each_node() -> None:

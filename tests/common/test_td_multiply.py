@@ -5,18 +5,27 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_multiply import multiply
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "a_width b_width", verilator=[(27, 18)], icarus=[(35, 24)], regress=[(15, 10), (2, 3), (27, 18)]
+def built(a_width: int, b_width: int, **runs: Any) -> Structure:
+    return Structure({"AWidth": a_width, "BWidth": b_width}, **runs)
+
+
+STRUCTURES = (
+    built(27, 18, on=VERILATOR),
+    built(35, 24, on=ICARUS),
+    built(15, 10, mutants=True),
+    built(2, 3),
 )
-def test_rtl(run_tb: Callable[..., None], a_width: int, b_width: int) -> None:
-    run_tb("td_multiply", {"AWidth": a_width, "BWidth": b_width})
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1))  # the widest that occur

@@ -2,36 +2,52 @@
 """td_node_map: RTL against the model; nodes side by side and latency."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from tactile_depth.common.td_node_map import latency, side
 from tactile_depth.rom_files import write_zero
 from tb.gains import first_gains
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "columns rows block_log2 width lanes",
-    # A beat of half a block, of a quarter, of a whole one, of several; rows of blocks that the frame cuts.
-    verilator=[(32, 19, 2, 12, 4)],
-    icarus=[(16, 11, 2, 4, 2), (16, 13, 3, 5, 2), (16, 3, 1, 3, 4)],
-    regress=[
-        (128, 24, 3, 24, 8),
-        (128, 21, 3, 24, 16),
-        (256, 8, 3, 24, 32),
-        (128, 21, 3, 24, 32),
-        (64, 64, 2, 24, 2),
-        (128, 40, 4, 18, 2),
-        (32, 11, 1, 8, 2),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, lanes: int) -> None:
+def built(columns: int, rows: int, block_log2: int, width: int, lanes: int, **runs: Any) -> Structure:
     zero = first_gains(rows >> block_log2, columns >> block_log2, 1, width) - (1 << width - 1)  # of the testbench
-    run_tb(
-        "td_node_map",
+    return Structure(
         {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "Lanes": lanes},
         roms=lambda folder: write_zero(folder, zero, width, side(lanes, block_log2)),
+        **runs,
     )
+
+
+# A beat of half a block, of a quarter, of a whole one, of several; rows of blocks that the frame cuts.
+STRUCTURES = (
+    built(32, 19, 2, 12, 4, on=VERILATOR),
+    built(16, 11, 2, 4, 2, on=ICARUS, mutants=True),
+    built(16, 13, 3, 5, 2, on=ICARUS),
+    built(16, 3, 1, 3, 4, on=ICARUS, mutants=True),
+    built(128, 24, 3, 24, 8),
+    built(128, 21, 3, 24, 16),
+    built(256, 8, 3, 24, 32),
+    built(128, 21, 3, 24, 32),
+    built(64, 64, 2, 24, 2),
+    built(128, 40, 4, 18, 2),
+    built(32, 11, 1, 8, 2),
+)
+REFUSED = {
+    "BlockLog2=0": "BlockLog2_must_be_at_least_1_a_run_is_half_a_block",
+    "Columns=96": "Columns_and_Lanes_must_be_powers_of_two",
+    "Columns=8": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
+    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Lanes=1": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
+    "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
+    "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 """ram: RTL against the model in every style, with and without contents at power-up; the same of an ECP5."""
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,45 +15,49 @@ from commands.common.repository import ROOT
 from commands.hardware.ecp5 import write_slices
 from tactile_depth.common.td_ram import ram
 from tactile_depth.rom_files import write_words
+from tb.structures import ICARUS, VERILATOR, Structure
 
 DISTRIBUTED, BLOCK, ULTRA = range(3)
 
 
-@pytest.mark.structures(
-    "width depth style file",
-    verilator=[(24, 64, BLOCK, "contents.hex")],
-    icarus=[(5, 16, DISTRIBUTED, None), (9, 24, DISTRIBUTED, "contents.hex"), (70, 32, ULTRA, None)],
-    regress=[(24, 64, BLOCK, "contents.hex")],
-)
-def test_rtl(run_tb: Callable[..., None], width: int, depth: int, style: int, file: str | None) -> None:
-    check(run_tb, width, depth, style, file)
-
-
-@pytest.mark.structures(
-    "width depth style file",
-    verilator=[(21, 4096, BLOCK, "contents.hex"), (9, 16384, BLOCK, None)],
-    icarus=[(5, 2500, BLOCK, "contents.hex"), (11, 5000, BLOCK, "contents.hex"), (9, 24, DISTRIBUTED, "contents.hex")],
-)
-def test_ecp5(run_tb: Callable[..., None], width: int, depth: int, style: int, file: str | None) -> None:
-    check(run_tb, width, depth, style, file, files=[ROOT / "boards" / "ecp5" / "td_ram.sv"])
-
-
-def check(
-    run_tb: Callable[..., None], width: int, depth: int, style: int, file: str | None, files: Sequence[Path] = ()
-) -> None:
-    """Run the testbench on a structure; with `files` on what takes the place of the core."""
-
+def built(width: int, depth: int, style: int, file: str = "", **runs: Any) -> Structure:
     def contents(folder: Path) -> None:
         if file:
             chance = random.Random(depth)
             write_words(folder / file, [chance.getrandbits(width) for _ in range(depth)], width)
             write_slices(folder)
 
-    parameters: dict[str, Any] = {"Width": width, "Depth": depth, "Style": style}
-    environment = {"FILE": file} if file else {}
-    if file:
-        parameters["File"] = as_sv_literal(file)
-    run_tb("td_ram", parameters, roms=contents, environment=environment, files=files)
+    parameters = {"Width": width, "Depth": depth, "Style": style}
+    named = {"File": as_sv_literal(file)} if file else {}
+    return Structure(parameters | named, device={"file": file}, roms=contents, **runs)
+
+
+STRUCTURES = (
+    built(24, 64, BLOCK, "contents.hex", on=VERILATOR),
+    built(5, 16, DISTRIBUTED, on=ICARUS, mutants=True),
+    built(9, 24, DISTRIBUTED, "contents.hex", on=ICARUS),
+    built(70, 32, ULTRA, on=ICARUS),
+)
+REFUSED = {
+    "Depth=1": "Depth_must_be_at_least_2",
+    'Style=2 File="contents.hex"': "an_ultra_memory_has_no_contents_at_power_up",
+}
+OF_ECP5 = (
+    built(21, 4096, BLOCK, "contents.hex", on=VERILATOR, late=()),
+    built(9, 16384, BLOCK, on=VERILATOR, late=()),
+    built(5, 2500, BLOCK, "contents.hex", on=ICARUS),
+    built(11, 5000, BLOCK, "contents.hex", on=ICARUS),
+    built(9, 24, DISTRIBUTED, "contents.hex", on=ICARUS),
+)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
+
+
+@pytest.mark.structures(OF_ECP5)
+def test_ecp5(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure, files=[ROOT / "boards" / "ecp5" / "td_ram.sv"])
 
 
 @given(st.lists(st.tuples(st.integers(0, 7), st.integers(0, 255)), max_size=40))

@@ -5,21 +5,33 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_ramp import ramp
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "width step_width count",
-    verilator=[(32, 29, 8)],
-    icarus=[(8, 8, 1), (10, 6, 4)],
-    regress=[(32, 29, 8), (9, 5, 2), (40, 37, 32)],
+def built(width: int, step_width: int, count: int, **runs: Any) -> Structure:
+    return Structure({"Width": width, "StepWidth": step_width, "Count": count}, **runs)
+
+
+STRUCTURES = (
+    built(32, 29, 8, on=VERILATOR),
+    built(8, 8, 1, on=ICARUS),
+    built(10, 6, 4, on=ICARUS, mutants=True),
+    built(9, 5, 2),
+    built(40, 37, 32),
 )
-def test_rtl(run_tb: Callable[..., None], width: int, step_width: int, count: int) -> None:
-    run_tb("td_ramp", {"Width": width, "StepWidth": step_width, "Count": count})
+REFUSED = {
+    "Count=0": "Count_must_be_a_power_of_two",
+    "Count=3": "Count_must_be_a_power_of_two",
+    "StepWidth=33": "StepWidth_must_be_at_most_Width",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.integers(0, 2**40 - 1), st.integers(-(2**36), 2**36 - 1))  # the widest that occur

@@ -6,21 +6,31 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from tactile_depth.common.td_rom import rom
 from tactile_depth.rom_files import pack, write_words
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures("width depth", verilator=[(54, 128)], icarus=[(10, 36)], regress=[(72, 33), (54, 128)])
-def test_rtl(run_tb: Callable[..., None], width: int, depth: Any) -> None:
+def built(width: int, depth: Any, **runs: Any) -> Structure:
     chance = random.Random(depth)
     words = [chance.getrandbits(width) for _ in range(depth)]
-    run_tb(
-        "td_rom",
-        {"Width": width, "Depth": depth},
-        roms=lambda folder: write_words(folder / "rom.hex", words, width),
+    return Structure(
+        {"Width": width, "Depth": depth}, roms=lambda folder: write_words(folder / "rom.hex", words, width), **runs
     )
+
+
+STRUCTURES = (
+    built(54, 128, on=VERILATOR),
+    built(10, 36, on=ICARUS, mutants=True),
+    built(72, 33),
+)
+REFUSED = {
+    "Depth=1": "Depth_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def test_addresses_read_their_words() -> None:

@@ -11,30 +11,37 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "in_width drop out_width",
-    verilator=[(10, 4, 5)],
-    icarus=[
-        (8, 1, 6),  # only ties are dropped; overflow both ways
-        (8, 1, 7),  # only the carry out of the top overflows
-        (8, 1, 8),  # the carry fits
-        (8, 2, 5),
-        (8, 3, 4),
-        (8, 3, 10),  # wider than what is left
-        (8, 7, 2),
-        (8, 0, 8),
-        (8, 0, 5),
-        (8, -2, 10),
-        (8, -3, 9),
-        (8, -3, 14),
-    ],
-    regress=[(10, 4, 5)],
-)
-def test_rtl(run_tb: Callable[..., None], in_width: int, drop: int, out_width: int) -> None:
+def built(in_width: int, drop: int, out_width: int, **runs: Any) -> Structure:
     parameters = {"InWidth": in_width, "Drop": drop, "OutWidth": out_width}
-    run_tb("td_round_saturate", parameters)
+    return Structure(parameters, **runs)
+
+
+STRUCTURES = (
+    built(10, 4, 5, on=VERILATOR, mutants=True),
+    built(8, 1, 6, on=ICARUS, mutants=True),  # only ties are dropped; overflow both ways
+    built(8, 1, 7, on=ICARUS),  # only the carry out of the top overflows
+    built(8, 1, 8, on=ICARUS),  # the carry fits
+    built(8, 2, 5, on=ICARUS),
+    built(8, 3, 4, on=ICARUS),
+    built(8, 3, 10, on=ICARUS),  # wider than what is left
+    built(8, 7, 2, on=ICARUS),
+    built(8, 0, 8, on=ICARUS),
+    built(8, 0, 5, on=ICARUS),
+    built(8, -2, 10, on=ICARUS),
+    built(8, -3, 9, on=ICARUS, mutants=True),
+    built(8, -3, 14, on=ICARUS),
+)
+REFUSED = {
+    "Drop=46": "Drop_must_leave_a_bit_of_the_input",
+    "OutWidth=1": "OutWidth_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 # In eighths, dropping three bits: ties on both sides of zero, beside a tie, carry out of the top, overflow.

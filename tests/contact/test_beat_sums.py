@@ -2,22 +2,37 @@
 """beat_sums: RTL against the model, and the model against numpy."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.beat_sums import beat_sums
+from tb.structures import ICARUS, VERILATOR, Refused, Structure
 
 DEPTH = st.tuples(st.booleans(), st.integers(-4, 3))
 
 
-@pytest.mark.structures(
-    "width lanes", verilator=[(24, 8)], icarus=[(6, 4), (6, 2)], regress=[(24, 8), (32, 32), (12, 16)]
+def built(width: int, lanes: int, **runs: Any) -> Structure:
+    return Structure({"Width": width, "Lanes": lanes}, **runs)
+
+
+STRUCTURES = (
+    built(24, 8, on=VERILATOR),
+    built(6, 4, on=ICARUS, mutants=True),
+    built(6, 2, on=ICARUS),
+    built(32, 32),
+    built(12, 16),
 )
-def test_rtl(run_tb: Callable[..., None], width: int, lanes: int) -> None:
-    run_tb("beat_sums", {"Width": width, "Lanes": lanes})
+REFUSED = {
+    "Lanes=1": Refused("Lanes_must_be_a_power_of_two_at_least_2", {"verilator": "can't find definition of 'top_at'"}),
+    "Lanes=12": "Lanes_must_be_a_power_of_two_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.lists(DEPTH, min_size=8, max_size=8))

@@ -3,19 +3,31 @@
 
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.centroid import FRACTION, mean
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "position_width area_width", verilator=[(7, 15)], icarus=[(3, 6)], regress=[(10, 21), (2, 4), (5, 9)]
+def built(position_width: int, area_width: int, **runs: Any) -> Structure:
+    return Structure({"PositionWidth": position_width, "AreaWidth": area_width}, **runs)
+
+
+STRUCTURES = (
+    built(7, 15, on=VERILATOR),
+    built(3, 6, on=ICARUS, mutants=True),
+    built(10, 21),
+    built(2, 4),
+    built(5, 9),
 )
-def test_rtl(run_tb: Callable[..., None], position_width: int, area_width: int) -> None:
-    run_tb("centroid", {"PositionWidth": position_width, "AreaWidth": area_width})
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.lists(st.integers(0, 1023), min_size=1, max_size=300))

@@ -2,17 +2,28 @@
 """contact_debounce: RTL against the model, and the model against its definition."""
 
 from collections.abc import Callable
+from typing import Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures("area_width", verilator=[(15,)], icarus=[(5,)], regress=[(21,)])
-def test_rtl(run_tb: Callable[..., None], area_width: int) -> None:
-    run_tb("contact_debounce", {"AreaWidth": area_width})
+def built(area_width: int, **runs: Any) -> Structure:
+    return Structure({"AreaWidth": area_width}, **runs)
+
+
+STRUCTURES = (
+    built(15, on=VERILATOR),
+    built(5, on=ICARUS, mutants=True),
+    built(21),
+)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.lists(st.booleans(), max_size=60), st.integers(0, 5))

@@ -14,22 +14,39 @@ from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
 from tactile_depth.frames import load_frames, on_grid
 from tactile_depth.tactile_depth import tactile_depth
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
 
 
-@pytest.mark.structures(
-    "width rows columns lanes bottom_first",
-    verilator=[(24, 5, 8, 1, 0)],
-    icarus=[(6, 5, 8, 1, 1)],
-    regress=[
-        *((24, 5, 8, 1, 0), (32, 5, 16, 1, 1), (12, 9, 4, 1, 0), (24, 8, 16, 1, 0)),
-        *((24, 5, 32, 4, 1), (12, 4, 16, 2, 0)),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], width: int, rows: int, columns: int, lanes: int, bottom_first: int) -> None:
+def built(width: int, rows: int, columns: int, lanes: int, bottom_first: int, **runs: Any) -> Structure:
     parameters = {"Width": width, "Rows": rows, "Columns": columns, "Lanes": lanes, "BottomFirst": bottom_first}
-    run_tb("contact_events", parameters)
+    return Structure(parameters, **runs)
+
+
+STRUCTURES = (
+    built(24, 5, 8, 1, 0, on=VERILATOR),
+    built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
+    built(32, 5, 16, 1, 1),
+    built(12, 9, 4, 1, 0),
+    built(24, 8, 16, 1, 0),
+    built(24, 5, 32, 4, 1),
+    built(12, 4, 16, 2, 0),
+)
+MUTANTS = Mutants(simulators=QUICK_FIRST, outside=("frame",), flat=False)
+REFUSED = {
+    "Width=1": "Width_must_be_2_to_32",
+    "Width=33": "Width_must_be_2_to_32",
+    "Rows=1": "Rows_must_be_2_to_1024",
+    "Rows=1025": "Rows_must_be_2_to_1024",
+    "Columns=1": "Columns_must_be_2_to_1024",
+    "Columns=1025": "Columns_must_be_2_to_1024",
+    "Rows=4 Columns=4": "a_frame_must_take_at_least_Latency_cycles",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(*(st.integers(0, 2**32 - 1) for _ in range(4)), st.integers(-(2**31), 2**31 - 1), PLACE, PLACE, PLACE, PLACE)

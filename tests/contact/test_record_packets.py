@@ -2,17 +2,28 @@
 """record_packets: RTL against the model, and the model against its rules."""
 
 from collections.abc import Callable
+from typing import Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.record_packets import RecordPackets
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures("words", verilator=[(13,)], icarus=[(3,)], regress=[(13,), (2,)])
-def test_rtl(run_tb: Callable[..., None], words: int) -> None:
-    run_tb("record_packets", {"Words": words})
+def built(words: int, **runs: Any) -> Structure:
+    return Structure({"Words": words}, **runs)
+
+
+STRUCTURES = (
+    built(13, on=VERILATOR),
+    built(3, on=ICARUS, mutants=True),
+    built(2),
+)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), max_size=100))

@@ -2,12 +2,27 @@
 """threshold_comparator: RTL against the model."""
 
 from collections.abc import Callable
+from typing import Any
 
-import pytest
+from tb.structures import BOTH, ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "width lanes", both=[(12, 1)], icarus=[(12, 4)], verilator=[(32, 1)], regress=[(32, 1), (24, 32), (32, 2)]
+def built(width: int, lanes: int, **runs: Any) -> Structure:
+    return Structure({"Width": width, "Lanes": lanes}, **runs)
+
+
+STRUCTURES = (
+    built(12, 1, on=BOTH, mutants=True),
+    built(32, 1, on=VERILATOR),
+    built(12, 4, on=ICARUS, mutants=True),
+    built(24, 32),
+    built(32, 2),
 )
-def test_rtl(run_tb: Callable[..., None], width: int, lanes: int) -> None:
-    run_tb("threshold_comparator", {"Width": width, "Lanes": lanes})
+REFUSED = {
+    "Width=33": "Width_must_be_2_to_32",
+    "Lanes=0": "Lanes_must_be_at_least_1",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

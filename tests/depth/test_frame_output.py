@@ -3,10 +3,17 @@
 
 from collections.abc import Callable
 
-import pytest
+from tb.structures import BOTH, Structure
+
+STRUCTURES = (
+    Structure({"Width": 24, "Rows": 4, "Columns": 8}, on=BOTH),
+    Structure({"Width": 12, "Rows": 16, "Columns": 2}, on=BOTH, mutants=True),
+)
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
+    "Rows=1": "Rows_must_be_at_least_2",
+}
 
 
-@pytest.mark.parametrize(("width", "rows", "columns"), [(24, 4, 8), (12, 16, 2)])
-def test_rtl(run_tb: Callable[..., None], width: int, rows: int, columns: int) -> None:
-    parameters = {"Width": width, "Rows": rows, "Columns": columns}
-    run_tb("frame_output", parameters)
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

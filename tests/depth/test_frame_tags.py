@@ -4,15 +4,22 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
 # Two frames in flight, one, exactly two, four; the first again, for mutants.
-@pytest.mark.structures(
-    "width latency pixels",
-    verilator=[(33, 37, 24)],
-    icarus=[(4, 9, 16)],
-    regress=[(33, 32, 16), (33, 50, 13), (4, 9, 6), (33, 37, 24)],
+def built(width: int, latency: Any, pixels: int, **runs: Any) -> Structure:
+    return Structure({"Width": width, "Latency": latency, "Pixels": pixels}, **runs)
+
+
+STRUCTURES = (
+    built(33, 37, 24, on=VERILATOR),
+    built(4, 9, 16, on=ICARUS),
+    built(33, 32, 16),
+    built(33, 50, 13),
+    built(4, 9, 6, mutants=True),
 )
-def test_rtl(run_tb: Callable[..., None], width: int, latency: Any, pixels: int) -> None:
-    run_tb("frame_tags", {"Width": width, "Latency": latency, "Pixels": pixels})
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

@@ -3,33 +3,48 @@
 
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
-from tb.stream import REGRESS
+from tb.structures import BOTH, ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "case",  # columns, rows, block_log2, width, largest, lanes
-    verilator=[((16, 8, 1, 24, LARGEST_LOG2 if REGRESS else 5, 1),), ((32, 13, 2, 20, 3, 4),)],
-    icarus=[((4, 5, 1, 4, 2, 1),), ((4, 2, 1, 6, 1, 1),), ((16, 11, 2, 5, 2, 2),), ((16, 5, 1, 4, 1, 4),)],
-    regress=[
-        ((32, 21, 1, 12, 1, 1),),
-        ((16, 16, 2, 24, 3, 1),),
-        ((128, 20, 3, 16, 1, 1),),
-        ((16, 9, 1, 32, 0, 1),),
-        ((16, 8, 1, 24, LARGEST_LOG2, 1),),
-        ((128, 20, 3, 24, 2, 8),),
-        ((256, 9, 3, 24, 1, 32),),
-        ((128, 17, 3, 24, 1, 32),),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], case: tuple[int, ...]) -> None:
+def built(*case: int, **runs: Any) -> Structure:
     names = ("Columns", "Rows", "BlockLog2", "Width", "MaxLog2", "Lanes")
-    run_tb("zero_capture", dict(zip(names, case, strict=True)))
+    return Structure(dict(zip(names, case, strict=True)), **runs)
+
+
+STRUCTURES = (
+    built(16, 8, 1, 24, 5, 1, on=VERILATOR, late=()),
+    built(32, 13, 2, 20, 3, 4, on=VERILATOR),
+    built(4, 5, 1, 4, 2, 1, on=ICARUS, mutants=True),
+    built(4, 2, 1, 6, 1, 1, on=ICARUS),
+    built(16, 11, 2, 5, 2, 2, on=ICARUS),
+    built(16, 5, 1, 4, 1, 4, on=ICARUS, mutants=True),
+    built(32, 21, 1, 12, 1, 1),
+    built(16, 16, 2, 24, 3, 1),
+    built(128, 20, 3, 16, 1, 1),
+    built(16, 9, 1, 32, 0, 1),
+    built(16, 8, 1, 24, LARGEST_LOG2, 1, late=BOTH),
+    built(128, 20, 3, 24, 2, 8),
+    built(256, 9, 3, 24, 1, 32),
+    built(128, 17, 3, 24, 1, 32),
+)
+REFUSED = {
+    "BlockLog2=0": "BlockLog2_must_be_at_least_1",
+    "Columns=96": "Columns_must_be_a_power_of_two",
+    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
+    "MaxLog2=9": "MaxLog2_must_be_at_most_8",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])

@@ -14,33 +14,46 @@ from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, interpolated_zero, no_zero, zero_offset
 from tactile_depth.rom_files import write_zero
 from tb.stream import places
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "columns rows block_log2 width lanes",
-    verilator=[(16, 15, 2, 4, 1), (32, 15, 2, 8, 4)],
-    icarus=[(16, 8, 1, 24, 1), (4, 2, 1, 5, 1), (16, 11, 2, 6, 2)],
-    regress=[
-        (16, 16, 1, 12, 1),
-        (16, 15, 2, 4, 1),
-        (32, 21, 1, 16, 1),
-        (128, 8, 3, 32, 1),
-        (64, 64, 2, 24, 1),
-        (16, 16, 1, 12, 4),
-        (128, 21, 3, 24, 8),
-        (256, 8, 3, 32, 32),
-        (128, 21, 3, 24, 32),
-        (64, 19, 5, 16, 4),
-    ],
-    regress_verilator=[(16, 8, 1, 24, 1)],
-)
-def test_rtl(run_tb: Callable[..., None], columns: int, rows: int, block_log2: int, width: int, lanes: int) -> None:
+def built(columns: int, rows: int, block_log2: int, width: int, lanes: int, **runs: Any) -> Structure:
     zero = places((rows >> block_log2) * (columns >> block_log2), width)  # that of the testbench
-    run_tb(
-        "zero_offset",
+    return Structure(
         {"Rows": rows, "Columns": columns, "BlockLog2": block_log2, "Width": width, "Lanes": lanes},
         roms=lambda folder: write_zero(folder, zero, width, side(lanes, block_log2)),
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(16, 15, 2, 4, 1, on=VERILATOR, mutants=True),
+    built(32, 15, 2, 8, 4, on=VERILATOR),
+    built(16, 8, 1, 24, 1, on=ICARUS, late=VERILATOR),
+    built(4, 2, 1, 5, 1, on=ICARUS),
+    built(16, 11, 2, 6, 2, on=ICARUS, mutants=True),
+    built(16, 16, 1, 12, 1),
+    built(32, 21, 1, 16, 1),
+    built(128, 8, 3, 32, 1),
+    built(64, 64, 2, 24, 1),
+    built(16, 16, 1, 12, 4),
+    built(128, 21, 3, 24, 8),
+    built(256, 8, 3, 32, 32),
+    built(128, 21, 3, 24, 32),
+    built(64, 19, 5, 16, 4),
+)
+REFUSED = {
+    "BlockLog2=0": "BlockLog2_must_be_at_least_1_a_node_is_read_in_a_clock_and_two_are_needed",
+    "Columns=96": "Columns_must_be_a_power_of_two",
+    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
+    "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")

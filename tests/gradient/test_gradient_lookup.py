@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """gradient_lookup: RTL against the model, the model against the calibration of its table."""
 
-import json
 from collections.abc import Callable
 from typing import Any
 
@@ -14,19 +13,37 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.rom_files import write_gradient
 from tactile_depth.sensor import Sensor
+from tb.settings import RUN
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures("bits data_width", verilator=[(2, 24)], icarus=[(1, 32)], regress=[(3, 12), (4, 24), (2, 24)])
-def test_rtl(run_tb: Callable[..., None], bits: int, data_width: int) -> None:
+def built(bits: int, data_width: int, **runs: Any) -> Structure:
     choices: dict[str, Any] = {"columns": 16, "data_width": data_width, "bits_per_channel": bits}
     config = Configuration(**choices)
     width = config.gradient.width
-    run_tb(
-        "gradient_lookup",
+    return Structure(
         {"Width": width, "BitsPerChannel": bits},
+        device={"configuration": choices},
         roms=lambda folder: write_gradient(folder / "gradient.hex", gradient_codes(synthetic(bits), config), width),
-        environment={"CONFIGURATION": json.dumps(choices)},
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(2, 24, on=VERILATOR),
+    built(1, 32, on=ICARUS, mutants=True),
+    built(3, 12),
+    built(4, 24),
+)
+REFUSED = {
+    "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
+}
+if RUN.full:  # 4 GB of table
+    REFUSED["BitsPerChannel=9"] = "BitsPerChannel_must_be_1_to_8"
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("bits", [1, 4, 6])

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,6 +13,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.quadratic_gradient import coefficients, gradient_parameters, slope_codes
 from tactile_depth.rom_files import write_quadratic
+from tb.structures import ICARUS, VERILATOR, Structure
 
 WORDS = (2, 3, 6)
 
@@ -22,27 +22,28 @@ def any_words(width: int, seed: int = 1) -> Any:
     return np.random.default_rng(seed).integers(-(1 << width - 1), 1 << width - 1, WORDS)
 
 
-@pytest.mark.structures(
-    "width deviation coefficient word drop",
-    verilator=[tuple(gradient_parameters(Configuration(columns=16)).values())],
-    icarus=[(3, 3, 3, 5, 3)],
-    regress=[
-        tuple(gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
-        (14, 4, 5, 9, 0),
-        tuple(gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
-        (6, 4, 4, 4, 1),
-        (10, 4, 5, 9, -2),
-        (12, 4, 5, 9, -2),
-        tuple(gradient_parameters(Configuration(columns=16)).values()),
-    ],
-    regress_verilator=[(3, 3, 3, 5, 3)],
-)
-def test_rtl(run_tb: Callable[..., None], width: int, deviation: Any, coefficient: Any, word: Any, drop: int) -> None:
-    run_tb(
-        "quadratic_gradient",
+def built(width: int, deviation: Any, coefficient: Any, word: Any, drop: int, **runs: Any) -> Structure:
+    return Structure(
         {"Width": width, "DeviationWidth": deviation, "CoeffWidth": coefficient, "WordWidth": word, "Drop": drop},
         roms=lambda folder: write_quadratic(folder, any_words(word), word),
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(*gradient_parameters(Configuration(columns=16)).values(), on=VERILATOR),
+    built(3, 3, 3, 5, 3, on=ICARUS, late=VERILATOR, mutants=True),
+    built(*gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
+    built(14, 4, 5, 9, 0),
+    built(*gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
+    built(6, 4, 4, 4, 1),
+    built(10, 4, 5, 9, -2),
+    built(12, 4, 5, 9, -2),
+)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 7), st.sampled_from([6, 32]))

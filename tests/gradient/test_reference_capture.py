@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """reference_capture: RTL against the model; the largest number of frames."""
 
-import json
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,22 +13,40 @@ from tactile_depth.gradient.reference_capture import (
     reference_capture,
     reference_capture_parameters,
 )
+from tb.structures import BOTH, ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "columns rows largest gain_width",
-    verilator=[(16, 8, 5, 24)],  # columns, rows, log2 of the largest number of frames
-    icarus=[(16, 8, 2, 17)],
-    regress=[(16, 16, 3, 24), (32, 21, 3, 24), (128, 8, 4, 24), (128, 8, 3, 17), (16, 8, 8, 24)],
-    regress_verilator=[(16, 8, 8, 24)],
-)
-def test_rtl(run_tb: Any, columns: int, rows: int, largest: Any, gain_width: int) -> None:
+def built(columns: int, rows: int, largest: int, gain_width: int, **runs: Any) -> Structure:
+    """Return a structure; `largest` is the binary logarithm of the largest number of frames."""
     choices: dict[str, Any] = {"columns": columns, "rows": rows, "solver": "tridiagonal", "gain_width": gain_width}
-    run_tb(
-        "reference_capture",
+    return Structure(
         reference_capture_parameters(Configuration(**choices)) | {"MaxLog2": largest},
-        environment={"CONFIGURATION": json.dumps(choices)},
+        device={"configuration": choices},
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(16, 8, 5, 24, on=VERILATOR),
+    built(16, 8, 2, 17, on=ICARUS, mutants=True),
+    built(16, 16, 3, 24),
+    built(32, 21, 3, 24),
+    built(128, 8, 4, 24),
+    built(128, 8, 3, 17),
+    built(16, 8, 8, 24, late=BOTH),
+)
+REFUSED = {
+    "BlockLog2=0": "BlockLog2_must_be_at_least_1",
+    "Columns=96": "Columns_must_be_a_power_of_two",
+    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
+    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
+    "MaxLog2=11": "a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits",
+    "GainFraction=10": "GainFraction_plus_2_BlockLog2_must_be_at_least_Width",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize(

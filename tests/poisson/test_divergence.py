@@ -2,23 +2,35 @@
 """divergence: RTL against the model, the model against the formula."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth.poisson.divergence import divergence
+from tb.structures import ICARUS, VERILATOR, Structure
 
 
-@pytest.mark.structures(
-    "columns width neumann",
-    verilator=[(16, 21, 0)],
-    icarus=[(16, 6, 0), (32, 24, 1)],
-    regress=[(128, 35, 0), (16, 21, 1), (4, 3, 1), (16, 21, 0)],
+def built(columns: int, width: int, neumann: int, **runs: Any) -> Structure:
+    return Structure({"Columns": columns, "Width": width, "Neumann": neumann}, **runs)
+
+
+STRUCTURES = (
+    built(16, 21, 0, on=VERILATOR),
+    built(16, 6, 0, on=ICARUS),
+    built(32, 24, 1, on=ICARUS),
+    built(128, 35, 0),
+    built(16, 21, 1),
+    built(4, 3, 1, mutants=True),
 )
-def test_rtl(run_tb: Callable[..., None], columns: int, width: int, neumann: bool) -> None:
-    run_tb("divergence", {"Columns": columns, "Width": width, "Neumann": neumann})
+REFUSED = {
+    "Columns=1": "Columns_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @settings(max_examples=30, deadline=None)

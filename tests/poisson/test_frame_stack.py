@@ -2,30 +2,51 @@
 """frame_stack: RTL against the model."""
 
 from collections.abc import Callable
+from typing import Any
 
-import pytest
+from tb.structures import ICARUS, VERILATOR, Refused, Structure
 
 
-@pytest.mark.structures(
-    "columns width rows words_per_row lanes",
-    verilator=[(16, 24, 8, 3, 1), (16, 24, 9, 3, 4)],
-    icarus=[(8, 16, 3, 1, 1), (4, 4, 3, 1, 1), (8, 16, 3, 2, 1), (4, 4, 4, 3, 1), (8, 12, 5, 1, 2), (16, 12, 8, 1, 4)],
-    regress=[
-        (4, 4, 4, 2, 1),
-        (5, 6, 2, 2, 1),
-        (2, 5, 2, 6, 1),
-        (16, 24, 8, 3, 1),
-        (8, 16, 2, 1, 1),
-        (16, 16, 17, 1, 1),
-        (16, 9, 17, 3, 1),
-        (16, 12, 5, 6, 1),
-        (16, 24, 9, 3, 4),
-        (4, 6, 2, 1, 2),
-        (4, 6, 3, 1, 2),
-        (64, 12, 5, 5, 8),  # fewer rows than lanes
-        (64, 12, 21, 3, 8),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], columns: int, width: int, rows: int, words_per_row: int, lanes: int) -> None:
+def built(columns: int, width: int, rows: int, words_per_row: int, lanes: int, **runs: Any) -> Structure:
     parameters = {"Columns": columns, "Width": width, "Rows": rows, "WordsPerRow": words_per_row, "Lanes": lanes}
-    run_tb("frame_stack", parameters)
+    return Structure(parameters, **runs)
+
+
+STRUCTURES = (
+    built(16, 24, 8, 3, 1, on=VERILATOR),
+    built(16, 24, 9, 3, 4, on=VERILATOR),
+    built(8, 16, 3, 1, 1, on=ICARUS),
+    built(4, 4, 3, 1, 1, on=ICARUS),
+    built(8, 16, 3, 2, 1, on=ICARUS),
+    built(4, 4, 4, 3, 1, on=ICARUS, mutants=True),
+    built(8, 12, 5, 1, 2, on=ICARUS, mutants=True),
+    built(16, 12, 8, 1, 4, on=ICARUS),
+    built(4, 4, 4, 2, 1),
+    built(5, 6, 2, 2, 1),
+    built(2, 5, 2, 6, 1),
+    built(8, 16, 2, 1, 1),
+    built(16, 16, 17, 1, 1),
+    built(16, 9, 17, 3, 1),
+    built(16, 12, 5, 6, 1),
+    built(4, 6, 2, 1, 2),
+    built(4, 6, 3, 1, 2),
+    built(64, 12, 5, 5, 8),  # fewer rows than lanes
+    built(64, 12, 21, 3, 8),
+)
+REFUSED = {
+    "Columns=1": Refused(
+        "Columns_must_be_at_least_2",
+        {
+            "icarus": "cast size expression must be constant and greater than zero",
+            "verilator": "size-changing cast to zero or negative size",
+        },
+    ),
+    "Rows=1": "Rows_must_be_at_least_2",
+    "WordsPerRow=0": Refused("WordsPerRow_must_be_at_least_1", {"verilator": "depth_must_be_at_least_2"}),
+    "Lanes=3": "Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2",
+    "Lanes=128": "Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

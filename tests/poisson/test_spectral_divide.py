@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """spectral_divide: RTL against the model, the model against the eigenvalues of the reference."""
 
-import json
 from collections.abc import Callable
 from typing import Any
 
@@ -16,26 +15,13 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals, spectral_divide
 from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.rom_files import write_solver
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "choices",
-    verilator=[({"columns": 16},)],
-    icarus=[
-        # Here the largest reciprocals exceed 2^(CoeffWidth - 1): they shift further than Drop drops.
-        ({"columns": 16, "coefficient_width": 10, "depth_range_px": 0.1, "gradient_limit": 4.0},),
-    ],
-    regress=[
-        ({"columns": 32, "data_width": 12, "coefficient_width": 10},),
-        ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0},),
-        ({"columns": 16},),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
+def built(choices: Any, **runs: Any) -> Structure:
     config = Configuration(**choices)
     table = reciprocals(config)
-    run_tb(
-        "spectral_divide",
+    return Structure(
         {
             "Columns": config.columns,
             "Width": config.arithmetic_width,
@@ -43,9 +29,28 @@ def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
             "ShiftWidth": table.shift_width,
             "Drop": table.drop,
         },
+        device={"configuration": choices},
         roms=lambda folder: write_solver(folder, config),
-        environment={"CONFIGURATION": json.dumps(choices)},
+        **runs,
     )
+
+
+STRUCTURES = (
+    built({"columns": 16}, on=VERILATOR),
+    # Here the largest reciprocals exceed 2^(CoeffWidth - 1): they shift further than Drop drops.
+    built({"columns": 16, "coefficient_width": 10, "depth_range_px": 0.1, "gradient_limit": 4.0}, on=ICARUS),
+    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
+    built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 40.0}),
+)
+MUTANTS = Mutants("bursts", rows_are="Columns")
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
+    "Columns=1": "Columns_must_be_a_power_of_two_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def divided(modes: Any, config: Configuration) -> Any:

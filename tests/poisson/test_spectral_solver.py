@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """spectral_solver: RTL against the model, the model against the double-precision reference."""
 
-import json
 from collections.abc import Callable
 from typing import Any
 
@@ -17,27 +16,31 @@ from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+
+
+def built(choices: Any, **runs: Any) -> Structure:
+    config = Configuration(**choices)
+    return Structure(
+        solver_parameters(config),
+        device={"configuration": choices},
+        roms=lambda folder: write_solver(folder, config),
+        **runs,
+    )
+
+
+STRUCTURES = (
+    built({"columns": 16}, on=VERILATOR),
+    built({"columns": 16, "data_width": 20, "gradient_limit": 4.0}, on=ICARUS),
+    built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
+    built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5}),
+)
+MUTANTS = Mutants("words", rows_are="Columns", simulators=QUICK_FIRST, flat=False)
 
 
 @pytest.mark.seeds
-@pytest.mark.structures(
-    "choices",
-    verilator=[({"columns": 16},)],
-    icarus=[({"columns": 16, "data_width": 20, "gradient_limit": 4.0},)],
-    regress=[
-        ({"columns": 32, "data_width": 12, "coefficient_width": 10},),
-        ({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5},),
-        ({"columns": 16},),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
-    config = Configuration(**choices)
-    run_tb(
-        "spectral_solver",
-        solver_parameters(config),
-        roms=lambda folder: write_solver(folder, config),
-        environment={"CONFIGURATION": json.dumps(choices)},
-    )
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 PEAKS = np.linspace(3, 18, 6) / 128  # of the domes, over N: those of the accuracy bar (3 to 18 pixels at 128)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """thomas_table: RTL against the model, the model against the recurrence and a direct solve."""
 
-import json
 import math
 from collections.abc import Callable
 from typing import Any
@@ -14,26 +13,36 @@ from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.poisson.transform.orders import eigenvalues
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
+from tb.structures import ICARUS, VERILATOR, Structure
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
 
-@pytest.mark.structures(
-    "choices",
-    verilator=[(CHOICES | {"neumann": True},)],
-    icarus=[(CHOICES,)],
-    regress=[(CHOICES | {"columns": 32, "rows": 50, "neumann": True},), (CHOICES | {"neumann": True},)],
-)
-def test_rtl(run_tb: Callable[..., None], choices: Any) -> None:
+def built(choices: Any, **runs: Any) -> Structure:
     config = Configuration(**choices)
     parameters = solver_parameters(config)
     taken = ("CoeffWidth", "Rows", "Columns", "SettledWidth", "LastShiftWidth")
-    run_tb(
-        "thomas_table",
+    return Structure(
         {name: parameters[name] for name in taken} | {"Words": parameters["TableWords"]},
+        device={"configuration": choices},
         roms=lambda folder: write_thomas(folder, config),
-        environment={"CONFIGURATION": json.dumps(choices)},
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(CHOICES | {"neumann": True}, on=VERILATOR, mutants=True),
+    built(CHOICES, on=ICARUS),
+    built(CHOICES | {"columns": 32, "rows": 50, "neumann": True}),
+)
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
+    "Rows=1": "Rows_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("neumann", [False, True])

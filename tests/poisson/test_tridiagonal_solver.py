@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """tridiagonal_solver: RTL against the model, the model against the double-precision reference."""
 
-import json
 from collections.abc import Callable
 from typing import Any
 
@@ -16,36 +15,41 @@ from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters, tridiagonal_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 from tests.poisson.test_spectral_solver import PEAKS
 
 CHOICES: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, models/tactile_depth/configuration.py
 
 
-@pytest.mark.seeds
-@pytest.mark.structures(
-    "choices store",
-    verilator=[(CHOICES, {}), (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {})],
-    icarus=[(CHOICES | {"rows": 21, "neumann": True}, {}), (CHOICES | {"lanes": 4, "rows": 9, "neumann": True}, {})],
-    regress=[
-        (CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}),
-        (CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
-        (CHOICES | {"columns": 32, "rows": 11}, PACKED),
-        (CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {}),
-        (CHOICES | {"columns": 64, "rows": 13, "lanes": 8}, PACKED),
-        (CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {}),
-        (CHOICES | {"columns": 64, "rows": 21, "lanes": 16}, {}),  # 32 lanes: the codes of `make regress`
-        (CHOICES, {}),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], choices: Any, store: Any) -> None:
+def built(choices: Any, store: Any, **runs: Any) -> Structure:
     config = Configuration(**choices)
-    run_tb(
-        "tridiagonal_solver",
+    return Structure(
         solver_parameters(config) | store,
+        device={"configuration": choices},
         roms=lambda folder: write_solver(folder, config),
-        environment={"CONFIGURATION": json.dumps(choices)},
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(CHOICES, {}, on=VERILATOR),
+    built(CHOICES | {"columns": 32, "rows": 11, "lanes": 4}, {}, on=VERILATOR),
+    built(CHOICES | {"rows": 21, "neumann": True}, {}, on=ICARUS),
+    built(CHOICES | {"lanes": 4, "rows": 9, "neumann": True}, {}, on=ICARUS),
+    built(CHOICES | {"columns": 32, "rows": 9, "data_width": 16, "coefficient_width": 10}, {}, mutants=True),
+    built(CHOICES | {"data_width": 32, "coefficient_width": 24, "neumann": True, "depth_range_px": 5.3}, {}),
+    built(CHOICES | {"columns": 32, "rows": 11}, PACKED),
+    built(CHOICES | {"columns": 64, "rows": 13, "lanes": 8}, PACKED),
+    built(CHOICES | {"lanes": 2, "rows": 9, "neumann": True}, {}, mutants=True),
+    built(CHOICES | {"columns": 64, "rows": 21, "lanes": 16}, {}),  # 32 lanes: the codes of `make regress`
+)
+MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+
+
+@pytest.mark.seeds
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def divergence_codes(slopes: np.ndarray, config: Configuration) -> tuple[Any, ...]:

@@ -3,6 +3,11 @@
 
 from collections.abc import Callable
 
+from tb.structures import BOTH, Mutants, Structure
 
-def test_axil_port(run_tb: Callable[..., None]) -> None:
-    run_tb("axil_port")
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(protocol="axil_registers")
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

@@ -4,13 +4,12 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import config_value, default_parameters, top_parameters
+from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 
 
-def built(**choices: Any) -> dict[str, int]:
+def fields_of(**choices: Any) -> dict[str, int]:
     """Return the fields of a configuration."""
     return top_parameters(Configuration(**choices), 0.0634)
 
@@ -36,16 +35,36 @@ EXTREMES = default_parameters() | {
     "SlopeExponent": 127,
     "PitchNm": (1 << 31) - 1,
 }
-QUADRATIC = built(columns=128, rows=96, solver="tridiagonal", flat_field=True, gradient_model="quadratic")
-BUILDS = {"128": built(columns=128), "extremes": EXTREMES, "quadratic": QUADRATIC}
+QUADRATIC = fields_of(columns=128, rows=96, solver="tridiagonal", flat_field=True, gradient_model="quadratic")
 
 
-@pytest.mark.structures(
-    "build",
-    verilator=[("128",)],
-    icarus=[("extremes",)],
-    regress=[("128",), ("quadratic",)],
-    regress_verilator=[("extremes",), ("quadratic",)],
+def built(name: str, fields: dict[str, int], **runs: Any) -> Structure:
+    return Structure({"Config": config_value(fields)}, name=name, **runs)
+
+
+STRUCTURES = (
+    built("128", fields_of(columns=128), on=VERILATOR),
+    built("extremes", EXTREMES, on=ICARUS, late=VERILATOR, mutants=True),
+    built("quadratic", QUADRATIC, late=BOTH),
 )
-def test_axil_registers(run_tb: Callable[..., None], build: Any) -> None:
-    run_tb("axil_registers", parameters={"Config": config_value(BUILDS[build])})
+MUTANTS = Mutants(simulators=QUICK_FIRST, flat=False)
+REFUSED = {
+    "Rows=0": "Rows_does_not_fit_GRID",
+    "Rows=65536": "Rows_does_not_fit_GRID",
+    "Columns=0": "Columns_does_not_fit_GRID",
+    "Columns=65536": "Columns_does_not_fit_GRID",
+    "GradientWidth=1": "GradientWidth_must_be_2_to_32",
+    "GradientWidth=33": "GradientWidth_must_be_2_to_32",
+    "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
+    "BitsPerChannel=9": "BitsPerChannel_must_be_1_to_8",
+    "GradientFraction=256": "GradientFraction_does_not_fit_FORMAT",
+    "DepthMantissa=16777216": "a_mantissa_does_not_fit_24_bits",
+    "SlopeMantissa=-1": "a_mantissa_does_not_fit_24_bits",
+    "DepthExponent=-129": "an_exponent_does_not_fit_8_bits",
+    "SlopeExponent=128": "an_exponent_does_not_fit_8_bits",
+    "PitchNm=-1": "PitchNm_must_not_be_negative",
+}
+
+
+def test_axil_registers(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

@@ -8,10 +8,10 @@ import pytest
 
 from commands.common import simulator
 from commands.verify import mutants
-from commands.verify.structures import Structure
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
+from tb.structures import Structure
 
 TRIDIAGONAL: dict[str, Any] = {
     "columns": 16,
@@ -29,7 +29,7 @@ def test_a_start_from_unknown_registers(model: str, tmp_path: Path) -> None:
     simulator.check("icarus")
     config = Configuration(**TRIDIAGONAL, **BUILDS[model])
     write_roms(tmp_path, synthetic(config.bits_per_channel), config)
-    built = Structure("tactile_depth", hdl_parameters(config), "", None, {})
+    built = Structure(hdl_parameters(config))
     read = mutants.read_commands("tactile_depth", built)
     unknown = "setattr -unset init w:*\nopt_clean\nwrite_verilog -noattr netlist.v\n"
     mutants.yosys(f"{read}\nprep -flatten -top tactile_depth\n{unknown}", tmp_path, "netlist")

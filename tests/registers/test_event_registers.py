@@ -3,6 +3,11 @@
 
 from collections.abc import Callable
 
+from tb.structures import BOTH, Mutants, Structure
 
-def test_event_registers(run_tb: Callable[..., None]) -> None:
-    run_tb("event_registers")
+STRUCTURES = (Structure(on=BOTH, mutants=True),)
+MUTANTS = Mutants(protocol="after_reset", outside=("counts",))
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

@@ -4,9 +4,20 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
+from tb.structures import BOTH, ICARUS, Structure
 
 
-@pytest.mark.structures("present", both=[(15,)], icarus=[(2,), (4,), (9,)])
-def test_table_banks(run_tb: Callable[..., None], present: Any) -> None:
-    run_tb("table_banks", parameters={"Present": present})
+def built(present: Any, **runs: Any) -> Structure:
+    return Structure({"Present": present}, **runs)
+
+
+STRUCTURES = (
+    built(15, on=BOTH, mutants=True),
+    built(2, on=ICARUS),
+    built(4, on=ICARUS),
+    built(9, on=ICARUS),
+)
+
+
+def test_table_banks(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)

@@ -8,20 +8,30 @@ import pytest
 
 from tactile_depth.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
 
 TIMEOUT = 5
 ROWS, COLUMNS = 4, 8  # of the model's frames
 
 
-@pytest.mark.structures(
-    "rows columns",
-    verilator=[(8, 2)],
-    icarus=[(3, 4)],
-    regress=[(8, 2), (4, 8)],
-    regress_verilator=[(4, 8)],
+def built(rows: int, columns: int, **runs: Any) -> Structure:
+    return Structure({"Rows": rows, "Columns": columns}, **runs)
+
+
+STRUCTURES = (
+    built(8, 2, on=VERILATOR),
+    built(3, 4, on=ICARUS, mutants=True),
+    built(4, 8, late=BOTH),
 )
-def test_rtl(run_tb: Callable[..., None], rows: int, columns: int) -> None:
-    run_tb("frame_guard", {"Rows": rows, "Columns": columns})
+MUTANTS = Mutants(outside=("silence",))
+REFUSED = {
+    "Rows=1": "Rows_and_Columns_must_be_at_least_2",
+    "Columns=1": "Rows_and_Columns_must_be_at_least_2",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def frame(start: Any) -> Any:

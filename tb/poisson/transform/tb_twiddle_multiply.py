@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """twiddle_multiply against its model: codes, latency, saturations; gaps, pauses, extremes, reset."""
 
-import os
 from typing import Any
 
 import cocotb
@@ -10,6 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.latency import TWIDDLE_MULTIPLY
 from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
+from tb.settings import RUN
 from tb.stream import check_bursts, extremes, parameters, uniform
 
 FIELDS = ["re", "im"]
@@ -17,7 +17,7 @@ FIELDS = ["re", "im"]
 
 def factors_of(dut: Any) -> Any:
     coeff, block = parameters(dut, "CoeffWidth", "Block")
-    kind, direction = os.environ["FACTORS"].split("_")
+    kind, direction = RUN.device["factors"].split("_")
     return {"twiddle": twiddle_factors, "phase": phase_factors}[kind](block, direction == "inverse", coeff)
 
 

@@ -15,27 +15,29 @@ from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
 
 
-@pytest.mark.structures(
-    "parameters",
-    verilator=[(transform_parameters(32, 24, 1, 27, 18, 0, 27, 1),)],
-    icarus=[
-        (transform_parameters(16, 23, 0, 27, 18, 3, 24, 1),),
-        (transform_parameters(8, 12, -3, 15, 10, 3, 12, 1),),
-    ],
-    regress=[
-        (transform_parameters(16, 16, -4, 15, 10, 1, 12, 1),),  # the input alone can clip
-        (transform_parameters(16, 23, 0, 27, 18, 3, 24, 0),),
-        (transform_parameters(32, 6, -3, 9, 7, 3, 6, 1),),  # four values can clip at once in sdf_fft
-        (transform_parameters(64, 32, 1, 35, 24, 0, 35, 1),),
-        (transform_parameters(32, 24, 1, 27, 18, 0, 27, 1),),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], parameters: dict[str, int]) -> None:
+def built(parameters: dict[str, int], **runs: Any) -> Structure:
     size, coeff = parameters["Size"], parameters["CoeffWidth"]
-    run_tb("dst_forward", parameters, roms=lambda folder: write_transform(folder, size, coeff))
+    return Structure(parameters, roms=lambda folder: write_transform(folder, size, coeff), **runs)
+
+
+STRUCTURES = (
+    built(transform_parameters(32, 24, 1, 27, 18, 0, 27, 1), on=VERILATOR),
+    built(transform_parameters(16, 23, 0, 27, 18, 3, 24, 1), on=ICARUS),
+    built(transform_parameters(8, 12, -3, 15, 10, 3, 12, 1), on=ICARUS),
+    built(transform_parameters(16, 16, -4, 15, 10, 1, 12, 1)),  # the input alone can clip
+    built(transform_parameters(16, 23, 0, 27, 18, 3, 24, 0)),
+    built(transform_parameters(32, 6, -3, 9, 7, 3, 6, 1), mutants=True),  # four values can clip at once in sdf_fft
+    built(transform_parameters(64, 32, 1, 35, 24, 0, 35, 1)),
+)
+MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:

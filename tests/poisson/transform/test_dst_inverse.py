@@ -16,27 +16,29 @@ from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
 
 
-@pytest.mark.structures(
-    "parameters",
-    verilator=[(transform_parameters(32, 24, -3, 27, 18, -1, 24, 1),)],
-    icarus=[
-        (transform_parameters(16, 27, 0, 27, 18, 1, 24, 1),),
-        (transform_parameters(8, 12, -3, 15, 10, -1, 12, 1),),
-    ],
-    regress=[
-        (transform_parameters(16, 15, 0, 15, 10, 2, 9, 1),),  # the output alone can clip
-        (transform_parameters(16, 27, 0, 27, 18, 1, 24, 0),),
-        (transform_parameters(32, 6, -5, 9, 7, -1, 6, 1),),  # eight values can clip at once
-        (transform_parameters(64, 35, 0, 35, 24, -1, 32, 1),),
-        (transform_parameters(32, 24, -3, 27, 18, -1, 24, 1),),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], parameters: dict[str, int]) -> None:
+def built(parameters: dict[str, int], **runs: Any) -> Structure:
     size, coeff = parameters["Size"], parameters["CoeffWidth"]
-    run_tb("dst_inverse", parameters, roms=lambda folder: write_transform(folder, size, coeff))
+    return Structure(parameters, roms=lambda folder: write_transform(folder, size, coeff), **runs)
+
+
+STRUCTURES = (
+    built(transform_parameters(32, 24, -3, 27, 18, -1, 24, 1), on=VERILATOR),
+    built(transform_parameters(16, 27, 0, 27, 18, 1, 24, 1), on=ICARUS),
+    built(transform_parameters(8, 12, -3, 15, 10, -1, 12, 1), on=ICARUS),
+    built(transform_parameters(16, 15, 0, 15, 10, 2, 9, 1)),  # the output alone can clip
+    built(transform_parameters(16, 27, 0, 27, 18, 1, 24, 0)),
+    built(transform_parameters(32, 6, -5, 9, 7, -1, 6, 1), mutants=True),  # eight values can clip at once
+    built(transform_parameters(64, 35, 0, 35, 24, -1, 32, 1)),
+)
+MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def inverse(modes: Any, coeff: int, width: int = 40) -> Any:

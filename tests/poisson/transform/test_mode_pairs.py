@@ -2,19 +2,36 @@
 """mode_pairs: RTL against the model, the model against the definition."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tactile_depth.poisson.transform.mode_pairs import mode_pairs
 from tactile_depth.poisson.transform.orders import bit_reversed, mirror
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "size width", verilator=[(32, 24)], icarus=[(8, 27)], regress=[(16, 12), (64, 24), (8, 4), (32, 24)]
+def built(size: int, width: int, **runs: Any) -> Structure:
+    return Structure({"Size": size, "Width": width}, **runs)
+
+
+STRUCTURES = (
+    built(32, 24, on=VERILATOR),
+    built(8, 27, on=ICARUS),
+    built(16, 12),
+    built(64, 24),
+    built(8, 4, mutants=True),
 )
-def test_rtl(run_tb: Callable[..., None], size: int, width: int) -> None:
-    run_tb("mode_pairs", {"Size": size, "Width": width})
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=12": "Size_must_be_a_power_of_two_at_least_4",
+    "Size=2": "Size_must_be_a_power_of_two_at_least_4",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("size", [8, 16, 128, 512])

@@ -2,21 +2,36 @@
 """row_reorder: RTL against the model, the model against Makhoul's order."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tactile_depth.poisson.transform.row_reorder import row_reorder
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "columns width to_burst",
-    verilator=[(16, 24, 1)],
-    icarus=[(16, 24, 0), (8, 12, 1)],
-    regress=[(8, 12, 0), (64, 35, 1), (64, 35, 0), (16, 24, 1)],
+def built(columns: int, width: int, to_burst: int, **runs: Any) -> Structure:
+    return Structure({"Columns": columns, "Width": width, "ToBurst": to_burst}, **runs)
+
+
+STRUCTURES = (
+    built(16, 24, 1, on=VERILATOR),
+    built(16, 24, 0, on=ICARUS),
+    built(8, 12, 1, on=ICARUS, mutants=True),
+    built(8, 12, 0),
+    built(64, 35, 1),
+    built(64, 35, 0),
 )
-def test_rtl(run_tb: Callable[..., None], columns: int, width: int, to_burst: bool) -> None:
-    run_tb("row_reorder", {"Columns": columns, "Width": width, "ToBurst": to_burst})
+MUTANTS = Mutants("words")
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
+    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def test_makhoul_order_is_even_samples_up_then_odd_ones_down() -> None:

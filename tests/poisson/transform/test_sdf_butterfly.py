@@ -5,36 +5,16 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
 from tactile_depth.poisson.transform.sdf_fft import Stage
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "size delay rotate_block inverse halve width",
-    verilator=[(16, 8, 16, 1, 1, 27)],
-    icarus=[
-        (16, 8, 0, 0, 0, 27),
-        (16, 4, 16, 0, 1, 9),
-        (32, 4, 8, 1, 0, 12),
-        (32, 2, 8, 0, 1, 35),
-    ],
-    regress=[
-        (16, 2, 4, 1, 1, 9),
-        (16, 1, 4, 0, 1, 9),
-        (8, 1, 0, 1, 1, 15),
-        (8, 1, 0, 0, 0, 15),
-        (64, 32, 64, 0, 0, 27),
-        (16, 8, 16, 1, 1, 27),
-    ],
-)
-def test_rtl(
-    run_tb: Callable[..., None], size: int, delay: Any, rotate_block: Any, inverse: bool, halve: Any, width: int
-) -> None:
+def built(size: int, delay: Any, rotate_block: Any, inverse: int, halve: Any, width: int, **runs: Any) -> Structure:
     parameters = {
         "Size": size,
         "Delay": delay,
@@ -43,7 +23,35 @@ def test_rtl(
         "Halve": halve,
         "Width": width,
     }
-    run_tb("sdf_butterfly", parameters)
+    return Structure(parameters, **runs)
+
+
+STRUCTURES = (
+    built(16, 8, 16, 1, 1, 27, on=VERILATOR),
+    built(16, 8, 0, 0, 0, 27, on=ICARUS),
+    built(16, 4, 16, 0, 1, 9, on=ICARUS, mutants=True),
+    built(32, 4, 8, 1, 0, 12, on=ICARUS),
+    built(32, 2, 8, 0, 1, 35, on=ICARUS),
+    built(16, 2, 4, 1, 1, 9),
+    built(16, 1, 4, 0, 1, 9),
+    built(8, 1, 0, 1, 1, 15),
+    built(8, 1, 0, 0, 0, 15),
+    built(64, 32, 64, 0, 0, 27),
+)
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=12": "Size_must_be_a_power_of_two",
+    "Delay=0": "Delay_must_be_a_power_of_two_1_to_Size_2",
+    "Delay=128": "Delay_must_be_a_power_of_two_1_to_Size_2",
+    "Delay=6": "Delay_must_be_a_power_of_two_1_to_Size_2",
+    "RotateBlock=2": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
+    "RotateBlock=6": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
+    "RotateBlock=256": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)

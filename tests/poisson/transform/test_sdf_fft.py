@@ -13,33 +13,39 @@ from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise
 
 
-@pytest.mark.structures(
-    "size width coeff inverse",
-    verilator=[(32, 27, 18, 0)],
-    icarus=[
-        (32, 27, 18, 1),
-        (8, 12, 10, 0),
-    ],
-    regress=[
-        (8, 12, 10, 1),
-        (16, 27, 18, 0),
-        (16, 27, 18, 1),
-        (32, 27, 18, 0),
-        (64, 15, 10, 0),
-        (64, 15, 10, 1),
-        (128, 35, 24, 0),
-        (128, 35, 24, 1),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], size: int, width: int, coeff: int, inverse: bool) -> None:
-    run_tb(
-        "sdf_fft",
+def built(size: int, width: int, coeff: int, inverse: int, **runs: Any) -> Structure:
+    return Structure(
         {"Size": size, "Width": width, "CoeffWidth": coeff, "Inverse": inverse},
         roms=lambda folder: write_transform(folder, size, coeff),
+        **runs,
     )
+
+
+STRUCTURES = (
+    built(32, 27, 18, 0, on=VERILATOR),
+    built(32, 27, 18, 1, on=ICARUS),
+    built(8, 12, 10, 0, on=ICARUS),
+    built(8, 12, 10, 1, mutants=True),
+    built(16, 27, 18, 0),
+    built(16, 27, 18, 1),
+    built(64, 15, 10, 0),
+    built(64, 15, 10, 1),
+    built(128, 35, 24, 0),
+    built(128, 35, 24, 1),
+)
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=4": "Size_must_be_a_power_of_two_at_least_8",
+    "Size=24": "Size_must_be_a_power_of_two_at_least_8",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 def transform(z: np.ndarray, inverse: bool, coeff: int, width: int = 40) -> Any:

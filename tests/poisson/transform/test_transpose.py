@@ -9,25 +9,31 @@ import pytest
 
 from tactile_depth.poisson.transform.orders import makhoul
 from tactile_depth.poisson.transform.transpose import transpose
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 
-@pytest.mark.structures(
-    "columns width makhoul_in makhoul_out",
-    verilator=[(16, 24, 0, 1)],
-    icarus=[
-        (8, 16, 0, 0),
-        (8, 16, 0, 1),
-        (8, 16, 1, 0),
-    ],
-    regress=[
-        (8, 16, 1, 1),
-        (4, 5, 0, 1),
-        (16, 24, 0, 1),
-    ],
-)
-def test_rtl(run_tb: Callable[..., None], columns: int, width: int, makhoul_in: int, makhoul_out: int) -> None:
+def built(columns: int, width: int, makhoul_in: int, makhoul_out: int, **runs: Any) -> Structure:
     parameters = {"Columns": columns, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
-    run_tb("transpose", parameters)
+    return Structure(parameters, **runs)
+
+
+STRUCTURES = (
+    built(16, 24, 0, 1, on=VERILATOR),
+    built(8, 16, 0, 0, on=ICARUS),
+    built(8, 16, 0, 1, on=ICARUS),
+    built(8, 16, 1, 0, on=ICARUS),
+    built(8, 16, 1, 1),
+    built(4, 5, 0, 1, mutants=True),
+)
+MUTANTS = Mutants("bursts", rows_are="Columns")
+REFUSED = {
+    "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
+    "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("makhoul_out", [False, True])

@@ -19,27 +19,12 @@ from tactile_depth.poisson.transform.twiddle_multiply import (
     twiddle_multiply,
 )
 from tactile_depth.rom_files import write_factors
+from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 
 MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
 
 
-@pytest.mark.structures(
-    "factors size block in_width out_width coeff drop real_only",
-    verilator=[("twiddle_forward", 32, 32, 27, 27, 18, 17, 0)],
-    icarus=[
-        ("twiddle_inverse", 32, 8, 12, 12, 10, 9, 0),
-        ("twiddle_forward", 16, 8, 35, 35, 24, 23, 0),
-        ("phase_forward", 16, 16, 27, 24, 18, 20, 1),
-    ],
-    regress=[
-        ("phase_forward", 16, 16, 15, 15, 10, 9, 1),
-        ("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
-        ("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0),
-        ("twiddle_forward", 32, 32, 27, 27, 18, 17, 0),
-    ],
-)
-def test_rtl(
-    run_tb: Callable[..., None],
+def built(
     factors: Any,
     size: int,
     block: Any,
@@ -47,11 +32,11 @@ def test_rtl(
     out_width: int,
     coeff: int,
     drop: int,
-    real_only: bool,
-) -> None:
+    real_only: int,
+    **runs: Any,
+) -> Structure:
     kind, direction = factors.split("_")
-    run_tb(
-        "twiddle_multiply",
+    return Structure(
         {
             "Size": size,
             "Block": block,
@@ -61,11 +46,35 @@ def test_rtl(
             "Drop": drop,
             "RealOnly": real_only,
         },
+        device={"factors": factors},
         roms=lambda folder: write_factors(
             folder / "twiddle_forward_0.hex", MAKERS[kind](block, direction == "inverse", coeff), coeff
         ),
-        environment={"FACTORS": factors},
+        **runs,
     )
+
+
+STRUCTURES = (
+    built("twiddle_forward", 32, 32, 27, 27, 18, 17, 0, on=VERILATOR),
+    built("twiddle_inverse", 32, 8, 12, 12, 10, 9, 0, on=ICARUS),
+    built("twiddle_forward", 16, 8, 35, 35, 24, 23, 0, on=ICARUS),
+    built("phase_forward", 16, 16, 27, 24, 18, 20, 1, on=ICARUS),
+    built("phase_forward", 16, 16, 15, 15, 10, 9, 1),
+    built("phase_inverse", 64, 64, 24, 27, 18, 14, 0),
+    built("twiddle_inverse", 16, 8, 6, 6, 5, 4, 0, mutants=True),
+)
+MUTANTS = Mutants("bursts", columns_are="Size")
+REFUSED = {
+    "Size=12": "Size_must_be_a_power_of_two_at_least_2",
+    "Size=1": "Size_must_be_a_power_of_two_at_least_2",
+    "Block=12": "Block_must_be_a_power_of_two_2_to_Size",
+    "Block=1": "Block_must_be_a_power_of_two_2_to_Size",
+    "Block=256": "Block_must_be_a_power_of_two_2_to_Size",
+}
+
+
+def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
+    run_tb(structure)
 
 
 @pytest.mark.parametrize("inverse", [False, True])

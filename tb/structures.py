@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Structures, mutants and refused parameters of a core: data beside the core's test, for tests and commands.
+
+A test of a core, `tests/<unit>/test_<core>.py`, states STRUCTURES, a sequence of `Structure`; where needed MUTANTS, a
+`Mutants`; and REFUSED, a mapping from a change of parameters to the module that refuses it, or to a `Refused`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+Simulators = tuple[str, ...]
+VERILATOR: Simulators = ("verilator",)
+ICARUS: Simulators = ("icarus",)
+BOTH = VERILATOR + ICARUS
+QUICK_FIRST = BOTH  # of mutants: Icarus, which sees X, gets the survivors of Verilator
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Build of a core, and where its testbench runs.
+
+    Attributes
+    ----------
+    parameters : mapping
+        Of the core.
+    on : tuple of str
+        Simulators in `make test`. Icarus builds in 0.1 s what takes Verilator 5 s.
+    late : tuple of str
+        More simulators in `make regress`; by default Icarus, unless it is in `on`.
+    mutants : bool
+        `make mutate` and `make netlists` take this structure. Those of a core are small builds that together contain
+        every relevant generate branch.
+    device : mapping
+        Facts that the testbench must know; see RunSettings.
+    roms : callable
+        Writes the files that $readmemh reads into the folder given.
+    name : str
+        Name in tests and folders; by default the values of the parameters or of the configuration.
+    level : str
+        Last level that is played, of the testbench of the whole.
+    environment : mapping
+        Environment variables of cocotb.
+    """
+
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    on: Simulators = ()
+    late: Simulators = ICARUS
+    mutants: bool = False
+    device: Mapping[str, Any] = field(default_factory=dict)
+    roms: Callable[[Path], None] | None = None
+    name: str = ""
+    level: str = ""
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def label(self) -> str:
+        choices = next(iter(self.device.values()), None)
+        if isinstance(choices, Mapping):
+            words = [f"{name}={value}" for name, value in choices.items()]
+        else:
+            words = [str(value) for value in self.parameters.values()]
+        return self.name or re.sub(r"[^\w=.-]+", "_", "-".join(words)) or "default"
+
+
+@dataclass(frozen=True)
+class Mutants:
+    """Settings for mutating a core.
+
+    Attributes
+    ----------
+    protocol : str
+        formal/protocols/protocol_<protocol>.sv; by default protocol_<name>.sv, if there is one.
+    rows_are, columns_are : str
+        Parameters of the core that the protocol calls Rows and Columns.
+    simulators : tuple of str
+        Each simulator gets the survivors of the one before. Icarus needs no build, and sees X.
+    outside : sequence of str
+        Registers of the core that its testbench writes.
+    repeats : int
+        Repetitions of rare cases; fewer if each repetition reaches every case.
+    flat : bool
+        False: mutants of its own cells and of the pins of the cores inside, which have their own runs.
+    """
+
+    protocol: str = ""
+    rows_are: str = ""
+    columns_are: str = ""
+    simulators: Simulators = ICARUS
+    outside: Sequence[str] = ()
+    repeats: int = 60
+    flat: bool = True
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Refusal of a parameter: the module of the rule, and the tools that stop earlier, with what they report then.
+
+    `earlier` maps a tool to a part of its message in small letters: a consequence of the parameter in another place.
+    """
+
+    rule: str
+    earlier: Mapping[str, str] = field(default_factory=dict)
