@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # tactile_depth by itself through Vivado: resources, routed clock and power of an XCZU7EV. NOT RUN HERE: no Vivado.
 #
-#   make synth TARGET=xczu7ev N=128 SOLVER=tridiagonal OUT=build/synth/mine
+#   make synth TARGET=xczu7ev PRESET=published SOLVER=tridiagonal OUT=build/synth/mine
 #   vivado -mode batch -source constraints/xczu7ev_ooc.tcl -tclargs build/synth/mine
 #
 # From the folder of `make synth` come parameters.txt, the parameters of the top, and rom/, the tables that $readmemh

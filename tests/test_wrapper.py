@@ -75,7 +75,7 @@ def command(*arguments: str) -> tuple[int, str]:
 
 
 def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
-    choices = ("N=16", "SOLVER=tridiagonal")
+    choices = ("PRESET=published", "N=16", "SOLVER=tridiagonal")
     assert command("NAME=finger", f"OUT={tmp_path}", "TABLES=finger/", *choices)[0] == 0
     text = (tmp_path / "tactile_depth_finger.sv").read_text()
     assert 'parameter TableFolder = "finger/"' in text
@@ -87,7 +87,7 @@ def test_the_command_writes_the_module_and_its_tables(tmp_path: Path) -> None:
 
 
 def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
-    choices = ("N=16", "SOLVER=tridiagonal", "ZERO=ball")
+    choices = ("PRESET=published", "N=16", "SOLVER=tridiagonal", "ZERO=ball")
     assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
     (tmp_path / "direct").mkdir()
     config = Configuration(columns=16, solver="tridiagonal", zero_offset=True)
@@ -100,7 +100,7 @@ def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
 
 def test_with_a_camera_the_module_has_the_front_end_inside(tmp_path: Path) -> None:
     """Elaborate the module in Icarus, which refuses an unknown port or parameter."""
-    choices = ("N=64", "SOLVER=tridiagonal", "CAMERA=raw10", "BAYER=grbg")
+    choices = ("PRESET=published", "N=64", "SOLVER=tridiagonal", "CAMERA=raw10", "BAYER=grbg")
     assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
     path = tmp_path / "tactile_depth_finger.sv"
     assert "camera_front_end #(" in path.read_text()
@@ -115,7 +115,7 @@ def test_with_a_camera_the_module_has_the_front_end_inside(tmp_path: Path) -> No
         ((), "NAME=: accepted are small letters"),
         (("NAME=Finger",), "NAME=Finger: accepted are small letters"),
         (("NAME=finger", "TABLES=finger"), "with a / at its end"),
-        (("NAME=finger", "LANES=2"), "LANES"),
+        (("NAME=finger", "LANES=2", "SOLVER=spectral"), "LANES"),
         (("NAME=finger", "CAMERA=raw9"), "CAMERA=raw9 is unknown: accepted are"),
     ],
 )

@@ -20,7 +20,9 @@ from tactile_depth.camera_configuration import FORMATS, PHASES, CameraChoice, Ca
 from tactile_depth.certificate import deepest
 from tactile_depth.configuration import COLUMNS, GRADIENT_MODELS, Configuration
 from tactile_depth.errors import InputError
+from tactile_depth.frames import REST_SCENE
 from tactile_depth.npy import is_file
+from tactile_depth.presets import PRESETS, Preset
 from tactile_depth.scenes import NOISE, SCENES, SENSOR_WIDTH_MM, Press
 from tactile_depth.sensor import Sensor
 
@@ -30,7 +32,7 @@ SOLVERS = tuple(COLUMNS)
 BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ACCEPTED = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
+    *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
     *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "ZERO", "CALIBRATION", "CAMERA_SIZE", "GRADIENT"),
     *("REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
 )
@@ -42,6 +44,7 @@ LARGEST_CONFIG = 65_536  # bytes of a configuration file
 class Request:
     """Values of the variables, checked as far as possible without reading files."""
 
+    preset: str
     rows: int
     columns: int
     solver: str
@@ -52,7 +55,7 @@ class Request:
     coefficient_width: int
     gain_width: int
     depth_range_mm: float | None  # infinite: the largest depth that slopes can cause
-    frames: str
+    frames: str  # "": none is given, and none is needed
     press: Press
     reference: str | None
     zero: str | None
@@ -68,12 +71,26 @@ class Request:
     camera: CameraChoice | None = None
 
 
-def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request:
-    """Return the Request of KEY=VALUE arguments. Raises InputError."""
+def parse(
+    arguments: list[str],
+    accepted: tuple[str, ...] = ACCEPTED,
+    preset: str = "published",
+    frames: str = DEFAULT_SCENE,
+) -> Request:
+    """Return the Request of KEY=VALUE arguments. Raises InputError.
+
+    Parameters
+    ----------
+    preset : name of the preset without PRESET
+    frames : source without FRAMES; "" for a command that needs no frame
+    """
     values = variables.given(arguments, accepted)
     if "CONFIG" in values:
         values = from_file(Path(values.pop("CONFIG")), values, [name for name in accepted if name != "CONFIG"]) | values
 
+    name = variables.choice(values, "PRESET", tuple(sorted(PRESETS, key=lambda name: name != preset)))
+    values = {"FRAMES": frames} | values
+    values = preset_values(PRESETS[name], values) | values
     number, choice = partial(variables.number, values), partial(variables.choice, values)
 
     def position(key: str) -> tuple[float, float]:
@@ -85,10 +102,10 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
             raise InputError(f"{key}={values[key]}: accepted is x,y in mm from the middle of the frame, as 2.5,-1")
         return x, y
 
-    both = number("N", 128, -math.inf, math.inf)
     return Request(
-        rows=int(number("ROWS", both, -math.inf, math.inf)),  # the configuration file sets the solver
-        columns=int(number("COLS", both, -math.inf, math.inf)),
+        preset=name,
+        rows=int(number("ROWS", 0, -math.inf, math.inf)),  # the configuration file sets the solver
+        columns=int(number("COLS", 0, -math.inf, math.inf)),
         solver=choice("SOLVER", SOLVERS),
         boundary=choice("BOUNDARY", BOUNDARIES),
         lanes=int(number("LANES", 1, -math.inf, math.inf)),  # see rows
@@ -99,7 +116,7 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
         depth_range_mm=math.inf
         if values.get("DEPTH_RANGE") == WORST
         else number("DEPTH_RANGE", 0, 1e-6, 1e6, float) or None,
-        frames=values.get("FRAMES", DEFAULT_SCENE),
+        frames=values["FRAMES"],
         press=Press(
             number("PRESS", 0, 1e-3, SENSOR_WIDTH_MM, float) or None,
             position("AT"),
@@ -118,6 +135,38 @@ def parse(arguments: list[str], accepted: tuple[str, ...] = ACCEPTED) -> Request
         out=Path(values["OUT"]) if "OUT" in values else None,
         camera=camera_choice(values),
     )
+
+
+def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables that a preset sets beside `values`, which win and decide what goes with them.
+
+    A drawn scene is a picture of the drawn sensor. The spectral solver gets a square grid. Without a picture the
+    reference is flat, and the zero offset is that of the reference.
+    """
+    chosen = {"SOLVER": preset.solver, "BOUNDARY": preset.boundary}
+    rows, columns = map(str, preset.grid)
+    if "N" in values:
+        rows = columns = values["N"]
+    elif rows != columns and values.get("SOLVER") == SOLVERS[0]:
+        rows = columns = values.get("COLS") or values.get("ROWS") or columns
+    chosen |= {"ROWS": rows, "COLS": columns}
+    if preset.zero_offset:
+        drawn = values["FRAMES"] in SCENES
+        chosen["CALIBRATION"] = BUILT_IN[0] if drawn else preset.calibration
+        if values.get("CALIBRATION", chosen["CALIBRATION"]) in BUILT_IN:
+            chosen["GRADIENT"] = preset.model  # another file may have the other model alone
+        if drawn or not values["FRAMES"]:
+            chosen["REFERENCE"] = REST_SCENE
+        if reference := values.get("REFERENCE", chosen.get("REFERENCE")):
+            chosen["ZERO"] = reference
+    return chosen
+
+
+def announce(request: Request, config: Configuration) -> None:
+    """Print the preset and what the variables made of it; the first line that a command prints."""
+    options = [config.gradient_model, *["flat field"] * config.flat_field, *["zero offset"] * config.zero_offset]
+    shape = f"{config.rows} x {config.columns}"
+    print(f"preset {request.preset}: {', '.join([config.solver, request.boundary, shape, *options])}", flush=True)
 
 
 def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:

@@ -9,7 +9,7 @@ from commands.common.run_request import Request
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.errors import InputError
-from tactile_depth.frames import Frames, load_frames
+from tactile_depth.frames import REST_SCENE, Frames, load_frames
 from tactile_depth.scenes import SCENES
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import tactile_depth
@@ -19,6 +19,8 @@ def untouched(request: Request, frames: Frames) -> np.ndarray | None:
     """Return the frames of `ZERO`, uint8 (a power of two, rows, columns, 3); None without it. Raises InputError."""
     if request.zero is None:
         return None
+    if not request.frames and request.zero == REST_SCENE and frames.picture_size is not None:
+        return frames.pixels  # a flat picture of a real sensor, `flat_frames`
     reference = request.reference if request.zero in SCENES else None
     no_contact = load_frames(request.zero, frames.pixels.shape[1:3], reference, request.seed, camera=request.camera)
     if no_contact.pixel_scale != frames.pixel_scale:

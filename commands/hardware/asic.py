@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make asic`: area, slack and power of a configuration in standard cells, by open tools, from any Liberty file.
 
-Takes the variables of `make sim` that choose a configuration and a frame (SOLVER is tridiagonal by default), and
+Takes the variables of `make sim` that choose a configuration and a frame, and
   LIB         Liberty file; by default the OSU 0.18 um library of Debian's qflow-tech-osu018
   NODE_NM     feature size that memories are scaled to; 180 for the default library, required with another
   CLOCK_MHZ   clock of constraints/asic.sdc and of the power
@@ -68,9 +68,7 @@ def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
     """Return KEY=VALUE arguments as a request and options. Raises InputError."""
     values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
     others = {key: value for key, value in values.items() if key not in OWN}
-    if not others.keys() & {"SOLVER", "CONFIG"}:
-        others["SOLVER"] = "tridiagonal"
-    request = run_request.parse([f"{key}={value}" for key, value in others.items()])
+    request = run_request.parse([f"{key}={value}" for key, value in others.items()], preset="sensor")
     node_nm = variables.number(values, "NODE_NM", 180.0, 1, 1000, float)
     clock_mhz = variables.number(values, "CLOCK_MHZ", 75.0, 0.001, 10_000, float)
     file = Path(values.get("LIB", DEFAULT_LIB))
@@ -318,8 +316,9 @@ def run(request: run_request.Request, options: Options, command: str) -> int:
     shape = f"{request.rows}x{request.columns}"
     name = f"{request.solver}-{request.boundary}-{shape}-{options.library.name}"
     out = request.out or repository.ROOT / "build" / "asic" / name
-    synthesis.design(request)  # refuses bad input before anything is made
+    _, _, config = synthesis.design(request)  # refuses bad input before anything is made
     with synthesis.workspace(out, ["asic.json"]) as work:
+        run_request.announce(request, config)
         report = {"command": command, **measure(request, options, work)}
         (work / "asic.json").write_text(json.dumps(report, indent=1) + "\n")
         files.replace(work, ["asic.json"], out)

@@ -106,10 +106,8 @@ def parse(arguments: list[str]) -> Request:
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
-    if "CONFIG" not in values:
-        values.setdefault("SOLVER", "tridiagonal")
     accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
-    design = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
+    design = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted, "sensor", "")
     return Request(target, numbers, int(clock_mhz), sensor, design)
 
 
@@ -358,6 +356,7 @@ def run(request: Request, command: str) -> int:
     name = f"{request.target}-{design.solver}{lanes}-{design.boundary}-{config.rows}x{config.columns}{colours}"
     out = design.out or ROOT / "build" / "fpga" / f"{name}-d{config.data_width}-c{config.coefficient_width}"
     with synthesis.workspace(out, ["fpga.json"]) as work:
+        run_request.announce(design, config)
         report = {**build(request, work), "command": command}
         (work / "fpga.json").write_text(json.dumps(report, indent=1) + "\n")
         earlier = [path.name for path in out.glob("*.bit")]

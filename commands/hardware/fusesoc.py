@@ -33,7 +33,7 @@ def generate(description: Path, folder: Path) -> None:
     for key in values:
         if key not in synth.CONFIGURING:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
-    request = run_request.parse([f"{key}={value}" for key, value in values.items()])
+    request = run_request.parse([f"{key}={value}" for key, value in values.items()], preset="sensor", frames="")
     config, calibration, frames = synth.configured(request)
     write_roms(folder, calibration, config, zero_of(untouched(request, frames), calibration, config))
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]

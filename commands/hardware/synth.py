@@ -37,7 +37,7 @@ from tactile_depth.camera.camera_front_end import camera_front_end_parameters
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.frames import REST_SCENE, Frames
+from tactile_depth.frames import Frames
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import hdl_parameters
 
@@ -47,7 +47,7 @@ UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl
 SOLVER = "u_poisson.u_solver"
 FRONT_END, FRONT_END_PATH = "camera_front_end", "u_camera"
 CONFIGURING = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
+    *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
     *("DEPTH_RANGE", "REFERENCE", "ZERO"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
@@ -139,7 +139,8 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Req
         raise InputError(f"GRIDS={values['GRIDS']}: accepted are whole numbers with commas, as 64,128,256")
     values.pop("GRIDS", None)
     accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
-    return TARGETS[name], name, sizes, run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
+    words = [f"{key}={value}" for key, value in values.items()]
+    return TARGETS[name], name, sizes, run_request.parse(words, accepted, "sensor", "")
 
 
 def configured(request: run_request.Request) -> tuple[Configuration, Sensor, Frames]:
@@ -147,9 +148,7 @@ def configured(request: run_request.Request) -> tuple[Configuration, Sensor, Fra
 
     Raises InputError.
     """
-    # A reference frame gives the width of the camera's pixels on the grid, so it is read as a frame too.
-    source = run_request.DEFAULT_SCENE if request.reference in (None, REST_SCENE) else request.reference
-    frames, calibration, config = synthesis.design(request, source)
+    frames, calibration, config = synthesis.design(request)
     return config, calibration, frames
 
 
@@ -405,8 +404,12 @@ def run(arguments: list[str]) -> int:
         "notes": list(NOTES),
         "designs": [],
     }
-    built = []
+    built: list[Design] = []
     with synthesis.workspace(out, ["resources.json"]) as work:
+        if grids:
+            print(f"preset {request.preset}", flush=True)
+        else:
+            run_request.announce(request, configured(request)[0])
         for each, reason in requests:
             if reason:
                 grid = {"grid": [each.rows, each.columns], "solver": each.solver}

@@ -10,7 +10,7 @@ from commands.common import repository, run_request
 from tactile_depth import files
 from tactile_depth.built_in import load
 from tactile_depth.configuration import Configuration
-from tactile_depth.frames import Frames, load_frames, on_grid
+from tactile_depth.frames import REST_SCENE, Frames, flat_frames, load_frames, on_grid
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
@@ -18,16 +18,22 @@ from tactile_depth.tactile_depth import hdl_parameters, write_roms
 SMALL_ROMS = 'setattr -set rom_style "logic" m:* a:rom_style=distributed %i'
 
 
-def design(request: run_request.Request, source: str | None = None) -> tuple[Frames, Sensor, Configuration]:
-    """Return frames, calibration on their grid and configuration of a request; `source` replaces its frames.
+def design(request: run_request.Request) -> tuple[Frames, Sensor, Configuration]:
+    """Return frames, calibration on their grid and configuration of a request.
+
+    Without FRAMES the reference is the frame, because it gives the width of the camera's pixels on the grid.
 
     Raises InputError.
     """
     calibration = run_request.load_sensor(request)
     run_request.check_grid(request)
     size = (request.rows, request.columns)
-    named = source or request.frames
-    frames = load_frames(named, size, request.reference, request.seed, request.press, request.camera)
+    flat = request.reference in (None, REST_SCENE)
+    if not request.frames and flat and calibration.camera is not None:
+        frames = flat_frames(calibration, size, request.camera, with_reference=request.reference is not None)
+    else:
+        source = request.frames or (run_request.DEFAULT_SCENE if flat else str(request.reference))
+        frames = load_frames(source, size, request.reference, request.seed, request.press, request.camera)
     calibration = on_grid(calibration, frames)
     return frames, calibration, run_request.configure(request, calibration)
 

@@ -31,7 +31,7 @@ def main() -> None:
         if not tables.endswith("/") or '"' in tables:
             raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
         accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
-        request = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted)
+        request = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted, "sensor", "")
         config, calibration, frames = synth.configured(request)
         zero = zero_of(untouched(request, frames), calibration, config)
         with files.workspace(out) as work:
@@ -40,4 +40,5 @@ def main() -> None:
             write_roms(work, calibration, config, zero)
             names = [file.name for file in work.iterdir()]
             files.replace(work, names, out)
+        run_request.announce(request, config)
         print(f"wrote {os.path.relpath(out / path.name)} and {len(names) - 1} table files beside it")

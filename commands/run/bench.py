@@ -5,6 +5,7 @@ import fcntl
 import hashlib
 import json
 import shutil
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -123,7 +124,7 @@ def build(
             return folder
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
-        print(f"building the {simulator} model (once for this configuration) ..", flush=True)
+        print(f"building the {simulator} model (once for this configuration) ..", file=sys.stderr)
         try:
             simulation.build(
                 simulator,

@@ -18,7 +18,7 @@ import numpy as np
 from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
-from commands.common.run_request import ACCEPTED, CAMERA, Request, check_grid, configure, load_sensor, parse
+from commands.common.run_request import ACCEPTED, CAMERA, Request, announce, check_grid, configure, load_sensor, parse
 from commands.common.zero_offset import untouched, zero_of
 from commands.run import bench
 from commands.run.compare import compare, warnings
@@ -155,6 +155,7 @@ def run(request: Request, frames: Frames | None = None) -> int:
         )
         files.replace(result, (*RESULTS, *dumps), out, earlier_dumps(out))
 
+    announce(request, config)
     print(table(report, frames.labels))
     for line in differences:
         print(line)

@@ -219,6 +219,7 @@ def run(request: run_request.Request, rtl: bool = True) -> int:
         name += "-worst"
     out = request.out or repository.ROOT / "build" / "certify" / name
     files.check(out, RESULTS)  # refuse bad input before minutes of work
+    run_request.announce(request, config)
 
     shape = "{desc} {percentage:.0f} % {bar} {remaining}"
     with tqdm(total=1.0, desc="certifying", leave=False, disable=None, delay=3, bar_format=shape) as bar:

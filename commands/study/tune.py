@@ -37,8 +37,22 @@ from tactile_depth.sensor import Sensor
 OWN = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
 LIMITS = (1e-9, 1e9)  # of each
 OF_SIM = (
-    *("N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE"),
-    *("REFERENCE", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
+    *(
+        "PRESET",
+        "N",
+        "ROWS",
+        "COLS",
+        "SOLVER",
+        "BOUNDARY",
+        "LANES",
+        "SIM",
+        "DEPTH_RANGE",
+        "FRAMES",
+        "PRESS",
+        "AT",
+        "NOISE",
+    ),
+    *("NOISE", "REFERENCE", "ZERO", "GRADIENT", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
 )
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
@@ -232,7 +246,7 @@ def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]
     passed = {"FRAMES": DEFAULT_FRAMES} | {key: value for key, value in values.items() if key not in OWN}
     defaults = dict.fromkeys(OWN, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
     limits = Limits(*(variables.number(own, name, default, *LIMITS, float) for name, default in defaults.items()))
-    request = run_request.parse([f"{key}={value}" for key, value in passed.items()])
+    request = run_request.parse([f"{key}={value}" for key, value in passed.items()], preset="sensor")
     solvers = [request.solver] if "SOLVER" in passed else list(COLUMNS)
     if "LANES" in passed:
         run_request.check_grid(replace(request, solver=solvers[-1]))
@@ -261,6 +275,7 @@ def config_file(request: run_request.Request, at: Widths) -> dict[str, str | int
     """Return the variables of make sim that choose this configuration."""
     square = request.rows == request.columns
     chosen: dict[str, str | int | float] = {
+        "PRESET": request.preset,
         "SOLVER": at.solver,
         "BOUNDARY": request.boundary,
         **({"LANES": at.lanes} if at.lanes > 1 else {}),
@@ -329,6 +344,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
     exact = reference.depth_of(frames.pixels, calibration, widest)
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     files.check(out, ("config.json", "report.json"))
+    run_request.announce(request, widest)
     print(how)
 
     with tqdm(desc="tuning", unit=" configurations", leave=False, disable=None) as bar:

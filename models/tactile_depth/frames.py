@@ -29,6 +29,7 @@ PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
 EXIF_ORIENTATION, UPRIGHT = 0x0112, 1
 PNG_COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with transparency", 6: "RGB with transparency"}
 REST_SCENE = "flat"  # the scene without contact
+GREY = 128  # level of a picture that stands for one without contact
 SCENE_PICTURE = (480, 640)  # rows and columns of a scene in front of a camera
 PICTURES = "a picture (PNG or JPEG), a folder of pictures, a .npy of uint8 (frames, rows, cols, 3)"
 ACCEPTED = f"a scene ({', '.join(SCENES)}), {PICTURES}"
@@ -190,6 +191,22 @@ def load_frames(
     labels, images = read_pictures(source, accepted=ACCEPTED)
     no_contact = None if reference is None else read_picture(Path(reference))
     return _to_grid(source, labels, images, size, reference or "", no_contact, camera)
+
+
+def flat_frames(
+    sensor: Sensor, size: tuple[int, int], camera: CameraChoice | None = None, *, with_reference: bool = True
+) -> Frames:
+    """Return a grey picture of a sensor's camera, as a frame and as its reference: for builds without a picture.
+
+    It has the size of the calibration's camera, or `SCENE_PICTURE` in front of a camera of the same aspect ratio.
+    """
+    assert sensor.camera is not None
+    picture = sensor.camera.rows, sensor.camera.columns
+    if camera is not None and picture[0] * SCENE_PICTURE[1] == picture[1] * SCENE_PICTURE[0]:
+        picture = SCENE_PICTURE
+    grey = np.full((*picture, 3), GREY, np.uint8)
+    frames = _to_grid(REST_SCENE, (REST_SCENE,), [grey], size, REST_SCENE, grey if with_reference else None, camera)
+    return replace(frames, no_contact=None)  # its lighting is that of no sensor
 
 
 def read_pictures(

@@ -23,6 +23,7 @@ from tactile_depth.frames import camera_scale, read_pictures
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.poisson.divergence import divergence
+from tactile_depth.presets import SENSOR
 from tactile_depth.resampling import Resampling, resampling
 from tactile_depth.result import Result
 from tactile_depth.sensor import Sensor
@@ -111,14 +112,14 @@ class Pipeline:
         reference: Pictures | None = None,
         *,
         grid: tuple[int, int] | None = None,
-        solver: str = "tridiagonal",
-        boundary: str = "neumann",
+        solver: str = SENSOR.solver,
+        boundary: str = SENSOR.boundary,
         model: str = "",
         data_width: int = 24,
         coefficient_width: int = 18,
         gain_width: int = Configuration.gain_width,
         depth_range_mm: float | None = None,
-        zero_offset: bool = True,
+        zero_offset: bool = SENSOR.zero_offset,
         arithmetic: str = "chip",
         threshold_mm: float = 0.1,
     ) -> None:

@@ -56,7 +56,12 @@ def test_the_generator_without_its_libraries_says_what_to_do(tmp_path: Path) -> 
 
 
 def test_the_generator_writes_a_module_and_its_tables(tmp_path: Path) -> None:
-    assert generated(tmp_path, {"NAME": "finger", "SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}).returncode == 0
+    assert (
+        generated(
+            tmp_path, {"NAME": "finger", "PRESET": "published", "SOLVER": "tridiagonal", "ROWS": 8, "COLS": 16}
+        ).returncode
+        == 0
+    )
     made = yaml.safe_load((tmp_path / "tables.core").read_text().removeprefix("CAPI=2:"))
     assert made["filesets"]["module"]["files"] == ["tactile_depth_finger.sv"]
     files = {name: place["copyto"] for file in made["filesets"]["tables"]["files"] for name, place in file.items()}

@@ -98,7 +98,7 @@ def test_a_frame_that_comes_alone_is_proven_on_copies_with_other_noise() -> None
 
 
 def run(tmp_path: Any, *words: Any) -> Any:
-    return tune.run(*tune.parse(["SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *words]))
+    return tune.run(*tune.parse(["PRESET=published", "SIM=icarus", "N=32", f"OUT={tmp_path / 'out'}", *words]))
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_the_choice_holds_in_rtl_and_make_sim_takes_its_file(
 
 def test_a_limit_of_the_whole_map_takes_lanes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def choose(limit_us: float) -> int:
-        words = ["N=32", "SIM=icarus", f"MAX_MAP_LATENCY_US={limit_us}"]
+        words = ["PRESET=published", "N=32", "SIM=icarus", f"MAX_MAP_LATENCY_US={limit_us}"]
         request, limits, _ = tune.parse(words)
         return tune.lanes_within(lambda at: config(at.lanes), request, limits, "tridiagonal")
 

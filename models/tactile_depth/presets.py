@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Two presets, the choices that a configuration starts from: the published pipeline, and a real sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tactile_depth.configuration import Configuration
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Choices for everything that is not named.
+
+    Attributes
+    ----------
+    solver, boundary, model, calibration : str
+    grid : (rows, columns)
+    zero_offset : bool
+        Colours are relative to a reference, and the depth without contact is subtracted.
+    """
+
+    solver: str
+    boundary: str
+    model: str
+    calibration: str
+    grid: tuple[int, int]
+    zero_offset: bool
+
+
+PUBLISHED = Preset(
+    solver=Configuration.solver,
+    boundary="neumann" if Configuration.neumann else "dirichlet",
+    model=Configuration.gradient_model,
+    calibration="synthetic",
+    grid=(Configuration.columns, Configuration.columns),
+    zero_offset=Configuration.zero_offset,
+)
+"""The pipeline of the published design: colours as they are sent, and a table of slopes."""
+SENSOR = Preset("tridiagonal", "neumann", "quadratic", "gelsight-mini", (96, 128), zero_offset=True)
+"""A real sensor: colours relative to a reference, and the whole picture of a camera of 4:3."""
+PRESETS = {"published": PUBLISHED, "sensor": SENSOR}

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Presets: what a command begins with, and what the variables that are given make of it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from commands.common import repository, run_request, wrapper
+from commands.hardware import fpga, synth, synthesis
+from commands.run import sim
+from commands.study import tune
+from tactile_depth.built_in import load
+from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.pipeline import Pipeline
+from tactile_depth.presets import PRESETS, SENSOR
+from tactile_depth.tactile_depth import default_parameters, top_parameters
+
+SIZES: dict[str, tuple[int, int]] = {
+    "": (96, 128),
+    "N=64": (64, 64),
+    "ROWS=48": (48, 128),
+    "COLS=64": (96, 64),
+    "N=64 ROWS=48": (48, 64),
+    "SOLVER=spectral": (128, 128),
+    "SOLVER=spectral COLS=64": (64, 64),
+    "SOLVER=spectral N=32": (32, 32),
+}
+WINNERS: dict[str, Any] = {
+    "SOLVER=spectral": ("solver", "spectral"),
+    "BOUNDARY=dirichlet": ("boundary", "dirichlet"),
+    "GRADIENT=lut": ("gradient", "lut"),
+    "CALIBRATION=synthetic": ("calibration", "synthetic"),
+    "CALIBRATION=mine.npz": ("gradient", ""),
+    "REFERENCE=mine.png": ("zero", "mine.png"),
+    "REFERENCE=mine.png ZERO=flat": ("zero", "flat"),
+}
+
+
+def parsed(words: str, preset: str = "sensor", frames: str = "") -> run_request.Request:
+    return run_request.parse(words.split(), (*run_request.ACCEPTED, *run_request.CAMERA), preset, frames)
+
+
+def grey(folder: Path) -> Path:
+    """Write a picture that stands for one without contact, and return its path."""
+    picture = folder / "grey.png"
+    Image.fromarray(np.full((240, 320, 3), 128, np.uint8)).save(picture)
+    return picture
+
+
+def test_published_is_the_default_of_the_package_of_the_rtl() -> None:
+    request = run_request.parse([])
+    config = run_request.configure(request, run_request.load_sensor(request))
+    assert request.preset == "published"
+    assert top_parameters(config) == default_parameters()
+
+
+@pytest.mark.filterwarnings("ignore::tactile_depth.errors.InputWarning")
+def test_sensor_is_the_default_of_the_python_package(tmp_path: Path) -> None:
+    _, _, config = synthesis.design(parsed(""))
+    assert config == Pipeline(load(SENSOR.calibration), reference=grey(tmp_path)).config
+
+
+@pytest.mark.parametrize(("words", "size"), SIZES.items())
+def test_the_grid_of_sensor(words: str, size: tuple[int, int]) -> None:
+    request = parsed(words)
+    assert (request.rows, request.columns) == size
+    run_request.check_grid(request)
+
+
+@pytest.mark.parametrize(("words", "expected"), WINNERS.items())
+def test_a_variable_that_is_given_wins(words: str, expected: tuple[str, str]) -> None:
+    name, value = expected
+    assert getattr(parsed(words), name) == value
+
+
+def test_a_drawn_scene_is_of_the_drawn_sensor() -> None:
+    request = parsed("FRAMES=ball")
+    assert (request.calibration, request.reference, request.zero) == ("synthetic", "flat", "flat")
+    _, _, config = synthesis.design(request)
+    assert (config.rows, config.columns, config.gradient_model, config.zero_offset) == (96, 128, "quadratic", True)
+
+
+def test_pictures_need_a_reference(tmp_path: Path) -> None:
+    request = parsed(f"FRAMES={grey(tmp_path)}")
+    assert (request.calibration, request.reference, request.zero) == (SENSOR.calibration, None, None)
+    with pytest.raises(InputError, match="reference"):
+        synthesis.design(request)
+
+
+def test_a_configuration_file_names_a_preset(tmp_path: Path) -> None:
+    file = tmp_path / "config.json"
+    file.write_text(json.dumps({"PRESET": "sensor", "COLS": 64}))
+    request = run_request.parse([f"CONFIG={file}"])
+    assert (request.preset, request.solver, request.columns) == ("sensor", "tridiagonal", 64)
+    assert run_request.parse([f"CONFIG={file}", "PRESET=published"]).solver == "spectral"
+
+
+def test_an_unknown_preset_is_refused() -> None:
+    with pytest.raises(InputError, match=f"PRESET=real is unknown: accepted are {', '.join(PRESETS)}"):
+        run_request.parse(["PRESET=real"])
+
+
+def test_the_preset_of_each_command() -> None:
+    assert synth.parse([])[-1].preset == "sensor"
+    assert fpga.parse(["TARGET=ulx3s"]).design.preset == "sensor"
+    assert tune.parse([])[0].preset == "sensor"
+    assert run_request.parse([]).preset == "published"
+
+
+def test_the_first_line_names_the_preset(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sim.run(run_request.parse(["N=16", "SIM=icarus", f"OUT={tmp_path}"])) == 0
+    first = capsys.readouterr().out.splitlines()[0]
+    assert first == "preset published: spectral, dirichlet, 16 x 16, lut"
+
+
+def test_the_module_of_a_reference_is_that_of_the_python_package(tmp_path: Path) -> None:
+    """`make wrap NAME=.. REFERENCE=..` writes the fields and the tables that `Pipeline.hardware` writes."""
+    picture, out = grey(tmp_path), tmp_path / "out"
+    words = ["NAME=finger", f"REFERENCE={picture}", f"OUT={out}"]
+    command = [sys.executable, "-m", "commands", "wrap", *words]
+    result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=True)
+    assert result.stdout.startswith(
+        "preset sensor: tridiagonal, neumann, 96 x 128, quadratic, flat field, zero offset\n"
+    )
+    with pytest.warns(InputWarning):
+        pipeline = Pipeline(load("gelsight-mini"), reference=picture)
+    described = json.loads(pipeline.hardware(tmp_path / "hardware").read_text())
+    assert (out / "tactile_depth_finger.sv").read_text() == wrapper.wrapper("finger", described["fields"])
+    for name in described["tables"]:
+        assert (out / name).read_text() == (tmp_path / "hardware" / name).read_text()
