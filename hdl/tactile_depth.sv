@@ -69,15 +69,15 @@ module tactile_depth
 );
 
   logic en;  // the whole pipeline moves, or none of it: low while the output is full
-
+  events_t events;
+  levels_t levels;
   logic [31:0] timeout, now, frame_time;
   logic video_busy, pixel_valid, pixel_frame_start, pixel_frame_end, pixel_bad;
   logic [23:0] pixel_data;
   position_t pixel_position;
-  faults_t faults;
   video_unit #(.Config(Config)) u_video (
     .clk, .rst, .en, .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .timeout, .faults, .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position, .pixel_frame_start,
+    .timeout, .faults(events.faults), .busy(video_busy), .pixel_valid, .pixel_data, .pixel_position, .pixel_frame_start,
     .pixel_frame_end, .pixel_bad, .now, .frame_time
   );
 
@@ -88,13 +88,14 @@ module tactile_depth
   logic [7:0] dark_level;
   logic [3:0] table_bank, slope_in_use, zero_in_use;
   logic [2:0] slope_saturations;
-  logic dark, slope_valid;
+  logic slope_valid;
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
     .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
-    .capture_command(reference_command), .capture_status(reference_status), .dark, .saturations(slope_saturations),
-    .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .slope_valid, .slope_position, .slope_gx, .slope_gy
+    .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark),
+    .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .slope_valid,
+    .slope_position, .slope_gx, .slope_gy
   );
 
   logic burst_start, solved_frame_start;
@@ -118,29 +119,30 @@ module tactile_depth
   );
 
   contact_settings_t contact_settings;
-  logic frame_leaves, depth_dropped, record_valid, record_lost, touching, first_depth_latency_valid;
+  logic first_depth_latency_valid;
   logic [31:0] first_depth_latency;
   logic [32*RecordWords-1:0] record;
   contact_unit #(.Config(Config)) u_contact (
-    .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves, .depth_dropped, .record_valid, .record_lost,
-    .touching, .record, .first_depth_latency, .first_depth_latency_valid, .depth_valid, .depth_position, .depth_data,
-    .depth_time, .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact,
-    .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
+    .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
+    .depth_dropped(events.depth_dropped), .record_valid(events.record_valid), .record_lost(events.record_lost),
+    .touching(levels.touching), .record, .first_depth_latency, .first_depth_latency_valid, .depth_valid,
+    .depth_position, .depth_data, .depth_time, .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast,
+    .m_axis_tuser, .contact, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
 
-  events_t events;
-  assign events = {
-    faults, en & out_of_step, en & pixel_frame_end & ~pixel_bad, frame_leaves, dark, depth_dropped, record_lost,
-    record_valid, 13'(solver_saturations) + 13'(slope_saturations) + 13'(depth_saturations)
-  };
+  assign events.out_of_step = en & out_of_step;
+  assign events.frame_in = en & pixel_frame_end & ~pixel_bad;
+  assign events.saturations = 13'(solver_saturations) + 13'(slope_saturations) + 13'(depth_saturations);
+  assign levels.busy = video_busy | depth_busy | m_axis_tvalid;
+  assign levels.contact = contact;
   axil_registers #(.Config(Config)) u_registers (
     .clk, .rst, .cold_rst, .s_axil_awaddr, .s_axil_awprot, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata,
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
-    .irq, .events, .levels({video_busy | depth_busy | m_axis_tvalid, contact, touching}), .first_depth_latency,
-    .first_depth_latency_valid, .record, .contact_settings, .timeout, .dark_level,
-    .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer), .table_bank,
-    .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command, .zero_status
+    .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
+    .dark_level, .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer),
+    .table_bank, .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command,
+    .zero_status
   );
 
 endmodule
