@@ -10,6 +10,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -42,6 +43,18 @@ def arguments(inputs: Any) -> list[Any]:
     return ["--reference", f"{inputs}/background.png", "--calibration", f"{inputs}/sensor.npz", *GRID]
 
 
+@pytest.fixture
+def depth(tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]) -> Any:
+    """Return a function that writes the depth of pictures, by default of the press, and returns what is printed."""
+
+    def run(*options: Any, pictures: Any = None, out: Any = tmp_path, status: int = 0) -> Any:
+        words = [*(pictures or [f"{inputs}/press.png"]), "--out", out, *arguments, *options]
+        assert main(["depth", *map(str, words)]) == status
+        return capsys.readouterr()
+
+    return run
+
+
 def expected(inputs: Any, **choices: Any) -> Any:
     pipeline = td.Pipeline(td.load(inputs / "sensor.npz"), inputs / "background.png", grid=(24, 32), **choices)
     return pipeline(inputs / "press.png")
@@ -61,8 +74,8 @@ def read_ply(path: Path) -> tuple[Any, ...]:
 # Files.
 
 
-def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, arguments: Any) -> None:
-    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 0
+def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, depth: Any) -> None:
+    depth()
     height = expected(inputs).height_mm
     depth_mm = np.load(tmp_path / "depth_mm.npy")
     assert depth_mm.dtype == np.float32
@@ -82,10 +95,8 @@ def test_the_files_hold_the_height_of_the_pipeline(tmp_path: Path, inputs: Any, 
     assert files == {"depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"}
 
 
-def test_the_report_describes_the_result(
-    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 0
+def test_the_report_describes_the_result(tmp_path: Path, inputs: Any, depth: Any) -> None:
+    printed = depth().out
     report, result = json.loads((tmp_path / "report.json").read_text()), expected(inputs)
     assert report["grid"] == {"rows": 24, "columns": 32}
     assert report["pixel_pitch_mm"] == result.pixel_pitch_mm
@@ -100,7 +111,6 @@ def test_the_report_describes_the_result(
     assert contact["centroid_px"] == list(result.contact.centroid_px)
     assert (picture["dark_pixels"], picture["outside_pixels"], picture["saturations"]) == (0, 0, {})
     assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
-    printed = capsys.readouterr().out
     assert "grid: 32 x 24 pixels of 0.6" in printed
     assert f"peak height {result.height_mm.max():.2f} mm, contact area {result.contact.area_mm2:.1f} mm2" in printed
     assert "error of the calibration not measured" in printed
@@ -116,8 +126,8 @@ def test_the_report_describes_the_result(
     ],
     ids=lambda value: value[0] if isinstance(value, list) else "",
 )
-def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, arguments: Any, options: Any, choices: Any) -> None:
-    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments, *options]) == 0
+def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, depth: Any, options: Any, choices: Any) -> None:
+    depth(*options)
     result = expected(inputs, **choices)
     np.testing.assert_array_equal(np.load(tmp_path / "depth_mm.npy"), result.height_mm.astype(np.float32))
     report = json.loads((tmp_path / "report.json").read_text())
@@ -125,9 +135,8 @@ def test_options_reach_the_pipeline(tmp_path: Path, inputs: Any, arguments: Any,
     assert report["zero_offset"] == choices.get("zero_offset", True)
 
 
-def test_several_pictures_share_one_array(tmp_path: Path, inputs: Any, arguments: Any) -> None:
-    pictures = [f"{inputs}/press.png", f"{inputs}/background.png"]
-    assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
+def test_several_pictures_share_one_array(tmp_path: Path, inputs: Any, depth: Any) -> None:
+    depth(pictures=[f"{inputs}/press.png", f"{inputs}/background.png"])
     height = np.load(tmp_path / "depth_mm.npy")
     assert height.shape == (2, 24, 32)
     np.testing.assert_array_equal(height[0], expected(inputs).height_mm.astype(np.float32))
@@ -137,36 +146,29 @@ def test_several_pictures_share_one_array(tmp_path: Path, inputs: Any, arguments
     assert sorted(report["files"]) == sorted(path.name for path in tmp_path.iterdir())
 
 
-def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(
-    tmp_path: Path, inputs: Any, arguments: Any
-) -> None:
+def test_a_second_run_removes_the_files_of_the_first_and_nothing_else(tmp_path: Path, inputs: Any, depth: Any) -> None:
     (tmp_path / "notes.txt").write_text("mine")
-    pictures = [f"{inputs}/press.png"] * 2
-    assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
-    assert main(["depth", pictures[0], "--out", str(tmp_path), *arguments]) == 0
+    depth(pictures=[f"{inputs}/press.png"] * 2)
+    depth()
     assert {path.name for path in tmp_path.iterdir()} == {
         "notes.txt", "depth_mm.npy", "depth_um.png", "depth.ply", "overview.png", "report.json"
     }  # fmt: skip
 
 
-def test_a_folder_with_the_name_of_a_result_is_not_replaced(
-    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_with_the_name_of_a_result_is_not_replaced(tmp_path: Path, depth: Any) -> None:
     mine = tmp_path / "overview.png" / "mine.txt"
     mine.parent.mkdir()
     mine.write_text("mine")
-    assert main(["depth", f"{inputs}/press.png", "--out", str(tmp_path), *arguments]) == 2
     reason = "cannot be written (overview.png in it is a folder): remove it or give another"
-    assert capsys.readouterr().err == f"tactile-depth: --out {tmp_path} {reason}\n"
+    assert depth(status=2).err == f"tactile-depth: --out {tmp_path} {reason}\n"
     assert sorted(tmp_path.rglob("*")) == [mine.parent, mine]
 
 
-def test_a_folder_with_the_name_of_an_earlier_result_stays(tmp_path: Path, inputs: Any, arguments: Any) -> None:
-    pictures = [f"{inputs}/press.png"] * 2
-    assert main(["depth", *pictures, "--out", str(tmp_path), *arguments]) == 0
+def test_a_folder_with_the_name_of_an_earlier_result_stays(tmp_path: Path, inputs: Any, depth: Any) -> None:
+    depth(pictures=[f"{inputs}/press.png"] * 2)
     (tmp_path / "depth_0.ply").unlink()
     (tmp_path / "depth_0.ply").mkdir()
-    assert main(["depth", pictures[0], "--out", str(tmp_path), *arguments]) == 0
+    depth()
     assert (tmp_path / "depth_0.ply").is_dir()
     assert not (tmp_path / "depth_1.ply").exists()
 
@@ -179,15 +181,12 @@ def test_the_results_lie_in_the_current_folder_by_default(
     assert (tmp_path / "press-depth" / "depth_mm.npy").is_file()
 
 
-def test_nothing_is_written_when_one_picture_is_bad(
-    tmp_path: Path, inputs: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_nothing_is_written_when_one_picture_is_bad(tmp_path: Path, inputs: Any, depth: Any) -> None:
     narrow = tmp_path / "narrow.png"
     Image.new("RGB", (100, 240)).save(narrow)
-    out = tmp_path / "out"
-    assert main(["depth", f"{inputs}/press.png", str(narrow), "--out", str(out), *arguments]) == 2
-    assert not out.exists()
-    assert f"tactile-depth: {narrow}: pictures: 100 x 240 pixels" in capsys.readouterr().err
+    printed = depth(pictures=[f"{inputs}/press.png", narrow], out=tmp_path / "out", status=2)
+    assert not (tmp_path / "out").exists()
+    assert f"tactile-depth: {narrow}: pictures: 100 x 240 pixels" in printed.err
 
 
 # Choice of the calibration.
@@ -243,28 +242,26 @@ def test_a_named_calibration_with_another_reference_is_used_with_a_warning(
 
 
 @needs_real_data
-def test_a_real_press(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    data = FOLDER / "gelslam"
-    picture, reference = data / "9.500mm" / "12.png", data / "background.png"
-    assert main(["depth", str(picture), "--reference", str(reference), "--out", str(tmp_path)]) == 0
-    printed = capsys.readouterr().out
-    assert "peak height 0.81 +- 0.05 mm" in printed
-    assert "middle square" not in printed
-
-
-@needs_real_data
+@pytest.mark.parametrize(("press", "height"), [("12.png", "peak height 0.81 +- 0.05 mm"), ("3.png", "")])
 def test_a_real_press_beside_the_middle_square_says_that_its_error_was_not_measured(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], press: str, height: str
 ) -> None:
     data = FOLDER / "gelslam"
-    picture, reference = data / "9.500mm" / "3.png", data / "background.png"
+    picture, reference = data / "9.500mm" / press, data / "background.png"
     assert main(["depth", str(picture), "--reference", str(reference), "--out", str(tmp_path)]) == 0
-    assert "the contact leaves the middle square, where the error was measured" in capsys.readouterr().out
+    printed = capsys.readouterr().out
     (described,) = json.loads((tmp_path / "report.json").read_text())["pictures"]
-    assert described["contact"]["is_central"] is False
+    is_central = press == "12.png"
+    assert described["contact"]["is_central"] is is_central
+    assert ("the contact leaves the middle square, where the error was measured" not in printed) == is_central
+    assert height in printed
 
 
 # Bad input: one line and exit status 2.
+
+
+PRESS = ["depth", "{press}", "--reference", "{ref}"]
+CALIBRATED = [*PRESS, "--calibration", "{npz}"]
 
 
 @pytest.mark.parametrize(
@@ -274,30 +271,16 @@ def test_a_real_press_beside_the_middle_square_says_that_its_error_was_not_measu
         (["height"], "invalid choice: 'height'"),
         (["depth"], "the following arguments are required: PICTURE, --reference: see `tactile-depth depth --help`"),
         (["depth", "none.png", "--reference", "none.png"], "none.png: no such file or folder"),
-        (["depth", "{press}", "--reference", "{ref}", "--calibration", "x.npz"], "x.npz"),
-        (["depth", "{press}", "--reference", "{ref}", "--grid", "32"], "'32' is no size: accepted is columns x rows"),
-        (
-            ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--grid", "33x24"],
-            "--grid 33x.. is not a power of two",
-        ),
-        (["depth", "{press}", "--reference", "{ref}", "--arithmetic", "exact"], "invalid choice: 'exact'"),
-        (
-            ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--threshold-mm", "-1"],
-            "--threshold-mm -1.0: acc",
-        ),
-        (
-            ["depth", "{press}", "--reference", "{ref}", "--calibration", "{npz}", "--out", "{press}"],
-            "{press} is a file",
-        ),
+        ([*PRESS, "--calibration", "x.npz"], "x.npz"),
+        ([*PRESS, "--grid", "32"], "'32' is no size: accepted is columns x rows"),
+        ([*CALIBRATED, "--grid", "33x24"], "--grid 33x.. is not a power of two"),
+        ([*PRESS, "--arithmetic", "exact"], "invalid choice: 'exact'"),
+        ([*CALIBRATED, "--threshold-mm", "-1"], "--threshold-mm -1.0: acc"),
+        ([*CALIBRATED, "--out", "{press}"], "{press} is a file"),
     ],
 )
 def test_bad_input_is_one_line(
-    tmp_path: Path,
-    inputs: Any,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    command: Any,
-    message: Any,
+    tmp_path: Path, inputs: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any, command: Any, message: Any
 ) -> None:
     monkeypatch.chdir(tmp_path)
     names = {"press": f"{inputs}/press.png", "ref": f"{inputs}/background.png", "npz": f"{inputs}/sensor.npz"}
@@ -308,15 +291,15 @@ def test_bad_input_is_one_line(
     assert not list(tmp_path.iterdir())
 
 
-def test_an_interruption_ends_with_130(
-    inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [(KeyboardInterrupt, 130, "tactile-depth: interrupted\n"), (ZeroDivisionError, 3, "an error of this program")],
+)
+def test_an_interruption_and_an_error_of_the_program_have_a_status(
+    depth: Any, monkeypatch: pytest.MonkeyPatch, error: Any, status: int, line: str
 ) -> None:
-    def interrupt(*_: Any) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", interrupt)
-    assert main(["depth", f"{inputs}/press.png", *arguments]) == 130
-    assert capsys.readouterr().err == "tactile-depth: interrupted\n"
+    monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", Mock(side_effect=error))
+    assert line in depth(status=status).err
 
 
 def started(words: list[str], **options: Any) -> Any:
@@ -358,17 +341,6 @@ def test_a_file_that_does_not_fit_ends_with_3(tmp_path: Path, inputs: Any, argum
     (line,) = errors.splitlines()
     assert line.endswith(": free disk space, or give a folder on another disk")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_an_error_of_the_program_ends_with_3(
-    inputs: Any, arguments: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def fail(*_: Any) -> None:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr("tactile_depth.cli.depth.make_pipeline", fail)
-    assert main(["depth", f"{inputs}/press.png", *arguments]) == 3
-    assert "an error of this program" in capsys.readouterr().err
 
 
 def test_it_runs_as_a_module() -> None:

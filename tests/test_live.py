@@ -43,8 +43,20 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture
-def arguments(inputs: Any) -> list[Any]:
-    return ["--calibration", f"{inputs}/sensor.npz", "--grid", "32x24"]
+def live(inputs: Any, capsys: pytest.CaptureFixture[str]) -> Any:
+    """Return a function that runs the command with the calibration of `inputs`, and returns what it prints."""
+
+    def run(source: Any, *options: Any, status: int = 0) -> Any:
+        calibrated = ["--calibration", f"{inputs}/sensor.npz", "--grid", "32x24"]
+        assert main(["live", str(source), *map(str, options), *calibrated]) == status
+        return capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def background(inputs: Any) -> list[str]:
+    return ["--reference", f"{inputs}/background.png"]
 
 
 @pytest.fixture(scope="module")
@@ -113,31 +125,23 @@ def counted(printed: Any) -> Any:
 
 
 def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(
-    inputs: Any, arguments: Any, images: Any, screen: Any, capsys: pytest.CaptureFixture[str]
+    inputs: Any, live: Any, background: Any, images: Any, screen: Any
 ) -> None:
-    reference = ["--reference", f"{inputs}/background.png"]
-    assert main(["live", f"{inputs}/presses", *reference, *arguments]) == 0
+    printed = live(inputs / "presses", *background).out
     expected = pipeline_of(inputs)
     np.testing.assert_array_equal(Screen.last.heights, [expected(image).height_mm for image in images])
     assert Screen.last.indices == list(range(FRAMES))
-    assert counted(capsys.readouterr().out) == {"read": FRAMES, "shown": FRAMES, "dropped": 0, "failed": 0}
+    assert counted(printed) == {"read": FRAMES, "shown": FRAMES, "dropped": 0, "failed": 0}
 
 
 @pytest.mark.parametrize("option", [[], ["--reference", "capture"]])
 def test_the_first_frames_become_the_reference(
-    tmp_path: Path,
-    inputs: Any,
-    arguments: Any,
-    images: Any,
-    screen: Any,
-    capsys: pytest.CaptureFixture[str],
-    option: Any,
+    tmp_path: Path, inputs: Any, live: Any, images: Any, screen: Any, option: Any
 ) -> None:
     no_contact = np.array(Image.open(inputs / "background.png"))
     np.save(tmp_path / "frames.npy", np.stack([no_contact] * 8 + [images[5]]))
-    assert main(["live", f"{tmp_path}/frames.npy", *arguments, *option]) == 0
+    printed = live(tmp_path / "frames.npy", *option).out
     np.testing.assert_array_equal(Screen.last.heights, [pipeline_of(inputs)(images[5]).height_mm])
-    printed = capsys.readouterr().out
     assert printed.startswith("do not touch the sensor: its first 8 frames become the reference\n")
     assert counted(printed) == {"read": 9, "captured": 8, "shown": 1, "dropped": 0, "failed": 0}
 
@@ -151,13 +155,10 @@ def test_the_calibration_is_found_by_the_captured_reference(
     assert "calibration: gelsight-mini: the reference looks like it" in capsys.readouterr().out
 
 
-def test_it_stops_after_so_many_frames(
-    inputs: Any, arguments: Any, screen: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    reference = ["--reference", f"{inputs}/background.png"]
-    assert main(["live", f"{inputs}/presses", *reference, *arguments, "--frames", "3"]) == 0
+def test_it_stops_after_so_many_frames(inputs: Any, live: Any, background: Any, screen: Any) -> None:
+    printed = live(inputs / "presses", *background, "--frames", 3)
     assert Screen.last.indices == [0, 1, 2]
-    assert counted(capsys.readouterr().out)["shown"] == 3
+    assert counted(printed.out)["shown"] == 3
 
 
 # Keys.
@@ -175,45 +176,34 @@ def drifting(tmp_path: Path, inputs: Any, images: np.ndarray) -> tuple[Any, ...]
 
 @pytest.mark.parametrize("key", ["r", "z"])
 def test_keys_capture_from_the_frames_that_follow(
-    tmp_path: Path,
-    inputs: Any,
-    arguments: Any,
-    images: np.ndarray,
-    screen: Any,
-    press_keys: Any,
-    capsys: pytest.CaptureFixture[str],
-    key: str,
+    tmp_path: Path, inputs: Any, live: Any, background: Any, images: np.ndarray, screen: Any, press_keys: Any, key: str
 ) -> None:
     no_contact, press = drifting(tmp_path, inputs, images)
     press_keys(key)
-    reference = ["--reference", f"{inputs}/background.png"]
-    assert main(["live", f"{tmp_path}/frames.npy", *reference, *arguments]) == 0
+    printed = live(tmp_path / "frames.npy", *background)
     expected = pipeline_of(inputs)
     np.testing.assert_array_equal(Screen.last.heights[0], expected(no_contact[0]).height_mm)
     if key == "r":
         expected.capture_reference(no_contact)
     expected.capture_zero(no_contact)
     np.testing.assert_array_equal(Screen.last.heights[8], expected(press).height_mm)
-    assert "captured the" in capsys.readouterr().out
+    assert "captured the" in printed.out
 
 
-def test_q_quits(inputs: Any, arguments: Any, screen: Any, press_keys: Any, capsys: pytest.CaptureFixture[str]) -> None:
+def test_q_quits(inputs: Any, live: Any, background: Any, screen: Any, press_keys: Any) -> None:
     press_keys("..q")
-    reference = ["--reference", f"{inputs}/background.png"]
-    assert main(["live", f"{inputs}/presses", *reference, *arguments]) == 0
+    printed = live(inputs / "presses", *background).out
     assert Screen.last.indices == [0, 1]
-    printed = capsys.readouterr().out
     assert counted(printed) == {"read": 3, "shown": 2, "dropped": 0, "failed": 0, "unfinished": 1}
     assert "keys: r captures the reference" in printed
 
 
 def test_z_without_a_zero_offset_is_refused_and_nothing_ends(
-    inputs: Any, arguments: Any, screen: Any, press_keys: Any, capsys: pytest.CaptureFixture[str]
+    inputs: Any, live: Any, background: Any, screen: Any, press_keys: Any
 ) -> None:
     press_keys("z")
-    options = ["--reference", f"{inputs}/background.png", "--no-zero-offset"]
-    assert main(["live", f"{inputs}/presses", *arguments, *options]) == 0
-    assert "nothing captured: pictures: this pipeline has no zero offset" in capsys.readouterr().err
+    printed = live(inputs / "presses", *background, "--no-zero-offset")
+    assert "nothing captured: pictures: this pipeline has no zero offset" in printed.err
     assert len(Screen.last.indices) == FRAMES
 
 
@@ -221,14 +211,13 @@ def test_z_without_a_zero_offset_is_refused_and_nothing_ends(
 
 
 def test_pictures_that_cannot_be_read_or_used_are_counted(
-    tmp_path: Path, inputs: Any, arguments: Any, images: np.ndarray, screen: Any, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, live: Any, background: Any, images: np.ndarray, screen: Any
 ) -> None:
     for index in range(4):
         Image.fromarray(images[index]).save(tmp_path / f"{index}.png")
     (tmp_path / "1.png").write_bytes(b"no picture")
     Image.new("RGB", (100, 240)).save(tmp_path / "2.png")
-    assert main(["live", str(tmp_path), "--reference", f"{inputs}/background.png", *arguments]) == 0
-    printed = capsys.readouterr()
+    printed = live(tmp_path, *background)
     assert Screen.last.indices == [0, 3]
     assert counted(printed.out) == {"read": 4, "shown": 2, "dropped": 0, "failed": 2}
     (line,) = printed.err.splitlines()
@@ -237,11 +226,10 @@ def test_pictures_that_cannot_be_read_or_used_are_counted(
 
 
 def test_a_source_of_the_wrong_size_is_told_at_the_start(
-    tmp_path: Path, inputs: Any, arguments: Any, screen: Any, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, live: Any, background: Any, screen: Any
 ) -> None:
     Image.new("RGB", (100, 240)).save(tmp_path / "0.png")
-    assert main(["live", str(tmp_path), "--reference", f"{inputs}/background.png", *arguments]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
+    (line,) = live(tmp_path, *background, status=2).err.splitlines()
     assert "100 x 240 pixels (columns x rows), but" in line
 
 
@@ -256,15 +244,14 @@ def test_files_wait_for_a_slow_consumer(inputs: Any) -> None:
 
 
 def test_an_interruption_still_says_where_the_frames_went(
-    inputs: Any, arguments: Any, screen: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    inputs: Any, live: Any, background: Any, screen: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def interrupt(self: Any, index: Any, *_: Any) -> None:
         if index == 2:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(Screen, "show", interrupt)
-    assert main(["live", f"{inputs}/presses", "--reference", f"{inputs}/background.png", *arguments]) == 130
-    printed = capsys.readouterr()
+    printed = live(inputs / "presses", *background, status=130)
     assert counted(printed.out) == {"read": 3, "shown": 2, "dropped": 0, "failed": 0, "unfinished": 1}
     assert printed.err.splitlines()[-1] == "tactile-depth: interrupted"
 
@@ -283,12 +270,7 @@ def test_an_interruption_still_says_where_the_frames_went(
     ],
 )
 def test_bad_input_is_one_line(
-    inputs: Any,
-    screen: Any,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    options: Any,
-    message: Any,
+    inputs: Any, screen: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any, options: Any, message: Any
 ) -> None:
     monkeypatch.chdir(inputs)
     (inputs / "few").mkdir(exist_ok=True)
@@ -300,33 +282,18 @@ def test_bad_input_is_one_line(
 
 @pytest.mark.parametrize(
     ("module", "source", "message"),
-    [
-        (
-            "rerun",
-            "presses",
-            "frames are shown by Rerun, which is not installed: pip install '.[live]' in the repository",
-        ),
-        (
-            "cv2",
-            "0",
-            "cameras and videos are read by OpenCV, which is not installed: pip install '.[live]' in the repository",
-        ),
-    ],
+    [("rerun", "presses", "frames are shown by Rerun"), ("cv2", "0", "cameras and videos are read by OpenCV")],
 )
 def test_a_missing_library_is_one_line(
-    inputs: Any,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    module: Any,
-    source: Any,
-    message: Any,
+    inputs: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any, module: Any, source: Any, message: Any
 ) -> None:
     monkeypatch.chdir(inputs)
     monkeypatch.setitem(sys.modules, module, None)
     if module == "cv2":
         monkeypatch.setattr(command, "load_rerun", lambda: None)
     assert main(["live", source]) == 3
-    assert capsys.readouterr().err == f"tactile-depth: {message}\n"
+    how = "which is not installed: pip install '.[live]' in the repository"
+    assert capsys.readouterr().err == f"tactile-depth: {message}, {how}\n"
 
 
 # With OpenCV and Rerun.
@@ -367,12 +334,11 @@ def component(values: Any, entity: Any, ending: Any) -> dict[Any, Any]:
 
 @needs_live
 def test_a_recording_holds_every_frame_as_the_pipeline_computes_it(
-    tmp_path: Path, inputs: Any, arguments: Any, video: Any, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, inputs: Any, live: Any, background: Any, video: Any
 ) -> None:
     rrd = tmp_path / "run.rrd"
-    options = ["--reference", f"{inputs}/background.png", "--headless", "--save", str(rrd)]
-    assert main(["live", str(video), *options, *arguments]) == 0
-    assert counted(capsys.readouterr().out) == {"read": 25, "shown": 25, "dropped": 0, "failed": 0}
+    printed = live(video, *background, "--headless", "--save", rrd)
+    assert counted(printed.out) == {"read": 25, "shown": 25, "dropped": 0, "failed": 0}
     values, expected = read_back(rrd), pipeline_of(inputs)
     results = [expected(image) for image in decoded(video)]
     heights = component(values, "/height", "buffer")
@@ -426,11 +392,11 @@ def test_what_is_no_video_is_refused(tmp_path: Path) -> None:
 
 
 @needs_live
-def test_ctrl_c_closes_the_recording(tmp_path: Path, inputs: Any, video: Any) -> None:
+def test_ctrl_c_closes_the_recording(tmp_path: Path, inputs: Any, background: Any, video: Any) -> None:
     rrd = tmp_path / "run.rrd"
     long = tmp_path / "long.avi"
     write_video(long, press_frames(FRAMES), 3000)
-    options = ["--reference", f"{inputs}/background.png", "--calibration", f"{inputs}/sensor.npz"]
+    options = [*background, "--calibration", f"{inputs}/sensor.npz"]
     process = subprocess.Popen(
         [sys.executable, "-m", "tactile_depth.cli", "live", long, *options, "--headless", "--save", rrd],
         stdout=subprocess.PIPE,
@@ -447,17 +413,12 @@ def test_ctrl_c_closes_the_recording(tmp_path: Path, inputs: Any, video: Any) ->
     assert process.returncode == 130
     assert errors.splitlines()[-1] == "tactile-depth: interrupted"
     shown = counted(printed)["shown"]
-    assert len(component(read_back(rrd), "/height", "buffer")) in (
-        shown,
-        shown + 1,
-    )  # it may be logged, not yet counted
+    logged = len(component(read_back(rrd), "/height", "buffer"))
+    assert logged in (shown, shown + 1)  # it may be logged, not yet counted
 
 
 @needs_live
-def test_a_recording_that_cannot_be_written_is_named(
-    tmp_path: Path, inputs: Any, video: Any, arguments: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_recording_that_cannot_be_written_is_named(tmp_path: Path, live: Any, background: Any, video: Any) -> None:
     (tmp_path / "file").touch()
-    options = ["--reference", f"{inputs}/background.png", "--headless", "--save", f"{tmp_path}/file/run.rrd"]
-    assert main(["live", str(video), *options, *arguments]) == 2
-    assert "run.rrd cannot be written" in capsys.readouterr().err
+    printed = live(video, *background, "--headless", "--save", tmp_path / "file" / "run.rrd", status=2)
+    assert "run.rrd cannot be written" in printed.err
