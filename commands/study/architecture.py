@@ -108,8 +108,8 @@ def tables() -> str:
     text = "### Latency by core\n\nFrom the last pixel of a 128 x 128 frame to its first depth value, in cycles.\n"
     for name, config in BUILDS.items():
         text += f"\nBuild: {name}.\n\n" + compact(("unit", "core", "cycles"), cycles(config))
-    text += "\n### Number formats\n\nWords are signed: value = code / 2^fraction, in units of the node.\n"
-    head = ("node", "bits", "fraction", "full scale", "step")
+    text += "\n### Number formats\n\nWords are signed: value = code / 2^fraction, in the unit of the signal.\n"
+    head = ("signal", "bits", "fraction", "full scale", "step")
     for name, nodes in (("tridiagonal, as sent", TRIDIAGONAL_NODES), ("spectral, as sent", SPECTRAL_NODES)):
         text += f"\nBuild: {name}, 128 x 128.\n\n" + compact(head, formats(BUILDS[name], nodes))
     text += "\n### Multipliers and memories\n\nOf a 128 x 128 build. A multiplier is one of 27 x 18 bits.\n\n"
