@@ -39,8 +39,6 @@ module block_totals #(
 
   localparam int WeightWidth = $clog2(Denominator + 1);
   localparam int ColumnWidth = $clog2(Columns);
-  localparam int BlockRamBits = 4096;  // a memory larger than this is block RAM
-  localparam int Style = 3 * TotalWidth * Columns > BlockRamBits ? 1 : 0;
   localparam logic [WeightWidth-1:0] Pixel = WeightWidth'($unsigned(Denominator));
   localparam logic [BlockWidth-1:0] Block = BlockWidth'($unsigned(Numerator));
   localparam logic [AreaWidth-1:0] Area = AreaWidth'($unsigned(Numerator * Numerator));
@@ -90,7 +88,7 @@ module block_totals #(
       {complete_q, complete_q2, out_valid} <= '0;
     end
   end
-  td_ram #(.Width(3 * TotalWidth), .Depth(Columns), .Style(Style)) u_line (
+  td_ram #(.Width(3 * TotalWidth), .Depth(Columns)) u_line (
     .clk, .write_en(en & ends_q3), .write_address(column_q3), .write_data(stored),
     .read_en(en & in_ends & ~in_first_row), .read_address(column), .read_data(earlier)
   );

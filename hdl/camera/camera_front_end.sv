@@ -4,7 +4,7 @@
 //   s_axis -> td_axis_skid -> camera_window -> pixel_format -> black_level -> area_average -> td_axis_skid -> m_axis
 //
 // Stream in: AXI4-Stream Video of a camera's pictures in its format (pixel_format.sv), words or single bytes.
-// Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel per clock.
+// Stream out: AXI4-Stream Video of the grid, 24-bit pixels as tactile_depth takes them. One pixel a cycle.
 // A malformed picture raises one fault for one cycle (camera_window.sv). It leaves as one frame with a row too short or
 // too long, which the frame_guard behind drops whole and flags once; m_axis carries no other malformed frame.
 // Latency: 23 cycles from the word that completes a block, gaps or not; YUYV 25, or 26 from the second pixel of a pair.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_divide: a weighted mean in 8 bits, one every clock.
+// round_divide: a weighted mean in 8 bits, one every cycle.
 //
 //   mean = total / (weight 2^Drop), rounded half to even, clipped to 0..255
 //
@@ -31,8 +31,8 @@ module round_divide #(
   assign upper = total[TotalWidth-2:Drop+Bits];
   assign too_large = (WeightWidth + UpperWidth)'(upper) >= (WeightWidth + UpperWidth)'(weight);
 
-  // Stage k holds a remainder below the weight, the lower bits of the total that are not divided yet, and above them the
-  // bits of the quotient, which enter from below as those leave.
+  // Stage k holds a remainder below the weight, the lower bits of the total that are not divided yet, and above them
+  // the bits of the quotient, which enter from below as those leave.
   logic [Bits:0][WeightWidth-1:0] remainders, weights;
   logic [Bits:0][Bits-1:0] quotients;
   logic [Bits:0] clipped, half, more;

@@ -48,7 +48,7 @@ module zero_offset
   output depth_position_t                 out_position,
   output logic [Lanes*Width-1:0]          out_data,         // depth codes, signed
   output logic                            active,           // a frame is inside
-  output logic [$clog2(Lanes):0]          saturations       // values clipped in a cycle
+  output logic [$clog2(Lanes):0]          saturations       // clip count, delayed
 );
 
   localparam logic [Width-1:0] Zero = {1'b1, {(Width - 1) {1'b0}}};  // in offset binary

@@ -57,7 +57,7 @@ module flat_field
   output logic [OutWidth-1:0]    out_green,
   output logic [OutWidth-1:0]    out_blue,
   output logic                   dark,
-  output logic [1:0]             saturations  // values clipped in this cycle
+  output logic [1:0]             saturations  // clip count, delayed
 );
 
   localparam int ToOut = 2;  // stages between the gain and the output

@@ -42,7 +42,7 @@ module gradient_unit
   input  wire capture_command_t           capture_command,
   output capture_status_t                 capture_status,
   output logic                            dark,         // a pixel was held from its neighbour
-  output logic [2:0]                      saturations,  // values clipped in this clock
+  output logic [2:0]                      saturations,  // clip count, delayed
 
   input  wire                             pixel_valid,
   input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0

@@ -48,7 +48,7 @@ module quadratic_gradient
   output position_t                        out_position,
   output logic signed [Width-1:0]          out_gx,      // slope code, F + G - Drop fraction bits
   output logic signed [Width-1:0]          out_gy,      // the same
-  output logic [1:0]                       saturations  // values clipped in this cycle
+  output logic [1:0]                       saturations  // clip count, delayed
 );
 
   localparam int Colours = 3;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // axil_port: an AXI4-Lite port for registers, with one write and one read in flight.
 //
-// Write: `write` is high in the clock after both address and data were taken, whichever came first; the response leaves
-// in the clock after it. Read: `read` is high in the clock in which the address is taken, and read_data of that clock
-// leaves in the next; if read_late is high with `read`, late_data of 4 clocks later leaves in the clock after that, and
+// Write: `write` is high in the cycle after both address and data were taken, whichever came first; the response leaves
+// in the cycle after it. Read: `read` is high in the cycle in which the address is taken, and read_data of that cycle
+// leaves in the next; if read_late is high with `read`, late_data of 4 cycles later leaves in the cycle after that, and
 // writes wait until then. A response waits for its ready, and the next transaction of its kind waits for the response.
-// `refused`, with the data, makes the response SLVERR. No ready output depends on an input of the port in the same clock.
-// While rst is high every ready is low: no access is taken that would find no answer. A reset forgets those in flight.
-// Model: models/tactile_depth/registers/axil_port.py.
+// `refused`, with the data, makes the response SLVERR. No ready output depends on an input of the port in the same
+// cycle. While rst is high every ready is low: no access is taken that would find no answer. A reset forgets those in
+// flight. Model: models/tactile_depth/registers/axil_port.py.
 
 `default_nettype none
 
@@ -51,12 +51,12 @@ module axil_port
 
   typedef enum logic [1:0] {Okay = 2'b00, SlaveError = 2'b10} response_e;
 
-  logic address_held = 1'b0;  // a clock before the first reset writes no table, whose contents are from power-up
+  logic address_held = 1'b0;  // a cycle before the first reset writes no table, whose contents are from power-up
   logic data_held = 1'b0;
   logic [AddressWidth-1:0] address;
   logic [31:0] data;
   logic [3:0] strobe;
-  logic [3:0] waiting;  // for late_data, one bit a clock
+  logic [3:0] waiting;  // for late_data, one bit a cycle
 
   assign s_axil_awready = !address_held && !rst;
   assign s_axil_wready = !data_held && !rst;
