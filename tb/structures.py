@@ -67,6 +67,15 @@ class Structure:
         return self.name or re.sub(r"[^\w=.-]+", "_", "-".join(words)) or "default"
 
 
+def of_parameters(names: str) -> Callable[..., Structure]:
+    """Return a function from values of the parameters with these names, and fields of `Structure`, to a structure."""
+
+    def built(*values: Any, **fields: Any) -> Structure:
+        return Structure(dict(zip(names.split(), values, strict=True)), **fields)
+
+    return built
+
+
 @dataclass(frozen=True)
 class Mutants:
     """Settings for mutating a core.

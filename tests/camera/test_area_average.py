@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """area_average: RTL against the model, the model against the average of the Python package and against fractions."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -13,6 +12,7 @@ from hypothesis import strategies as st
 from tactile_depth.camera.area_average import area_average
 from tactile_depth.resampling import resampling
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 GRID = {"Rows": 3, "Columns": 8}
 RATIOS = [(8, 1), (1, 1), (5, 4), (9, 5), (2, 1), (7, 3), (5, 2), (15, 4), (16, 5), (29, 4), (47, 8)]
@@ -43,10 +43,6 @@ REFUSED = {
     "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
     "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(1, 24), st.integers(1, 24), st.integers(0, 40), st.integers(0, 40), st.integers(0, 2**32 - 1))

@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """black_level: RTL against the model; samples and black levels stay within the bits of a sample."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from tactile_depth.camera.black_level import black_level
 from tactile_depth.camera.pixel_format import pixel_format
 from tactile_depth.camera_configuration import FORMATS, CameraConfiguration
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(bits: int, channels: int, **runs: Any) -> Structure:
-    return Structure({"Bits": bits, "Channels": channels}, **runs)
-
-
+built = of_parameters("Bits Channels")
 STRUCTURES = (
     built(10, 1, on=BOTH, mutants=True),
     built(8, 3, on=ICARUS, late=VERILATOR, mutants=True),
@@ -25,10 +19,6 @@ STRUCTURES = (
     built(8, 1),
 )
 MUTANTS = Mutants(repeats=2)
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("form", FORMATS)

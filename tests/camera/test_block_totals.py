@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """block_totals: RTL against the model, the model against sums pixel by pixel."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from tactile_depth.camera.block_totals import block_areas, block_totals
 from tactile_depth.camera.row_sums import red_columns, row_sums
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(columns: int, numerator: int, denominator: int, width: int, bayer: int, **runs: Any) -> Structure:
@@ -29,10 +29,6 @@ STRUCTURES = (
 REFUSED = {
     "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("colour", [(0, 0), (0, 1), (1, 0), (1, 1)])

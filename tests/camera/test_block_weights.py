@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """block_weights: RTL against the model, the model against fractions."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from math import ceil
-from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.camera.block_weights import block_weights, pixels_of
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(numerator: int, denominator: int, **runs: Any) -> Structure:
-    return Structure({"Numerator": numerator, "Denominator": denominator}, **runs)
-
-
+built = of_parameters("Numerator Denominator")
 STRUCTURES = (
     built(15, 4, on=VERILATOR),
     built(1, 1, on=ICARUS, late=VERILATOR),
@@ -31,10 +26,6 @@ REFUSED = {
     "Denominator=0": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
     "Numerator=3": "Numerator_must_be_at_least_Denominator_and_Denominator_at_least_1",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(1, 60), st.integers(1, 30), st.integers(1, 40))

@@ -4,7 +4,6 @@
 import itertools
 import math
 import subprocess
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -17,6 +16,7 @@ from tactile_depth.camera.pixel_format import photograph
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.resampling import resampling
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 GRID = (4, 8)
 
@@ -62,10 +62,6 @@ REFUSED = {
     "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
     "Rows=4096": "WindowColumns_and_WindowRows_must_be_2_to_8191",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize(

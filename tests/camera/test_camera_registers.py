@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_registers: RTL against the model, the model against the settings of a camera."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -11,6 +10,7 @@ from tactile_depth.camera.camera_registers import CameraRegisters, camera_regist
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.registers.register_map import CAMERA_MAP, MAP
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 VGA: dict[str, Any] = {"picture": (480, 640), "grid": (128, 128), "pixel_format": "raw10", "phase": "grbg"}
 OTHER: dict[str, Any] = {
@@ -46,10 +46,6 @@ REFUSED = {
     "BlackLevel=4096": "BlackLevel_must_fit_12_bits_and_gains_16",
     "BlueGain=65536": "BlackLevel_must_fit_12_bits_and_gains_16",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("choices", [VGA, OTHER])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_setup: RTL against the model, and the lists against the data sheets of the cameras."""
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -22,6 +21,7 @@ from tactile_depth.errors import InputError
 from tb.camera.sccb_camera import SccbCamera
 from tb.camera.tb_camera_setup import LISTS
 from tb.structures import BOTH, ICARUS, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 XCLK_HZ = 24e6
 TIMES = {"QuarterClocks": 4, "MillisecondClocks": 3, "XclkHalfClocks": 2, "Attempts": 4}
@@ -52,10 +52,6 @@ REFUSED = {
     "DeviceId=67": "DeviceId_must_be_an_even_byte",
     "DeviceId=256": "DeviceId_must_be_an_even_byte",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("name", list(CAMERAS))

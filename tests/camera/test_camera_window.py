@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """camera_window: RTL against the model, the model against the table of its header."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -10,6 +9,7 @@ from tactile_depth.camera.camera_window import Settings, Watched, camera_window
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, positions, video
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 PICTURE, WINDOW = Settings(8, 6, 2, 1), (4, 3)
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
@@ -35,10 +35,6 @@ REFUSED = {
     "WindowRows=8192": "WindowColumns_and_WindowRows_must_be_2_to_8191",
     "WordsPerPixel=3": "WordsPerPixel_is_1_or_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def picture(start: int) -> list[Word]:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """pixel_format: RTL against the model, the model against BT.601 in double precision and against pictures."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +11,7 @@ from tactile_depth.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_f
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.registers.register_map import CAMERA_REGISTERS
 from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 PICTURE, GRID = (96, 64), (2, 2)
 RAW = [name for name, form in FORMATS.items() if form.bayer]
@@ -40,10 +40,6 @@ REFUSED = {
     "Format=10": "Format_is_a_number_of_camera_format_e",
     "Phase=4": "Phase_is_0_to_3",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_the_formats_are_those_of_the_register() -> None:

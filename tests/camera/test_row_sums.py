@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """row_sums: RTL against the model, the model against overlaps computed pixel by pixel."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.camera.row_sums import red_columns, row_sums, sums_over_blocks
-from tb.structures import BOTH, ICARUS, VERILATOR, Structure
+from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(numerator: int, denominator: int, width: int, bayer: int, **runs: Any) -> Structure:
-    return Structure({"Numerator": numerator, "Denominator": denominator, "Width": width, "Bayer": bayer}, **runs)
-
-
+built = of_parameters("Numerator Denominator Width Bayer")
 STRUCTURES = (
     built(15, 4, 12, 1, on=BOTH),
     built(4, 3, 6, 0, on=ICARUS, mutants=True),
@@ -30,10 +24,6 @@ REFUSED = {
     "Bayer=2": "Bayer_is_0_or_1",
     "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(1, 12), st.integers(0, 40), st.integers(1, 12), st.integers(0, 2**32 - 1))

@@ -2,7 +2,6 @@
 """td_banked_table: RTL against the model; the model's banks."""
 
 import random
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from cocotb_tools.runner import as_sv_literal
 from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.rom_files import write_words
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 DISTRIBUTED, BLOCK = range(2)
 
@@ -31,10 +31,6 @@ STRUCTURES = (
     built(5, 6, DISTRIBUTED, on=ICARUS, mutants=True),
     built(42, 64, BLOCK),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_a_bank_is_written_while_the_other_is_in_use() -> None:

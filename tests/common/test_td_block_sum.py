@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_block_sum: RTL against the model, the model against a sum word by word."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from tactile_depth.common.td_block_sum import block_sum
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(*case: int, **runs: Any) -> Structure:
@@ -34,10 +34,6 @@ REFUSED = {
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
     "SumWidth=27": "SumWidth_must_be_more_than_Width_plus_ColumnLog2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(arrays(np.int64, (2, 5, 8, 2), elements=st.integers(-8, 7)), st.integers(1, 2))

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_burst_counter: RTL against the model."""
 
-from collections.abc import Callable
 from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_burst_counter import burst_counter
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(words: int, **runs: Any) -> Structure:
-    return Structure({"Words": words}, **runs)
-
-
+built = of_parameters("Words")
 STRUCTURES = (
     built(16, on=VERILATOR),
     built(8, on=ICARUS, mutants=True),
@@ -23,10 +19,6 @@ STRUCTURES = (
 REFUSED = {
     "Words=1": "Words_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_bursts_apart_back_to_back_and_begun_again() -> None:

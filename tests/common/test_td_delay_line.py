@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_delay_line: RTL against the model, as registers (up to 4) and as memory."""
 
-from collections.abc import Callable
 from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_delay_line import delay_line
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(width: int, delay: Any, **runs: Any) -> Structure:
-    return Structure({"Width": width, "Delay": delay}, **runs)
-
-
+built = of_parameters("Width Delay")
 STRUCTURES = (
     built(54, 65, on=VERILATOR),
     built(1, 1, on=ICARUS),
@@ -28,10 +24,6 @@ STRUCTURES = (
 REFUSED = {
     "Delay=0": "Delay_must_be_at_least_1",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.lists(st.integers()), st.integers(1, 9))

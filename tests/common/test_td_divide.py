@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """divide: RTL against the model, the model against its definition."""
 
-from collections.abc import Callable
-from typing import Any
-
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_divide import divide
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(divisor_width: int, quotient_width: int, **runs: Any) -> Structure:
-    return Structure({"DivisorWidth": divisor_width, "QuotientWidth": quotient_width}, **runs)
-
-
+built = of_parameters("DivisorWidth QuotientWidth")
 STRUCTURES = (
     built(24, 25, on=VERILATOR),
     built(6, 5, on=ICARUS, mutants=True),
@@ -26,10 +20,6 @@ REFUSED = {
     "DivisorWidth=0": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
     "QuotientWidth=1": "DivisorWidth_must_be_at_least_1_and_QuotientWidth_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(0, 2**20 - 1), st.integers(0, 2**10 - 1), st.integers(2, 20))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_dot_product: RTL against the model, the model against Python's integers."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,25 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_dot_product import dot_product
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
 A, B = st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1)  # the widest that occur
 
 
-def built(a_width: int, b_width: int, **runs: Any) -> Structure:
-    return Structure({"AWidth": a_width, "BWidth": b_width}, **runs)
-
-
+built = of_parameters("AWidth BWidth")
 STRUCTURES = (
     built(27, 18, on=VERILATOR),
     built(15, 10, on=ICARUS),
     built(35, 24),
     built(4, 3, mutants=True),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(A, B, A, B)

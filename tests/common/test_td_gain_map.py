@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_gain_map: RTL against the model."""
 
-from collections.abc import Callable
 from typing import Any
 
 from tactile_depth.common.td_gain_map import ENTRIES_PER_NODE, table_entries
 from tactile_depth.rom_files import write_gains
 from tb.gains import first_gains
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(columns: int, rows: int, block_log2: int, channels: int, width: int, **runs: Any) -> Structure:
@@ -35,10 +35,6 @@ REFUSED = {
     "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_entries_are_the_channels_of_each_node() -> None:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """multiply: RTL against the model, the model against Python's integers."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,23 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_multiply import multiply
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(a_width: int, b_width: int, **runs: Any) -> Structure:
-    return Structure({"AWidth": a_width, "BWidth": b_width}, **runs)
-
-
+built = of_parameters("AWidth BWidth")
 STRUCTURES = (
     built(27, 18, on=VERILATOR),
     built(35, 24, on=ICARUS),
     built(15, 10, mutants=True),
     built(2, 3),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(-(2**34), 2**34 - 1), st.integers(-(2**23), 2**23 - 1))  # the widest that occur

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_node_map: RTL against the model; nodes side by side and latency."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -10,6 +9,7 @@ from tactile_depth.common.td_node_map import latency, side
 from tactile_depth.rom_files import write_zero
 from tb.gains import first_gains
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(columns: int, rows: int, block_log2: int, width: int, lanes: int, **runs: Any) -> Structure:
@@ -44,10 +44,6 @@ REFUSED = {
     "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
     "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize(

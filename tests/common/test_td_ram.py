@@ -16,6 +16,7 @@ from commands.hardware.ecp5 import write_slices
 from tactile_depth.common.td_ram import ram
 from tactile_depth.rom_files import write_words
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 DISTRIBUTED, BLOCK, ULTRA = range(3)
 
@@ -49,10 +50,6 @@ OF_ECP5 = (
     built(11, 5000, BLOCK, "contents.hex", on=ICARUS),
     built(9, 24, DISTRIBUTED, "contents.hex", on=ICARUS),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.structures(OF_ECP5)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """ramp: RTL against the model, the model against Python's integers."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,13 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_ramp import ramp
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(width: int, step_width: int, count: int, **runs: Any) -> Structure:
-    return Structure({"Width": width, "StepWidth": step_width, "Count": count}, **runs)
-
-
+built = of_parameters("Width StepWidth Count")
 STRUCTURES = (
     built(32, 29, 8, on=VERILATOR),
     built(8, 8, 1, on=ICARUS),
@@ -28,10 +24,6 @@ REFUSED = {
     "Count=3": "Count_must_be_a_power_of_two",
     "StepWidth=33": "StepWidth_must_be_at_most_Width",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(0, 2**40 - 1), st.integers(-(2**36), 2**36 - 1))  # the widest that occur

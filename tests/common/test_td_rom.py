@@ -2,13 +2,13 @@
 """rom: RTL against the file it reads, small enough for LUTs and not."""
 
 import random
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from tactile_depth.common.td_rom import rom
 from tactile_depth.rom_files import pack, write_words
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(width: int, depth: Any, **runs: Any) -> Structure:
@@ -27,10 +27,6 @@ STRUCTURES = (
 REFUSED = {
     "Depth=1": "Depth_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_addresses_read_their_words() -> None:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_round_saturate: RTL against the model, the model against Python's own rounding of fractions."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -11,14 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(in_width: int, drop: int, out_width: int, **runs: Any) -> Structure:
-    parameters = {"InWidth": in_width, "Drop": drop, "OutWidth": out_width}
-    return Structure(parameters, **runs)
-
-
+built = of_parameters("InWidth Drop OutWidth")
 STRUCTURES = (
     built(10, 4, 5, on=VERILATOR, mutants=True),
     built(8, 1, 6, on=ICARUS, mutants=True),  # only ties are dropped; overflow both ways
@@ -38,10 +33,6 @@ REFUSED = {
     "Drop=46": "Drop_must_leave_a_bit_of_the_input",
     "OutWidth=1": "OutWidth_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 # In eighths, dropping three bits: ties on both sides of zero, beside a tie, carry out of the top, overflow.

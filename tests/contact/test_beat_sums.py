@@ -1,23 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """beat_sums: RTL against the model, and the model against numpy."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.beat_sums import beat_sums
-from tb.structures import ICARUS, VERILATOR, Refused, Structure
+from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
 DEPTH = st.tuples(st.booleans(), st.integers(-4, 3))
 
 
-def built(width: int, lanes: int, **runs: Any) -> Structure:
-    return Structure({"Width": width, "Lanes": lanes}, **runs)
-
-
+built = of_parameters("Width Lanes")
 STRUCTURES = (
     built(24, 8, on=VERILATOR),
     built(6, 4, on=ICARUS, mutants=True),
@@ -29,10 +24,6 @@ REFUSED = {
     "Lanes=1": Refused("Lanes_must_be_a_power_of_two_at_least_2", {"verilator": "can't find definition of 'top_at'"}),
     "Lanes=12": "Lanes_must_be_a_power_of_two_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.lists(DEPTH, min_size=8, max_size=8))

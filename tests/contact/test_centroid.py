@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """centroid: RTL against the model, and the model against exact fractions."""
 
-from collections.abc import Callable
 from fractions import Fraction
-from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.centroid import FRACTION, mean
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(position_width: int, area_width: int, **runs: Any) -> Structure:
-    return Structure({"PositionWidth": position_width, "AreaWidth": area_width}, **runs)
-
-
+built = of_parameters("PositionWidth AreaWidth")
 STRUCTURES = (
     built(7, 15, on=VERILATOR),
     built(3, 6, on=ICARUS, mutants=True),
@@ -24,10 +19,6 @@ STRUCTURES = (
     built(2, 4),
     built(5, 9),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.lists(st.integers(0, 1023), min_size=1, max_size=300))

@@ -1,29 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """contact_debounce: RTL against the model, and the model against its definition."""
 
-from collections.abc import Callable
-from typing import Any
-
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.contact_debounce import BEGAN, ENDED, TOUCHING, ContactDebounce
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(area_width: int, **runs: Any) -> Structure:
-    return Structure({"AreaWidth": area_width}, **runs)
-
-
+built = of_parameters("AreaWidth")
 STRUCTURES = (
     built(15, on=VERILATOR),
     built(5, on=ICARUS, mutants=True),
     built(21),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.lists(st.booleans(), max_size=60), st.integers(0, 5))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """contact_events: RTL against the model, and the words of a record."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,16 +13,13 @@ from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
 from tactile_depth.frames import load_frames, on_grid
 from tactile_depth.tactile_depth import tactile_depth
-from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
 
 
-def built(width: int, rows: int, columns: int, lanes: int, bottom_first: int, **runs: Any) -> Structure:
-    parameters = {"Width": width, "Rows": rows, "Columns": columns, "Lanes": lanes, "BottomFirst": bottom_first}
-    return Structure(parameters, **runs)
-
-
+built = of_parameters("Width Rows Columns Lanes BottomFirst")
 STRUCTURES = (
     built(24, 5, 8, 1, 0, on=VERILATOR),
     built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
@@ -43,10 +39,6 @@ REFUSED = {
     "Columns=1025": "Columns_must_be_2_to_1024",
     "Rows=4 Columns=4": "a_frame_must_take_at_least_Latency_cycles",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(*(st.integers(0, 2**32 - 1) for _ in range(4)), st.integers(-(2**31), 2**31 - 1), PLACE, PLACE, PLACE, PLACE)

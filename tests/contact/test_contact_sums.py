@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """contact_sums: RTL against the model, and the model against numpy on whole maps."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,14 +9,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from tactile_depth.contact.contact_sums import ContactSums, Thresholds
-from tb.structures import ICARUS, VERILATOR, Refused, Structure
+from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(width: int, rows: int, columns: int, lanes: int, bottom_first: int, **runs: Any) -> Structure:
-    parameters = {"Width": width, "Rows": rows, "Columns": columns, "Lanes": lanes, "BottomFirst": bottom_first}
-    return Structure(parameters, **runs)
-
-
+built = of_parameters("Width Rows Columns Lanes BottomFirst")
 STRUCTURES = (
     built(24, 5, 8, 1, 0, on=VERILATOR),
     built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
@@ -35,10 +30,6 @@ REFUSED = {
     ),
     "Lanes=64": "Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(arrays(np.int64, (5, 8), elements=st.integers(-8, 7)), st.integers(-9, 8), st.booleans(), st.booleans())

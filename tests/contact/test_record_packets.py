@@ -1,29 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """record_packets: RTL against the model, and the model against its rules."""
 
-from collections.abc import Callable
-from typing import Any
-
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.contact.record_packets import RecordPackets
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(words: int, **runs: Any) -> Structure:
-    return Structure({"Words": words}, **runs)
-
-
+built = of_parameters("Words")
 STRUCTURES = (
     built(13, on=VERILATOR),
     built(3, on=ICARUS, mutants=True),
     built(2),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), max_size=100))

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_output: RTL against the model."""
 
-from collections.abc import Callable
-
 from tb.structures import BOTH, Structure
+from tests.rtl import test_rtl as test_rtl
 
 STRUCTURES = (
     Structure({"Width": 24, "Rows": 4, "Columns": 8}, on=BOTH),
@@ -13,7 +12,3 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Rows=1": "Rows_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """zero_capture: RTL against the model, and the model against exact fractions."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -11,6 +10,7 @@ import pytest
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tb.structures import BOTH, ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(*case: int, **runs: Any) -> Structure:
@@ -41,10 +41,6 @@ REFUSED = {
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
     "MaxLog2=9": "MaxLog2_must_be_at_most_8",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])

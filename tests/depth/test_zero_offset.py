@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """zero_offset: RTL against the model, and the model against its definition."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from tactile_depth.depth.zero_offset import exact_zero, interpolated_zero, no_ze
 from tactile_depth.rom_files import write_zero
 from tb.stream import places
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(columns: int, rows: int, block_log2: int, width: int, lanes: int, **runs: Any) -> Structure:
@@ -50,10 +50,6 @@ REFUSED = {
     "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
     "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")

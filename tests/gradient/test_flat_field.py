@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """flat_field: RTL against the model, and the model against its definition."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from tactile_depth.gradient.flat_field import (
 from tactile_depth.rom_files import write_gains
 from tb.gains import Grid
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(columns: int, rows: int, block_log2: int, quadratic: Any, gain_width: int, **runs: Any) -> Structure:
@@ -43,10 +43,6 @@ STRUCTURES = (
 REFUSED = {
     "Offset=1": "Offset_must_be_even_it_is_subtracted_before_rounding_to_even",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")

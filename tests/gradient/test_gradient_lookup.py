@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """gradient_lookup: RTL against the model, the model against the calibration of its table."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from tactile_depth.rom_files import write_gradient
 from tactile_depth.sensor import Sensor
 from tb.settings import RUN
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(bits: int, data_width: int, **runs: Any) -> Structure:
@@ -40,10 +40,6 @@ REFUSED = {
 }
 if RUN.full:  # 4 GB of table
     REFUSED["BitsPerChannel=9"] = "BitsPerChannel_must_be_1_to_8"
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("bits", [1, 4, 6])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """quadratic_gradient: RTL against the model, the model against the additions that the RTL makes."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.quadratic_gradient import coefficients, gradient_parameters, slope_codes
 from tactile_depth.rom_files import write_quadratic
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 WORDS = (2, 3, 6)
 
@@ -40,10 +40,6 @@ STRUCTURES = (
     built(10, 4, 5, 9, -2),
     built(12, 4, 5, 9, -2),
 )
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 7), st.sampled_from([6, 32]))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """reference_capture: RTL against the model; the largest number of frames."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from tactile_depth.gradient.reference_capture import (
     reference_capture_parameters,
 )
 from tb.structures import BOTH, ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(columns: int, rows: int, largest: int, gain_width: int, **runs: Any) -> Structure:
@@ -43,10 +43,6 @@ REFUSED = {
     "MaxLog2=11": "a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits",
     "GainFraction=10": "GainFraction_plus_2_BlockLog2_must_be_at_least_Width",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize(

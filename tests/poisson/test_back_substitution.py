@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """back_substitution: RTL against the model; the model is tested with the whole solver."""
 
-from collections.abc import Callable
 from typing import Any
 
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 NAMES = ("Width", "CoeffWidth", "Rows", "Columns", "TableWords", "SettledWidth")
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
@@ -45,7 +45,3 @@ REFUSED = {
     "Lanes=3": "Lanes_must_be_a_power_of_two_and_at_most_Columns_by_4",
     "Lanes=64": "Lanes_must_be_a_power_of_two_and_at_most_Columns_by_4",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)

@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """divergence: RTL against the model, the model against the formula."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_depth.poisson.divergence import divergence
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(columns: int, width: int, neumann: int, **runs: Any) -> Structure:
-    return Structure({"Columns": columns, "Width": width, "Neumann": neumann}, **runs)
-
-
+built = of_parameters("Columns Width Neumann")
 STRUCTURES = (
     built(16, 21, 0, on=VERILATOR),
     built(16, 6, 0, on=ICARUS),
@@ -27,10 +21,6 @@ STRUCTURES = (
 REFUSED = {
     "Columns=1": "Columns_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @settings(max_examples=30, deadline=None)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """forward_elimination: RTL against the model; the model is tested with the whole solver."""
 
-from collections.abc import Callable
 from typing import Any
 
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 NAMES = ["Width", "CoeffWidth", "Rows", "Columns", "StoreDrop", "Neumann", "TableWords", "SettledWidth"]
 NAMES += ["LastShiftWidth", "MomentDrop", "MeanReciprocal", "MeanDrop"]
@@ -33,7 +33,3 @@ STRUCTURES = (
     built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
 )
 MUTANTS = Mutants("bursts")
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)

@@ -1,17 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_stack: RTL against the model."""
 
-from collections.abc import Callable
-from typing import Any
+from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-from tb.structures import ICARUS, VERILATOR, Refused, Structure
-
-
-def built(columns: int, width: int, rows: int, words_per_row: int, lanes: int, **runs: Any) -> Structure:
-    parameters = {"Columns": columns, "Width": width, "Rows": rows, "WordsPerRow": words_per_row, "Lanes": lanes}
-    return Structure(parameters, **runs)
-
-
+built = of_parameters("Columns Width Rows WordsPerRow Lanes")
 STRUCTURES = (
     built(16, 24, 8, 3, 1, on=VERILATOR),
     built(16, 24, 9, 3, 4, on=VERILATOR),
@@ -46,7 +39,3 @@ REFUSED = {
     "Lanes=3": "Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2",
     "Lanes=128": "Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """spectral_divide: RTL against the model, the model against the eigenvalues of the reference."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from tactile_depth.poisson.spectral_divide import reciprocal_rom, reciprocals, s
 from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.rom_files import write_solver
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(choices: Any, **runs: Any) -> Structure:
@@ -47,10 +47,6 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Columns=1": "Columns_must_be_a_power_of_two_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def divided(modes: Any, config: Configuration) -> Any:

@@ -2,7 +2,6 @@
 """thomas_table: RTL against the model, the model against the recurrence and a direct solve."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from tactile_depth.poisson.transform.orders import eigenvalues
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
 from tb.structures import ICARUS, VERILATOR, Structure
+from tests.rtl import test_rtl as test_rtl
 
 CHOICES = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 
@@ -39,10 +39,6 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Rows=1": "Rows_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("neumann", [False, True])

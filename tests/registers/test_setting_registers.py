@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """setting_registers: RTL against the model."""
 
-from collections.abc import Callable
-
 from tb.structures import BOTH, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 STRUCTURES = (Structure(on=BOTH, mutants=True),)
 MUTANTS = Mutants(protocol="after_reset")
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)

@@ -2,15 +2,10 @@
 """table_banks: RTL against the model."""
 
 from collections.abc import Callable
-from typing import Any
 
-from tb.structures import BOTH, ICARUS, Structure
+from tb.structures import BOTH, ICARUS, Structure, of_parameters
 
-
-def built(present: Any, **runs: Any) -> Structure:
-    return Structure({"Present": present}, **runs)
-
-
+built = of_parameters("Present")
 STRUCTURES = (
     built(15, on=BOTH, mutants=True),
     built(2, on=ICARUS),

@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_guard: RTL against the model, the model against the table of its header."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from tactile_depth.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, WITHOUT_START, broken, faults_of, positions, video
-from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import BOTH, ICARUS, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
 TIMEOUT = 5
 ROWS, COLUMNS = 4, 8  # of the model's frames
 
 
-def built(rows: int, columns: int, **runs: Any) -> Structure:
-    return Structure({"Rows": rows, "Columns": columns}, **runs)
-
-
+built = of_parameters("Rows Columns")
 STRUCTURES = (
     built(8, 2, on=VERILATOR),
     built(3, 4, on=ICARUS, mutants=True),
@@ -28,10 +25,6 @@ REFUSED = {
     "Rows=1": "Rows_and_Columns_must_be_at_least_2",
     "Columns=1": "Rows_and_Columns_must_be_at_least_2",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def frame(start: Any) -> Any:

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """corner_turn: RTL against the model, the model against Makhoul's order."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from tactile_depth.poisson.transform.corner_turn import corner_turn
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import ICARUS, VERILATOR, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(columns: int, width: int, lanes: int, **runs: Any) -> Structure:
-    return Structure({"Columns": columns, "Width": width, "Lanes": lanes}, **runs)
-
-
+built = of_parameters("Columns Width Lanes")
 STRUCTURES = (
     built(32, 24, 4, on=VERILATOR),
     built(16, 12, 2, on=ICARUS),
@@ -29,10 +23,6 @@ REFUSED = {
     "Lanes=128": "Lanes_and_Columns_must_be_powers_of_two_of_at_least_2_and_2_Lanes",
     "Columns=96": "Lanes_and_Columns_must_be_powers_of_two_of_at_least_2_and_2_Lanes",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_a_beat_holds_even_words_of_the_first_half_and_odd_words_of_the_second() -> None:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """dst_forward: RTL against the model, the model against scipy."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(parameters: dict[str, int], **runs: Any) -> Structure:
@@ -34,10 +34,6 @@ STRUCTURES = (
     built(transform_parameters(64, 32, 1, 35, 24, 0, 35, 1)),
 )
 MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """dst_inverse: RTL against the model, the model against dst_forward and scipy."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise, transform_parameters
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(parameters: dict[str, int], **runs: Any) -> Structure:
@@ -35,10 +35,6 @@ STRUCTURES = (
     built(transform_parameters(64, 35, 0, 35, 24, -1, 32, 1)),
 )
 MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def inverse(modes: Any, coeff: int, width: int = 40) -> Any:

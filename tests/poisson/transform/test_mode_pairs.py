@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """mode_pairs: RTL against the model, the model against the definition."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from tactile_depth.poisson.transform.mode_pairs import mode_pairs
 from tactile_depth.poisson.transform.orders import bit_reversed, mirror
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(size: int, width: int, **runs: Any) -> Structure:
-    return Structure({"Size": size, "Width": width}, **runs)
-
-
+built = of_parameters("Size Width")
 STRUCTURES = (
     built(32, 24, on=VERILATOR),
     built(8, 27, on=ICARUS),
@@ -28,10 +22,6 @@ REFUSED = {
     "Size=12": "Size_must_be_a_power_of_two_at_least_4",
     "Size=2": "Size_must_be_a_power_of_two_at_least_4",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("size", [8, 16, 128, 512])

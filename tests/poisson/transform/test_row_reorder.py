@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """row_reorder: RTL against the model, the model against Makhoul's order."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from tactile_depth.poisson.transform.row_reorder import row_reorder
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(columns: int, width: int, to_burst: int, **runs: Any) -> Structure:
-    return Structure({"Columns": columns, "Width": width, "ToBurst": to_burst}, **runs)
-
-
+built = of_parameters("Columns Width ToBurst")
 STRUCTURES = (
     built(16, 24, 1, on=VERILATOR),
     built(16, 24, 0, on=ICARUS),
@@ -28,10 +22,6 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
     "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def test_makhoul_order_is_even_samples_up_then_odd_ones_down() -> None:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """sdf_butterfly: RTL against the model, the model against complex sums."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,21 +10,10 @@ from hypothesis import strategies as st
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
 from tactile_depth.poisson.transform.sdf_fft import Stage
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(size: int, delay: Any, rotate_block: Any, inverse: int, halve: Any, width: int, **runs: Any) -> Structure:
-    parameters = {
-        "Size": size,
-        "Delay": delay,
-        "RotateBlock": rotate_block,
-        "Inverse": inverse,
-        "Halve": halve,
-        "Width": width,
-    }
-    return Structure(parameters, **runs)
-
-
+built = of_parameters("Size Delay RotateBlock Inverse Halve Width")
 STRUCTURES = (
     built(16, 8, 16, 1, 1, 27, on=VERILATOR),
     built(16, 8, 0, 0, 0, 27, on=ICARUS),
@@ -48,10 +36,6 @@ REFUSED = {
     "RotateBlock=6": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
     "RotateBlock=256": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """sdf_fft: RTL against the model, the model against numpy."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
 from tests.poisson.transform.transforms import coefficient_noise
+from tests.rtl import test_rtl as test_rtl
 
 
 def built(size: int, width: int, coeff: int, inverse: int, **runs: Any) -> Structure:
@@ -42,10 +42,6 @@ REFUSED = {
     "Size=4": "Size_must_be_a_power_of_two_at_least_8",
     "Size=24": "Size_must_be_a_power_of_two_at_least_8",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 def transform(z: np.ndarray, inverse: bool, coeff: int, width: int = 40) -> Any:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """transpose: RTL against the model, the model against numpy."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,14 +8,10 @@ import pytest
 
 from tactile_depth.poisson.transform.orders import makhoul
 from tactile_depth.poisson.transform.transpose import transpose
-from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
+from tests.rtl import test_rtl as test_rtl
 
-
-def built(columns: int, width: int, makhoul_in: int, makhoul_out: int, **runs: Any) -> Structure:
-    parameters = {"Columns": columns, "Width": width, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out}
-    return Structure(parameters, **runs)
-
-
+built = of_parameters("Columns Width MakhoulIn MakhoulOut")
 STRUCTURES = (
     built(16, 24, 0, 1, on=VERILATOR),
     built(8, 16, 0, 0, on=ICARUS),
@@ -30,10 +25,6 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
     "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("makhoul_out", [False, True])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """twiddle_multiply: RTL against the model, the model against complex products."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from tactile_depth.poisson.transform.twiddle_multiply import (
 )
 from tactile_depth.rom_files import write_factors
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
+from tests.rtl import test_rtl as test_rtl
 
 MAKERS = {"twiddle": twiddle_factors, "phase": phase_factors}
 
@@ -71,10 +71,6 @@ REFUSED = {
     "Block=1": "Block_must_be_a_power_of_two_2_to_Size",
     "Block=256": "Block_must_be_a_power_of_two_2_to_Size",
 }
-
-
-def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:
-    run_tb(structure)
 
 
 @pytest.mark.parametrize("inverse", [False, True])
