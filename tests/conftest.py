@@ -29,7 +29,6 @@ QUICK_CLOCKS = 1000
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
 MARKERS = {
     "structures(list)": "builds of a test that takes `structure`, by default STRUCTURES of its file (tb/structures.py)",
-    "codes": "codes in bulk, in `make regress` only",
     "seeds": "`make regress` runs it with another seed too, like every RTL test on Icarus",
     "power_ups": "`make regress` runs it from many random states; set for each core's first structure on Verilator",
     "long": "begins before all others, so that it does not end after them",

@@ -20,6 +20,8 @@ from tb.structures import Mutants, Structure
 
 ROOT = Path(__file__).resolve().parents[2]
 HDL = ROOT / "hdl"
+BOARDS = {"ulx3s": sorted((ROOT / "boards" / "ulx3s").glob("*.sv"))}
+TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name
 PACKAGE = "_pkg"  # end of the name of a SystemVerilog package, which is no core
 
 

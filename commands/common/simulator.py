@@ -13,6 +13,7 @@ import time
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from unittest import mock
 
 import find_libpython
 from cocotb_tools.check_results import get_results
@@ -205,7 +206,9 @@ def run(
         if COVERAGE:
             data = tempfile.mkdtemp(prefix="run-", dir=folder)  # several runs may share a model
             arguments.append(f"+verilator+coverage+file+{data}/coverage.dat")
-    with contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
+    # The runner lets the variables of this process win over extra_env.
+    variables = mock.patch.dict(os.environ, NO_REWRITING | NO_ATTACHMENTS | dict(environment or {}))
+    with variables, contextlib.suppress(SystemExit):  # inside pytest the runner exits on a failed test
         get_runner(simulator).test(
             hdl_toplevel=toplevel,
             hdl_toplevel_lang="verilog",
@@ -214,7 +217,6 @@ def run(
             test_dir=run_folder,
             results_xml=str(results),
             seed=seed,
-            extra_env=NO_REWRITING | NO_ATTACHMENTS | dict(environment or {}),
             waves=waves,
             log_file=log,
             test_args=arguments,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrappers of hdl/tactile_depth.sv with a configuration inside, and the package of the configuration."""
 
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -144,7 +145,9 @@ def write(
     path, text = folder / f"tactile_depth_{name}.sv", wrapper(name, parameters, tables, camera)
     folder.mkdir(parents=True, exist_ok=True)
     if not path.is_file() or path.read_text() != text:
-        path.write_text(text)
+        draft = path.with_suffix(f".{os.getpid()}")
+        draft.write_text(text)
+        draft.replace(path)  # another process may read it
     return path
 
 

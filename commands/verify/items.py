@@ -53,10 +53,13 @@ def run(
     *,
     marks: str = "",
     workers: int | str = "auto",
+    verbose: bool = False,
     settings: RunSettings | None = None,
     **environment: str,
 ) -> tuple[int, list[Item]]:
     """Run tests, with `marks` in place of the marks that are left out by default; return exit status and items.
+
+    `verbose` shows each test as it ends.
 
     Raises KeyboardInterrupt: a signal ended the run. RuntimeError: pytest failed.
     """
@@ -73,7 +76,7 @@ def run(
         "--no-summary",
         "--timeout=3600",
     ]
-    status = pytest.main([*options, "-m", marks, *tests], plugins=[table])
+    status = pytest.main([*options, *["-vv"] * verbose, "-m", marks, *tests], plugins=[table])
     if status == pytest.ExitCode.INTERRUPTED:
         raise KeyboardInterrupt
     if status not in STATUS:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make lint`: every checker on every core and on the structures of the top; any finding is a failure.
 
+pytest runs each check as an item of tests/commands/test_lint.py, two at a time.
+
 With CORE=a,b it checks these cores alone. Waivers, each with its reason, are in hdl/verilator.vlt, hdl/verible.rules
 and slang_lint.py; Yosys, Icarus and mypy have none, ruff's are in pyproject.toml.
 """
@@ -9,7 +11,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -20,9 +21,8 @@ import numpy as np
 
 from commands.common import repository, variables, wrapper
 from commands.common import simulator as simulation
-from commands.common.signals import threads
-from commands.hardware import fpga
 from commands.hardware import yosys as yosys_runner
+from commands.verify import items
 from tactile_depth.built_in import load
 from tactile_depth.camera.register_lists import pins, write_list
 from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
@@ -30,9 +30,11 @@ from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import unit_gains
 from tactile_depth.rom_files import write_gains, write_quadratic, write_words, write_zero
 from tactile_depth.tactile_depth import default_parameters, hdl_parameters, write_roms
+from tb.settings import RunSettings
 
 GRIDS = (16, 128, 512)
 TOP = "tactile_depth"
+ITEMS = "tests/commands/test_lint.py::test_nothing_is_found"
 FOLDER = repository.ROOT / "build" / "lint"
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 300
@@ -67,6 +69,10 @@ class Check:
     tool: str
     name: str
     run: Callable[[], str]
+
+    @property
+    def label(self) -> str:
+        return f"{self.tool} {self.name}"
 
 
 def modules(files: Iterable[Path]) -> list[str]:
@@ -197,12 +203,12 @@ def core_checks(cores: Sequence[str]) -> list[Check]:
 
 def board_sources() -> list[Path]:
     """Return the source files of all boards."""
-    return [path for sources in fpga.SOURCES.values() for path in sources]
+    return [path for sources in repository.BOARDS.values() for path in sources]
 
 
 def wrappers_of_boards() -> list[Path]:
     """Write the wrapper that each board instantiates, and return their paths."""
-    return [wrapper.write(FOLDER, name, default_parameters()) for name in fpga.BOARDS]
+    return [wrapper.write(FOLDER, name, default_parameters()) for name in repository.BOARDS]
 
 
 def checks() -> list[Check]:
@@ -211,7 +217,7 @@ def checks() -> list[Check]:
     benches = sorted((repository.ROOT / "tb").glob("*.sv"))
     boards = board_sources()
     with_boards = [*files, *boards, *wrappers_of_boards()]
-    others = [*boards, *benches, *fpga.TECHNOLOGY]
+    others = [*boards, *benches, *repository.TECHNOLOGY]
     tops, designs = [Structure(name) for name in modules(boards)], structures()
     small = [structure for structure in designs if structure.config and structure.config.columns == GRIDS[0]]
     python = [sys.executable, "-m"]
@@ -235,28 +241,19 @@ def checks() -> list[Check]:
 def main() -> None:
     with variables.reported("lint"):
         values = variables.given(sys.argv[1:], ("CORE",))
+        cores = tuple(repository.chosen(values["CORE"])) if "CORE" in values else ()
         for simulator in simulation.SIMULATORS:
             simulation.check(simulator)
-        sys.exit(run(core_checks(repository.chosen(values["CORE"])) if "CORE" in values else checks()))
+        sys.exit(items.run([ITEMS], table, marks="lint", workers=2, settings=RunSettings(cores=cores))[0])
 
 
-def run(all_checks: Sequence[Check]) -> int:
-    """Run checks, print what each tool reports, and return the exit status."""
-    begin = time.monotonic()
-    failed: list[str] = []
-    with threads(2) as pool:
-        longest_first = sorted(all_checks, key=lambda check: check.tool != "mypy")
-        pending = [(check, pool.submit(check.run)) for check in longest_first]
-        for tool in dict.fromkeys(check.tool for check in all_checks):
-            results = [(check, future.result()) for check, future in pending if check.tool == tool]
-            bad = [(check, text) for check, text in results if text]
-            for check, text in bad:
-                print(f"{check.tool} {check.name}:\n{text}")
-            failed += [f"{check.tool} {check.name}" for check, _ in bad]
-            verdict = f"{len(bad)} NOT clean" if bad else "clean"
-            print(f"{tool:10} {len(results):3} checks  {verdict}", flush=True)
-    print(
-        f"lint: {len(all_checks) - len(failed)} checks clean, {time.monotonic() - begin:.0f} s"
-        + (f", {len(failed)} not: {', '.join(failed)}" if failed else "")
-    )
-    return variables.MISMATCH if failed else variables.EQUAL
+def table(outcomes: Sequence[items.Item]) -> str:
+    """Return the findings, the number of checks of each tool, and the checks that are not clean."""
+    failed = [item for item in outcomes if item.failure]
+    lines = [f"{item.recorded['check']}:\n{item.failure}" for item in failed]
+    tools = [item.recorded["check"].split()[0] for item in outcomes]
+    for tool in sorted(set(tools)):
+        bad = sum(item.recorded["check"].split()[0] == tool for item in failed)
+        lines.append(f"{tool:10} {tools.count(tool):3} checks  {f'{bad} NOT clean' if bad else 'clean'}")
+    named = f", {len(failed)} not: {', '.join(item.recorded['check'] for item in failed)}" if failed else ""
+    return "\n".join([*lines, f"lint: {len(outcomes) - len(failed)} checks clean{named}"])

@@ -4,7 +4,8 @@
 Takes CORE=name,.. and SEED=1. Yosys maps to 7-series logic, whose cells have simulation models in its library: LUT1 to
 LUT6, CARRY4, FDRE, SRL16E, DSP48E1. Memories stay arrays, as in td_ram.sv and td_rom.sv, because a macro replaces them.
 The testbench compares every output with the bit-accurate model, as it does for the RTL. Parameters are those at which
-`make mutate` runs the core. Exit status: 0 when all agree, 1 when not, 2 on bad input.
+`make mutate` runs the core. pytest runs each netlist as an item of tests/commands/test_netlists.py. Exit status: 0 when
+all agree, 1 when not, 2 on bad input.
 """
 
 import json
@@ -16,12 +17,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
 from commands.common import repository, variables
 from commands.common import simulator as simulation
 from commands.hardware import yosys
-from commands.verify import mutants, mutate
+from commands.verify import items, mutants, mutate
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
@@ -29,6 +28,7 @@ from tb.settings import RunSettings
 from tb.structures import Structure
 
 OUT = repository.ROOT / "build" / "netlists"
+ITEMS = "tests/commands/test_netlists.py::test_a_core_after_synthesis"
 LIBRARY = "share/xilinx/cells_sim.v"  # Yosys' simulation models of the cells
 WHOLE = "tactile_depth"
 WHOLE_SIZE = 32
@@ -164,21 +164,16 @@ def main() -> None:
         yosys.in_wheel("pyosys", LIBRARY)
         for simulator in WHOLE_LEVELS:
             simulation.check(simulator)
-        results = []
-        print(HEAD)
-        with tqdm(cases(names), leave=False, disable=None) as bar:
-            for case in bar:
-                bar.set_description(case.name)
-                results.append(run(case, seed))
-                tqdm.write(row(results[-1]))
-                sys.stdout.flush()
-        sys.exit(verdict(results))
+        settings = RunSettings(cores=tuple(names))
+        sys.exit(items.run([ITEMS], table, marks="netlist", verbose=True, settings=settings, SEED=str(seed))[0])
 
 
-def verdict(results: list[Result]) -> int:
-    """Print the number of netlists and those that differ; return the exit status."""
-    wrong = [result.case.name for result in results if result.failed or not result.tests]
-    tests = sum(result.tests for result in results)
-    print(f"netlists: {len(results)} of {len({r.case.core for r in results})} cores, {tests:,} tests", end="")
-    print(f", not as the RTL: {', '.join(wrong)}" if wrong else ": all as the RTL")
-    return variables.MISMATCH if wrong else variables.EQUAL
+def table(outcomes: Sequence[items.Item]) -> str:
+    """Return a row for each netlist, the number of netlists, and those that differ."""
+    wrong = [item for item in outcomes if item.failure]
+    rows = [item.recorded.get("row", f"{item.name}: {item.failure}") for item in outcomes]
+    tests = sum(item.recorded.get("tests", 0) for item in outcomes)
+    cores = {item.recorded.get("core", item.name) for item in outcomes}
+    total = f"netlists: {len(outcomes)} of {len(cores)} cores, {tests:,} tests"
+    verdict = f", not as the RTL: {', '.join(item.name for item in wrong)}" if wrong else ": all as the RTL"
+    return "\n".join([HEAD, *rows, total + verdict])

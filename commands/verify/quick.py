@@ -13,7 +13,7 @@ from pathlib import Path
 
 from commands.common import repository, variables
 from commands.common.repository import ROOT, git
-from commands.verify.test import ONE_POWER_UP, all_succeed, lint, pytest, tests_of
+from commands.verify.test import all_succeed, pytest, settings, tests_of
 from tactile_depth.errors import InputError
 
 UPSTREAM = "origin/main"
@@ -95,11 +95,10 @@ def test_of(path: Path) -> str | None:
 
 def plan(changes: Affected) -> list[Sequence[str]]:
     """Return the processes to run, the fastest to fail first."""
-    tests = [*tests_of(changes.cores), *changes.tests]
+    tests = [*(tests_of(changes.cores) if changes.cores else []), *changes.tests]
     return [
         *([pytest(tests)] if tests else []),
         [sys.executable, "-m", "commands", *WHOLE],
-        *([lint(changes.cores)] if changes.cores else []),
         [sys.executable, "-m", "ruff", "check", "--quiet", "."],
     ]
 
@@ -115,5 +114,5 @@ def main() -> None:
         for name in changes.shared:
             print(f"  {name} is shared: make test runs what depends on it")
         sys.stdout.flush()
-        if not all_succeed(plan(changes), **ONE_POWER_UP):
+        if not all_succeed(plan(changes), settings(changes.cores)):
             raise variables.Mismatch("failed: see above")

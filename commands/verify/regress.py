@@ -49,7 +49,7 @@ def played(name: str, jobs: int) -> Part:
     tests, marks, settings = PARTS[name]
     seeds = {"SEED": str(SEED)} if name == "seeds" else {}
     began = time.monotonic()
-    _, outcomes = items.run(tests, lambda _: "", marks=marks, workers=jobs, settings=settings, **seeds)
+    _, outcomes = items.run(tests, lambda _: "", marks=marks, workers=jobs, verbose=True, settings=settings, **seeds)
     part = Part(name, seconds=time.monotonic() - began)
     part.failures = [f"{item.name}: {item.failure}" for item in outcomes if item.failure]
     for item in outcomes:

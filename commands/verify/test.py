@@ -7,37 +7,42 @@ Exit status: docs/exit-status.md.
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from commands.common import repository, variables
 from commands.common.simulator import SIMULATORS
+from commands.verify import lint
+from tb.settings import RunSettings
 
 REPORTS = ("--junitxml=build/junit.xml", "--durations=10", "--durations-min=20")
 WIDE = {"COLUMNS": "200"}  # so that the summary shows the whole message
-ONE_POWER_UP = {"POWER_UPS": "1"}  # the whole suite runs each core from a second random power-up state too
+WITH_LINT = "not regress and not codes and not netlist"
 
 
-def lint(cores: Sequence[str] = ()) -> list[str]:
-    """Return the command that lints these cores, or everything."""
-    chosen = [f"CORE={','.join(cores)}"] if cores else []
-    return [sys.executable, "-m", "commands", "lint", *chosen]
-
-
-def pytest(tests: Sequence[str] = (), *, workers: str = "auto") -> list[str]:
-    """Return the command that runs these test files, or the whole suite."""
-    return [sys.executable, "-m", "pytest", "-n", workers, "--dist", "worksteal", *REPORTS, *tests]
+def pytest(tests: Sequence[str] = ()) -> list[str]:
+    """Return the command that runs these tests, or the whole suite, and lint if it is among them."""
+    return [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", *REPORTS, "-m", WITH_LINT, *tests]
 
 
 def tests_of(cores: Sequence[str]) -> list[str]:
-    """Return the test files of cores, relative to the root of the repository."""
+    """Return the test files of cores, relative to the root of the repository, and the checks of lint."""
     files = [repository.cores()[core].test for core in repository.tested(cores)]
-    return [str(file.relative_to(repository.ROOT)) for file in files if file]
+    return [*(str(file.relative_to(repository.ROOT)) for file in files if file), lint.ITEMS]
 
 
-def all_succeed(processes: Sequence[Sequence[str]], **environment: str) -> bool:
+def settings(cores: Sequence[str]) -> dict[str, str]:
+    """Return the settings of a run of some cores, as an environment: lint checks them alone.
+
+    The whole suite runs each core from a second random power-up state too.
+    """
+    return RunSettings(cores=tuple(cores), power_ups=1).environment
+
+
+def all_succeed(processes: Sequence[Sequence[str]], environment: Mapping[str, str]) -> bool:
     """Run processes one after the other up to the first failure, and return whether all of them succeeded."""
+    variables_of_all = os.environ | WIDE | environment
     return all(
-        subprocess.run(process, cwd=repository.ROOT, env=os.environ | WIDE | environment, check=False).returncode == 0
+        subprocess.run(process, cwd=repository.ROOT, env=variables_of_all, check=False).returncode == 0
         for process in processes
     )
 
@@ -48,11 +53,10 @@ def main() -> None:
         environment = {}
         if "SIM" in values:
             environment["SIM"] = variables.choice(values, "SIM", SIMULATORS)
+        tests: list[str] = []
         if "CORE" in values:
             cores = repository.chosen(values["CORE"])
-            processes = [pytest(tests_of(cores)), lint(cores)]  # a wrong result is more important than style
-            environment |= ONE_POWER_UP
-        else:
-            processes = [lint(), pytest()]
-        if not all_succeed(processes, **environment):
+            tests = tests_of(cores)
+            environment |= settings(cores)
+        if not all_succeed([pytest(tests)], environment):
             raise variables.Mismatch("failed: see above")

@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 
 from commands.common import wrapper
-from commands.common.repository import ROOT
+from commands.common.repository import BOARDS, ROOT
 from commands.common.run_request import threshold_code
-from commands.hardware.fpga import SOURCES
 from tactile_depth.built_in import synthetic
 from tactile_depth.camera.register_lists import setup_parameters, write_list
 from tactile_depth.configuration import Configuration
@@ -73,7 +72,7 @@ def built_camera() -> Structure:
 def test_rtl(run_tb: Callable[..., None], simulator: str, structure: Structure, tmp_path: Path) -> None:
     inside = wrapper.write(tmp_path, "ulx3s", top_parameters(Configuration(**DEVICE)))
     level = "first" if simulator == "icarus" else ""  # 20 times slower there
-    run_tb(structure, files=[*SOURCES["ulx3s"], inside], level=level)
+    run_tb(structure, files=[*BOARDS["ulx3s"], inside], level=level)
 
 
 @pytest.mark.seeds
@@ -83,4 +82,4 @@ def test_camera(run_tb: Callable[..., None], structure: Structure, tmp_path: Pat
     config = Configuration(**BEHIND_A_CAMERA)
     inside = wrapper.write(tmp_path, "ulx3s", top_parameters(config), camera=camera_of(config))
     bench = ROOT / "tb" / "ulx3s_camera_bench.sv"
-    run_tb(structure, toplevel="ulx3s_camera_bench", files=[*SOURCES["ulx3s"], inside, bench])
+    run_tb(structure, toplevel="ulx3s_camera_bench", files=[*BOARDS["ulx3s"], inside, bench])

@@ -36,7 +36,7 @@ def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
         Configuration(columns=16, solver="tridiagonal"),
         top=core,
         parameters=parameters,
-        extra=fpga.TECHNOLOGY,
+        extra=repository.TECHNOLOGY,
     )
     script = folder / "synthesis.ys"
     script.write_text("\n".join([*lines, f"synth_ecp5 -top {core} -json netlist.json"]))

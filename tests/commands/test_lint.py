@@ -2,14 +2,16 @@
 """make lint: each tool reports the defects that it must find, and a correct module passes all tools."""
 
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from commands.common import repository, simulator
-from commands.verify import lint
+from commands.verify import items, lint
 from commands.verify.slang_lint import WAIVERS, findings, waiver
+from tb.settings import RUN
 
 HEADER = """\
 // SPDX-License-Identifier: Apache-2.0
@@ -159,15 +161,28 @@ def test_no_waiver_of_slang_is_idle() -> None:
     assert set(WAIVERS) <= waived
 
 
-def test_a_failing_check_fails_the_gate(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    checks = [lint.Check("tool", "good", lambda: ""), lint.Check("tool", "bad", lambda: "a finding")]
-    monkeypatch.setattr(lint, "checks", lambda: checks)
-    monkeypatch.setattr("sys.argv", ["lint"])
-    with pytest.raises(SystemExit) as caught:
-        lint.main()
-    assert caught.value.code == 1
-    assert "a finding" in capsys.readouterr().out
+def test_a_finding_fails_its_item_and_is_in_the_table() -> None:
+    item = items.Item("test", "a finding", 1.0, {"check": "verilator td_ram"})
+    text = lint.table([item, items.Item("test", "", 1.0, {"check": "icarus td_ram"})])
+    assert text.startswith("verilator td_ram:\na finding\n")
+    assert text.endswith("lint: 1 checks clean, 1 not: verilator td_ram")
+    with pytest.raises(pytest.fail.Exception, match="a finding"):
+        test_nothing_is_found(lint.Check("tool", "bad", lambda: "a finding"), lambda *_: None)
 
 
 def test_a_core_is_checked_alone() -> None:
     assert {check.name for check in lint.core_checks(["transpose"])} == {"transpose", "cores", "rules", "columns"}
+
+
+CHECKS = lint.core_checks(RUN.cores) if RUN.cores else lint.checks()
+
+
+@pytest.mark.lint
+@pytest.mark.parametrize(
+    "check",
+    [pytest.param(check, marks=[pytest.mark.long] * (check.tool == "mypy"), id=check.label) for check in CHECKS],
+)
+def test_nothing_is_found(check: lint.Check, record_property: Callable[[str, object], None]) -> None:
+    record_property("check", check.label)
+    if text := check.run():
+        pytest.fail(text, pytrace=False)

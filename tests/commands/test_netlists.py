@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make netlists` on two small cores: their netlists pass their testbenches, and a wrong netlist fails."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from commands.verify import netlists
+from commands.verify import mutate, netlists
+from tb.settings import RUN
+from tests.conftest import SEED
 
 
 @pytest.mark.parametrize(
@@ -37,3 +40,14 @@ def test_a_wrong_netlist_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(netlists, "netlist", stuck)
     (case,) = netlists.cases(["td_burst_counter"])
     assert netlists.run(case, seed=1).failed > 0
+
+
+@pytest.mark.netlist
+@pytest.mark.parametrize("case", netlists.cases(RUN.cores or mutate.cores()), ids=lambda case: case.name)
+def test_a_core_after_synthesis(case: netlists.Case, record_property: Callable[[str, object], None]) -> None:
+    result = netlists.run(case, SEED)
+    record_property("core", case.core)
+    record_property("tests", result.tests)
+    record_property("row", netlists.row(result))
+    assert result.tests > 0
+    assert result.failed == 0
