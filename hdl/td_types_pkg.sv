@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// td_types_pkg: what travels beside the data between the units, the buses of tables and registers, and a counter.
+// td_types_pkg: what travels beside the data between the units, the buses of tables and registers, and functions.
 //
 // Members are unsigned and of fixed width: Icarus 11 takes no others.
 
@@ -148,6 +148,16 @@ package td_types_pkg;
     logic [32:0] sum;
     sum = {1'b0, count} + 33'(step);
     counted = sum[31:0] | {32{sum[32]}};
+  endfunction
+
+  // Nodes of a map: one for each complete block of pixels.
+  function automatic int nodes(input int rows, input int columns, input int block_log2);
+    nodes = (rows / (1 << block_log2)) * (columns / (1 << block_log2));
+  endfunction
+
+  // Nodes side by side that a capture of several lanes writes at once.
+  function automatic int side(input int lanes, input int block_log2);
+    side = lanes > 1 << block_log2 ? lanes / (1 << block_log2) : 1;
   endfunction
 
 endpackage

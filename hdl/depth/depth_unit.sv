@@ -75,9 +75,9 @@ module depth_unit
   // The zero offset. Its bank goes with the frame: while the frame was in the solver others have begun.
 
   if (ZeroOffset != 0) begin : g_zero_offset
-    localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)));
+    localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2));
     logic selected, in_use, zero_active, zero_write, capture_busy, capture_done;
-    localparam int Side = Lanes >> BlockLog2 > 1 ? Lanes >> BlockLog2 : 1;  // nodes that are captured at once
+    localparam int Side = side(Lanes, BlockLog2);  // nodes that are captured at once
     logic [NodeWidth-$clog2(Side)-1:0] zero_write_node;
     logic [Side*DataWidth-1:0] zero_written;
     logic signed [DataWidth-1:0] zero_word;

@@ -15,15 +15,17 @@
 
 `default_nettype none
 
-module zero_capture #(
+module zero_capture
+  import td_types_pkg::*;
+#(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
   parameter int Width     = 24,
   parameter int MaxLog2   = 8,   // of frames
   parameter int Lanes     = 1,   // depths in a beat
-  localparam int Side = Lanes >> BlockLog2 > 1 ? Lanes >> BlockLog2 : 1,  // nodes written at once
-  localparam int Nodes = Rows / (1 << BlockLog2) * (Columns / (1 << BlockLog2)) / Side,
+  localparam int Side = side(Lanes, BlockLog2),  // nodes written at once
+  localparam int Nodes = nodes(Rows, Columns, BlockLog2) / Side,
   localparam int NodeWidth = $clog2(Nodes)
 ) (
   input  wire                     clk,

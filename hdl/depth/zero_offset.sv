@@ -22,8 +22,8 @@ module zero_offset
   parameter int BlockLog2 = 3,
   parameter int Width     = 24,
   parameter int Lanes     = 1,   // depths in a beat
-  localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2))),
-  localparam int Side = Lanes >> BlockLog2 > 1 ? Lanes >> BlockLog2 : 1  // nodes that the capture writes at once
+  localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2)),
+  localparam int Side = side(Lanes, BlockLog2)  // nodes that the capture writes at once
 ) (
   input  wire                             clk,
   input  wire                             rst,

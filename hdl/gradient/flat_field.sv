@@ -26,7 +26,7 @@ module flat_field
   parameter int Offset    = 0,
   parameter int OutWidth  = 8,
   parameter int Flat      = 128,
-  localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)))
+  localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2))
 ) (
   input  wire                    clk,
   input  wire                    rst,

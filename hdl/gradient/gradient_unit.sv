@@ -82,7 +82,7 @@ module gradient_unit
   logic [1:0] colour_saturations, slope_saturations;
   assign saturations = 3'(colour_saturations) + 3'(slope_saturations);
   if (FlatField != 0) begin : g_flat_field
-    localparam int NodeWidth = $clog2((Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2)));
+    localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2));
     logic selected, bank, capture_write, capture_read, capture_busy, capture_done;
     logic [NodeWidth-1:0] capture_write_node, capture_read_node;
     logic [3*GainWidth-1:0] capture_gains, capture_read_gains;

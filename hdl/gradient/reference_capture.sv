@@ -23,7 +23,7 @@ module reference_capture
   parameter int Width        = 24,  // of a gain, and of a sum
   parameter int GainFraction = 27,
   parameter int MaxLog2      = 8,   // of frames: 8 + 2 BlockLog2 + MaxLog2 bits fit a sum
-  localparam int Nodes = Rows / (1 << BlockLog2) * (Columns / (1 << BlockLog2)),
+  localparam int Nodes = nodes(Rows, Columns, BlockLog2),
   localparam int NodeWidth = $clog2(Nodes)
 ) (
   input  wire                  clk,

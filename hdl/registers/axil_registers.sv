@@ -100,7 +100,7 @@ module axil_registers
 
   localparam int GradientWords = Quadratic != 0 ? 0 : 1 << (3 * BitsPerChannel);
   localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0;
-  localparam int Nodes = (Rows / (1 << BlockLog2)) * (Columns / (1 << BlockLog2));
+  localparam int Nodes = nodes(Rows, Columns, BlockLog2);
   localparam int ReferenceWords = FlatField != 0 ? 4 * Nodes : 0;
   localparam int ZeroWords = ZeroOffset != 0 ? Nodes : 0;
   localparam int Present = (int'(GradientWords != 0) << TableSelectGradient)
