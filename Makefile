@@ -44,7 +44,7 @@ override PACKAGES := g++ git iverilog libpython3-dev perl python3-venv
 override need_icarus := command -v iverilog > /dev/null || { \
   echo 'Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`' >&2; exit 2; }
 
-.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate certify extremes report calibrate reflex baselines asic fpga synth wrap netlists system-tools setup clean
+.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate sign-off certify extremes report calibrate reflex baselines asic fpga synth wrap netlists system-tools setup clean
 override .DEFAULT_GOAL := sim
 
 # Print this list. docs/commands.md explains the variables.
@@ -112,6 +112,10 @@ formal: $(TOOLS)
 mutate: $(TOOLS)
 	@$(need_icarus)
 	@exec $(PY) -m commands mutate $(given)
+
+# Write docs/sign-off.md from the results of make formal and make mutate.
+sign-off: $(STAMP)
+	@exec $(PY) -m commands sign-off $(given)
 
 # Measure contact to command and to motion, with the RTL in the loop and through a host.
 reflex: $(STAMP)

@@ -14,7 +14,7 @@ from tactile_depth.errors import InputError
 ROOMS = {
     "run": ("calibrate", "reflex", "sim"),
     "study": ("baselines", "certify", "extremes", "report", "sweep", "tune"),
-    "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "test", "upsets"),
+    "verify": ("coverage", "formal", "lint", "mutate", "netlists", "quick", "regress", "sign-off", "test", "upsets"),
     "hardware": ("asic", "fpga", "registers", "synth", "wrap"),
 }
 COMMANDS = {command: room for room, commands in ROOMS.items() for command in commands}
@@ -31,7 +31,7 @@ def main() -> None:
         sys.exit(variables.BAD_INPUT)
     with variables.reported(command):  # inside `stoppable`, because imports take seconds
         sys.argv = sys.argv[1:]
-        importlib.import_module(f"commands.{COMMANDS[command]}.{command}").main()
+        importlib.import_module(f"commands.{COMMANDS[command]}.{command.replace('-', '_')}").main()
 
 
 if __name__ == "__main__":

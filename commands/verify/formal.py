@@ -21,6 +21,7 @@ from xml.etree import ElementTree
 from commands.common import markdown, variables
 from commands.common.repository import ROOT, chosen, cores, sources, tested
 from commands.hardware.yosys import in_wheel
+from commands.verify import sign_off
 from formal.entries import Proof, Structure
 from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
 from tactile_depth.built_in import synthetic
@@ -277,6 +278,9 @@ def prove(proofs: Sequence[Proof | Structure]) -> int:
     outcomes = run_all(proofs)
     print("\n" + table(proofs, outcomes))
     failed = [proof.name for proof in proofs if combined(outcomes[proof.name]) != "PASS"]
+    for core in dict.fromkeys(proof.core for proof in proofs):
+        wrong = sum(proof.core == core for proof in proofs if proof.name in failed)
+        sign_off.record(core, "proof", {"failed": wrong})
     print(f"\nformal: {len(proofs) - len(failed)} of {len(proofs)} proven in {time.monotonic() - begun:.0f} s")
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")

@@ -25,7 +25,7 @@ from tqdm import tqdm
 
 from commands.common import repository, variables
 from commands.common.progress import following
-from commands.verify import equivalence, mutants
+from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
 
 OUT = repository.ROOT / "build" / "mutate"
@@ -168,6 +168,7 @@ def run(names: list[str], choices: dict[str, str]) -> int:
     for name in names:
         outcomes.append(mutate(name, int(choices["MUTANTS"]), **numbers))
         print(row(outcomes[-1]), flush=True)
+        sign_off.record(name, "mutants", {kind: getattr(outcomes[-1], kind) for kind in sign_off.COUNTED})
         for survivor in outcomes[-1].survivors:
             if survivor["verdict"] != EQUIVALENT:
                 print("    {structure}/{mutant} {verdict} {how}: {what}".format(**survivor), flush=True)
