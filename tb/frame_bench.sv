@@ -174,7 +174,7 @@ module frame_bench
 
   assign offers = accepts(source, source_place, random_gap);
   assign withdraw = deadline == 32'd1;
-  assign flagged = dut.u_pipeline.faults;
+  assign flagged = dut.u_pipeline.events.faults;
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     assign depths[lane] = 32'($signed(m_axis_tdata[lane*DepthWidth+:DepthWidth]));
     assign above[lane] = depths[lane] > level;

@@ -58,8 +58,8 @@ def record(core: str, kind: str, figures: Mapping[str, int]) -> None:
         return
     results = load()
     before = results.setdefault(core, {}).get(kind)
-    more = before is not None and kind == "mutants" and sum(before[n] for n in COUNTED) > sum(figures.values())
-    if more and unchanged(core, before):
+    more = before and kind == "mutants" and sum(before[name] for name in COUNTED) > sum(figures.values())
+    if before and more and unchanged(core, before):
         return
     rtl = fingerprint(file.read_text())
     results[core][kind] = {**figures, "commit": commit.decode().strip(), "rtl": rtl}

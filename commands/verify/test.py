@@ -40,9 +40,9 @@ def settings(cores: Sequence[str]) -> dict[str, str]:
 
 def all_succeed(processes: Sequence[Sequence[str]], environment: Mapping[str, str]) -> bool:
     """Run processes one after the other up to the first failure, and return whether all of them succeeded."""
-    variables_of_all = os.environ | WIDE | environment
+    everything = {**os.environ, **WIDE, **environment}
     return all(
-        subprocess.run(process, cwd=repository.ROOT, env=variables_of_all, check=False).returncode == 0
+        subprocess.run(process, cwd=repository.ROOT, env=everything, check=False).returncode == 0
         for process in processes
     )
 
