@@ -119,15 +119,11 @@ def without_scikit_image(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(builtins, "__import__", refuse)
 
 
-def test_given_circles_need_no_scikit_image(monkeypatch: pytest.MonkeyPatch, made: Any) -> None:
+def test_only_circles_that_are_searched_for_need_scikit_image(monkeypatch: pytest.MonkeyPatch, made: Any) -> None:
     without_scikit_image(monkeypatch)
     assert len(read(made).views) == 24
-
-
-def test_missing_circles_without_scikit_image_say_how_to_get_it(monkeypatch: pytest.MonkeyPatch, made: Any) -> None:
-    without_scikit_image(monkeypatch)
-    assert "pip install '.[fit]' in the repository" in refused(lambda: read(made, find_circles=True))
-    assert "pip install '.[fit]' in the repository" in refused(circles.require_circle_finder)
+    for action in (lambda: read(made, find_circles=True), circles.require_circle_finder):
+        assert "pip install '.[fit]' in the repository" in refused(action)
 
 
 # Presses in memory.
@@ -192,12 +188,9 @@ def test_the_pitch_follows_from_the_balls() -> None:
     assert camera_pitch_mm(gathered, 0.0635) == 0.0635
 
 
-def test_a_pitch_that_the_balls_contradict_is_named(made: Any) -> None:
+def test_a_pitch_that_is_contradicted_or_that_nothing_tells_is_named(made: Any) -> None:
     message = "pitch_mm=0.12 contradicts presses, whose ball radii give 0.1 mm/pixel. Omit pitch_mm or correct ball_rad"
     assert message in refused(lambda: camera_pitch_mm(gather(made), 0.12))
-
-
-def test_a_pitch_that_nothing_tells_is_asked_for() -> None:
     assert "pitch_mm is needed" in refused(lambda: camera_pitch_mm(gather(in_memory(), drawn([], 1)), None))
 
 
@@ -218,9 +211,30 @@ def test_jpeg_pictures_are_read(folder: Path) -> None:
     assert used(folder) == (24, [])
 
 
-def test_a_frame_of_another_size_is_left_out(folder: Path) -> None:
-    Image.fromarray(drawn([], 1)[:-2]).save(folder / "03.png")
-    assert used(folder) == (23, ["03.png: 110 x 160 pixels, but the background has 112 x 160: left out"])
+SQUARE = "03.png: the press is outside the picture's middle square: left out"
+
+
+@pytest.mark.parametrize(
+    ("picture", "changed", "message"),
+    [
+        (drawn([], 1)[:-2], {}, "03.png: 110 x 160 pixels, but the background has 112 x 160: left out"),
+        (drawn([], 99), {"centre_x_px": "", "centre_y_px": ""}, "03.png: no circle to be seen: left out"),
+        *((None, {"centre_x_px": centre}, SQUARE) for centre in (-40.0, 400.0, 5.0)),  # the middle square begins at 24
+        (
+            None,
+            {"diameter_mm": 3.9, "ball_radius_px": ""},
+            "03.png: a contact of 20.0 pixels does not lie on a ball of 19.5: left out",
+        ),
+    ],
+    ids=lambda value: str(value)[:50] if isinstance(value, str) else "",
+)
+def test_a_press_that_cannot_be_used_is_left_out(folder: Path, picture: Any, changed: Any, message: str) -> None:
+    if picture is not None:
+        Image.fromarray(picture).save(folder / "03.png")
+    rows = table_rows()
+    rows[3] |= changed
+    write_table(folder, rows)
+    assert used(folder) == (23, [message])
 
 
 def test_a_frame_that_is_missing_or_damaged_is_left_out(folder: Path) -> None:
@@ -230,30 +244,6 @@ def test_a_frame_that_is_missing_or_damaged_is_left_out(folder: Path) -> None:
     assert count == 22
     assert f"{folder}/03.png: no such file" in notes[0]
     assert f"{folder}/04.png: not a readable picture" in notes[1]
-
-
-def test_a_press_without_a_circle_is_left_out(folder: Path) -> None:
-    Image.fromarray(drawn([], 99)).save(folder / "03.png")
-    rows = table_rows()
-    rows[3] |= {"centre_x_px": "", "centre_y_px": ""}
-    write_table(folder, rows)
-    assert used(folder) == (23, ["03.png: no circle to be seen: left out"])
-
-
-@pytest.mark.parametrize("centre", [-40.0, 400.0, 5.0])  # the middle square begins at 24
-def test_a_press_outside_the_frame_is_left_out(folder: Path, centre: Any) -> None:
-    rows = table_rows()
-    rows[3]["centre_x_px"] = centre
-    write_table(folder, rows)
-    assert used(folder) == (23, ["03.png: the press is outside the picture's middle square: left out"])
-
-
-def test_a_contact_wider_than_its_ball_is_left_out(folder: Path) -> None:
-    rows = table_rows()
-    rows[3] |= {"diameter_mm": 3.9, "ball_radius_px": ""}
-    write_table(folder, rows)
-    message = "03.png: a contact of 20.0 pixels does not lie on a ball of 19.5: left out"
-    assert used(folder) == (23, [message])
 
 
 @pytest.mark.parametrize(
@@ -299,13 +289,11 @@ def test_no_press_is_both_fitted_and_held_out(made: Any) -> None:
     assert all(view.press.margin(GRID) >= 0 for view in held_out)
 
 
-def test_a_folder_without_background_is_named(folder: Path) -> None:
+def test_a_folder_without_background_or_table_is_named(folder: Path) -> None:
     (folder / "background.png").unlink()
     assert f"{folder}/background.png: no such file" in refused(lambda: gather(folder))
-
-
-def test_a_folder_that_is_missing_says_what_one_holds(tmp_path: Path) -> None:
-    assert "no presses.csv in it: give a folder with background.png" in refused(lambda: gather(tmp_path / "absent"))
+    absent = folder / "absent"
+    assert "no presses.csv in it: give a folder with background.png" in refused(lambda: gather(absent))
 
 
 @pytest.mark.parametrize(

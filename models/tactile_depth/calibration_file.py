@@ -75,25 +75,26 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
     for key in needed:
         if key not in arrays:
             raise InputError(f"{path}: no `{key}` in it: a calibration holds {' and '.join(f'`{k}`' for k in needed)}")
-    largest_slope = _largest_slope(path, arrays["largest_slope"]) if held["quadratic"] else 0.0
+    largest_slope = _slope(path, arrays, "largest_slope") if held["quadratic"] else 0.0
     models = [model for model in MODELS if held[model]]
-    fitted = {model: _fitted_slope(path, arrays, model) for model in models if f"fitted_slope_{model}" in arrays}
+    keys = {model: f"fitted_slope_{model}" for model in models}
+    fitted = {model: _slope(path, arrays, key) for model, key in keys.items() if key in arrays}
     if old and held["quadratic"]:
         fitted["quadratic"] = largest_slope
     return Sensor(
         name,
         _gradient(path, arrays["gradient"]) if held["lut"] else None,
-        _pitch(path, arrays["pixel_pitch_mm"]),
-        _coefficients(path, arrays["coefficients"]) if held["quadratic"] else None,
+        _pitch(path, arrays),
+        _coefficients(path, arrays) if held["quadratic"] else None,
         largest_slope,
         _model(path, arrays.get("model"), models),
         camera=_old_camera(path, camera_size) if old else _camera(path, arrays, camera_size),
-        flat_field=True if old else _flag(path, arrays, "flat_field"),
+        flat_field=True if old else bool(_checked(path, arrays, "flat_field", (), "b", "True or False")),
         fitted_slope=fitted,
         height_errors={
             model: _height_error(path, arrays, model) for model in models if f"cap_height_{model}" in arrays
         },
-        lighting=_lighting(path, arrays["lighting"]) if "lighting" in arrays else None,
+        lighting=_lighting(path, arrays) if "lighting" in arrays else None,
     )
 
 
@@ -135,7 +136,9 @@ def _old_camera(path: Path, camera_size: tuple[int, int] | None) -> Camera:
 
 
 def _camera(path: Path, arrays: Arrays, camera_size: tuple[int, int] | None) -> Camera:
-    rows, columns = _size(path, arrays["camera_size"])
+    size = arrays["camera_size"]
+    shown = tuple(size.tolist()) if size.shape == (2,) else f"{size.dtype} {size.shape}"
+    rows, columns = _size(size, f"{path}: the size of the camera's pictures is {shown}")
     if camera_size is not None and _given_size(camera_size) != (rows, columns):
         raise InputError(
             f"camera_size={camera_size} contradicts {path}, which was made from pictures of {columns} x {rows} pixels "
@@ -154,61 +157,46 @@ def _camera(path: Path, arrays: Arrays, camera_size: tuple[int, int] | None) -> 
 
 
 def _given_size(camera_size: tuple[int, int]) -> tuple[int, int]:
-    size, (low, high) = np.array(camera_size), CAMERA_SIZES
-    if size.shape != (2,) or size.dtype.kind not in "iu" or not ((size >= low) & (size <= high)).all():
-        raise InputError(
-            f"camera_size={camera_size}: accepted are rows and columns, whole numbers from {low} to {high}"
-        )
-    return int(size[0]), int(size[1])
+    return _size(np.array(camera_size), f"camera_size={camera_size}")
 
 
-def _size(path: Path, size: np.ndarray) -> tuple[int, int]:
+def _size(size: np.ndarray, what: str) -> tuple[int, int]:
     low, high = CAMERA_SIZES
     if size.shape != (2,) or size.dtype.kind not in "iu" or not ((size >= low) & (size <= high)).all():
-        shown = tuple(size.tolist()) if size.shape == (2,) else f"{size.dtype} {size.shape}"
-        raise InputError(
-            f"{path}: the size of the camera's pictures is {shown}: accepted are rows and columns, "
-            f"whole numbers from {low} to {high}"
-        )
+        raise InputError(f"{what}: accepted are rows and columns, whole numbers from {low} to {high}")
     return int(size[0]), int(size[1])
+
+
+def _checked(path: Path, arrays: Arrays, key: str, shape: tuple[int, ...], kinds: str, accepted: str) -> np.ndarray:
+    """Return an array of a calibration; raise InputError for another shape or another kind of numbers."""
+    value = arrays[key]
+    if value.shape != shape or value.dtype.kind not in kinds:
+        raise InputError(f"{path}: `{key}` is {value.dtype} {value.shape}: accepted is {accepted}")
+    return value
 
 
 def _number(path: Path, arrays: Arrays, key: str) -> float:
-    value = arrays[key]
-    if value.shape != () or value.dtype.kind not in "iuf":
-        raise InputError(f"{path}: `{key}` is {value.dtype} {value.shape}: accepted is one number")
-    return float(value)
-
-
-def _flag(path: Path, arrays: Arrays, key: str) -> bool:
-    value = arrays[key]
-    if value.shape != () or value.dtype.kind != "b":
-        raise InputError(f"{path}: `{key}` is {value.dtype} {value.shape}: accepted is True or False")
-    return bool(value)
-
-
-def _fitted_slope(path: Path, arrays: Arrays, model: str) -> float:
-    key = f"fitted_slope_{model}"
-    slope = _number(path, arrays, key)
-    _within_limits(path, f"`{key}`", slope)
-    return slope
+    return float(_checked(path, arrays, key, (), "iuf", "one number"))
 
 
 def _height_error(path: Path, arrays: Arrays, model: str) -> HeightError:
     key = f"cap_height_{model}"
-    value = arrays[key]
-    if value.shape != (3,) or value.dtype.kind != "f" or not (np.isfinite(value).all() and (value >= 0).all()):
-        raise InputError(
-            f"{path}: `{key}` is {value.dtype} {value.shape}: accepted are mean, spread, number of presses"
-        )
-    return HeightError(float(value[0]), float(value[1]), int(min(value[2], 1e9)))
+    mean, spread, presses = _finite(path, arrays, key, (3,), "mean, spread, number of presses")
+    if min(mean, spread, presses) < 0:
+        raise InputError(f"{path}: `{key}` has negative values: accepted is mean, spread, number of presses")
+    return HeightError(float(mean), float(spread), int(min(presses, 1e9)))
 
 
-def _lighting(path: Path, value: np.ndarray) -> np.ndarray:
+def _lighting(path: Path, arrays: Arrays) -> np.ndarray:
     shape = (*LIGHTING_BLOCKS, 3)
-    if value.shape != shape or value.dtype.kind != "f" or not np.isfinite(value).all():
-        raise InputError(f"{path}: `lighting` is {value.dtype} {value.shape}: accepted is float {shape}")
-    return value.astype(np.float64)
+    return _finite(path, arrays, "lighting", shape, f"float {shape}").astype(np.float64)
+
+
+def _finite(path: Path, arrays: Arrays, key: str, shape: tuple[int, ...], accepted: str) -> np.ndarray:
+    value = _checked(path, arrays, key, shape, "f", accepted)
+    if not np.isfinite(value).all():
+        raise InputError(f"{path}: `{key}` holds NaN or infinity: accepted is {accepted}")
+    return value
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> np.ndarray:
@@ -245,11 +233,8 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
     return gradient.astype(np.float64)
 
 
-def _coefficients(path: Path, coefficients: np.ndarray) -> np.ndarray:
-    if coefficients.shape != COEFFICIENTS or coefficients.dtype.kind != "f":
-        raise InputError(
-            f"{path}: `coefficients` is {coefficients.dtype} {coefficients.shape}: accepted is float {COEFFICIENTS}"
-        )
+def _coefficients(path: Path, arrays: Arrays) -> np.ndarray:
+    coefficients = _checked(path, arrays, "coefficients", COEFFICIENTS, "f", f"float {COEFFICIENTS}")
     if not (np.abs(coefficients) <= LARGEST_COEFFICIENT).all():  # NaN is not
         raise InputError(
             f"{path}: `coefficients` holds NaN, or values over {LARGEST_COEFFICIENT:g}: is x in mm from the centre?"
@@ -257,11 +242,10 @@ def _coefficients(path: Path, coefficients: np.ndarray) -> np.ndarray:
     return coefficients.astype(np.float64)
 
 
-def _largest_slope(path: Path, slope: np.ndarray) -> float:
-    if slope.shape != () or slope.dtype.kind not in "iuf":
-        raise InputError(f"{path}: `largest_slope` is {slope.dtype} {slope.shape}: accepted is one number")
-    _within_limits(path, "`largest_slope`", float(slope))
-    return float(slope)
+def _slope(path: Path, arrays: Arrays, key: str) -> float:
+    slope = _number(path, arrays, key)
+    _within_limits(path, f"`{key}`", slope)
+    return slope
 
 
 def _within_limits(path: Path, what: str, slope: float) -> None:
@@ -279,10 +263,8 @@ def _model(path: Path, model: np.ndarray | None, held: list[str]) -> str:
     return name
 
 
-def _pitch(path: Path, pitch: np.ndarray) -> float:
-    if pitch.shape != () or pitch.dtype.kind not in "iuf":
-        raise InputError(f"{path}: `pixel_pitch_mm` is {pitch.dtype} {pitch.shape}: accepted is one number, in mm")
-    low, high = PIXEL_PITCHES_MM
-    if not low <= float(pitch) <= high:
-        raise InputError(f"{path}: `pixel_pitch_mm` is {float(pitch):g}: accepted are {low:g} to {high:g}, in mm")
-    return float(pitch)
+def _pitch(path: Path, arrays: Arrays) -> float:
+    pitch, (low, high) = _number(path, arrays, "pixel_pitch_mm"), PIXEL_PITCHES_MM
+    if not low <= pitch <= high:
+        raise InputError(f"{path}: `pixel_pitch_mm` is {pitch:g}: accepted are {low:g} to {high:g}, in mm")
+    return pitch

@@ -44,17 +44,12 @@ def waiver(**fields: Any) -> Any:
     return Waiver(**{"file": r"a\.sv", "kind": ".*", "source": "", "point": "", "reason": "because"} | fields)
 
 
-def test_instances_and_runs_are_added() -> None:
+def test_instances_and_runs_are_added_and_a_point_that_is_never_reached_stays() -> None:
+    """Add the counts of hdl/ alone."""
     lines = ["# SystemC::Coverage-3\n", record("branch", 1, "if", 0), record("branch", 1, "if", 2, hierarchy="top.u_b")]
     points = read(lines) + read([record("branch", 1, "if", 5)])
     assert points == {point("branch", 1, "if"): 7}
-
-
-def test_a_point_that_is_never_reached_stays() -> None:
     assert read([record("branch", 1, "if", 0)] * 2) == {point("branch", 1, "if"): 0}
-
-
-def test_only_hdl_counts() -> None:
     assert not read([record("line", 1, "block", 1, file=f"{repository.ROOT}/tb/bench.sv")])
 
 
@@ -87,14 +82,16 @@ def test_a_waiver_takes_points_out_by_source_and_by_name() -> None:
     assert not judged.errors
 
 
-def test_a_waiver_that_matches_nothing_is_an_error() -> None:
-    judged = judge({point("line", 1, "block"): 1}, [waiver(source="no such text")], SOURCES)
-    assert [error.partition(":")[0] for error in judged.errors] == ["a waiver matches nothing"]
-
-
-def test_a_waiver_of_what_is_reached_is_an_error() -> None:
-    judged = judge({point("line", 1, "block"): 1}, [waiver(kind="line")], SOURCES)
-    assert [error.partition(":")[0] for error in judged.errors] == ["a waiver matches a point that is reached"]
+@pytest.mark.parametrize(
+    ("fields", "error"),
+    [
+        ({"source": "no such text"}, "a waiver matches nothing"),
+        ({"kind": "line"}, "a waiver matches a point that is reached"),
+    ],
+)
+def test_a_waiver_of_nothing_or_of_what_is_reached_is_an_error(fields: Any, error: str) -> None:
+    judged = judge({point("line", 1, "block"): 1}, [waiver(**fields)], SOURCES)
+    assert [text.partition(":")[0] for text in judged.errors] == [error]
 
 
 def test_what_is_excluded_does_not_count_either_way() -> None:
@@ -111,9 +108,6 @@ def test_waivers_are_read_from_a_file(tmp_path: Path) -> None:
     file.write_text("[[waiver]]\nfile = 'a\\.sv'\nkind = 'line'\nsource = 'x'\n")
     with pytest.raises(TypeError, match="reason"):
         load_waivers(file)
-
-
-def test_our_own_waivers_are_readable() -> None:
     assert all(waiver.reason for waiver in load_waivers(WAIVERS))
 
 
