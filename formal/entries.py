@@ -51,7 +51,7 @@ class Proof:
 
 
 @dataclass(frozen=True)
-class Structure:
+class Cone:
     """On the netlist of the whole tactile_depth: no pixel and no memory lies in the cone of a handshake or side-band.
 
     The cone is that of single bits; a memory passes everything from its inputs to its outputs. What holds of the cone

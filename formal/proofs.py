@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from commands.common.repository import units
 from formal.camera.proofs import CAMERA_PROOFS, CAMERA_WITHOUT_CONTROL
-from formal.entries import FULL_WIDTH, ONE_ORDER, ROUNDING, WORD_FREE, Proof, Structure
+from formal.entries import FULL_WIDTH, ONE_ORDER, ROUNDING, WORD_FREE, Cone, Proof
 from formal.tables import (
     camera_list,
     factor_rom,
@@ -543,7 +543,7 @@ PROOFS: tuple[Proof, ...] = (
 )
 
 STRUCTURES = tuple(
-    Structure(
+    Cone(
         "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
         "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
         {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10}

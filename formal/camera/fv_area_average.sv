@@ -27,8 +27,8 @@ module fv_area_average #(
     .out_pixel, .out_last, .out_user
   );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   localparam int Break = 18;
   localparam int Mean = 12;
@@ -37,13 +37,10 @@ module fv_area_average #(
   logic [Mean-1:0] means;
   logic [$clog2(Rows*Columns)-1:0] place;  // words of the frame that have left
   logic held;
-  logic [2:0] marks_q;
   assign complete = fv_area_average.dut.complete;
+  kept #(.Width(3)) u_kept (.clk, .rst, .en, .out({out_valid, out_last, out_user}), .held);
   always_comb if (breaks[Break-Mean-1]) assume (!complete);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= started & ~en & ~rst;
-    marks_q <= {out_valid, out_last, out_user};
     if (en) begin
       breaks <= {breaks[Break-2:0], in_abort};
       means <= {means[Mean-2:0], complete};
@@ -69,7 +66,6 @@ module fv_area_average #(
         broken_at_the_end: cover (breaks[Break-1] && !out_last && 32'(place) == Rows * Columns - 1);
         whole: cover (means[Mean-1] && 32'(place) == Rows * Columns - 1);
       end
-      if (held) holds: assert (marks_q == {out_valid, out_last, out_user});
     end
   end
 

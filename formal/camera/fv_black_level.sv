@@ -29,30 +29,26 @@ module fv_black_level #(
   logic [GainsWidth-1:0] out_gains;
   black_level #(.Bits(Bits), .Channels(Channels), .GainsWidth(GainsWidth)) dut (.*);
 
-  logic started = 1'b0;
-  logic in_frame, valid, abort, held;
+  logic allowed, started;
+  protocol_black_level u_protocol (.clk, .rst, .en, .in_valid, .in_frame_start, .out_valid, .holds(allowed));
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+
+  logic valid, abort, held;
   logic [3:0] marks;
   logic [Bits-1:0] own_level, level_now;
   logic [GainsWidth-1:0] own_gains;
   logic [Channels*Width-1:0] samples;  // with their black level
-  logic [Channels*Width+GainsWidth+5:0] out, out_q;
-  always_comb begin
-    if (!started) assume (rst);
-    if (in_valid && !in_frame) assume (in_frame_start);
-  end
+  logic [Channels*Width+GainsWidth+5:0] out;
   assign level_now = in_valid && in_frame_start ? level : own_level;
   assign out = {out_valid, out_abort, out_colour, out_row_start, out_frame_start, out_samples, out_gains};
+  kept #(.Width(Channels * Width + GainsWidth + 6)) u_kept (.clk, .rst, .en, .out, .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= started & ~en & ~rst;
-    out_q <= out;
     if (en) begin
-      if (in_valid) in_frame <= 1'b1;
       if (in_valid && in_frame_start) {own_level, own_gains} <= {level, gains};
       {valid, abort, marks} <= {in_valid, in_abort, in_colour, in_row_start, in_frame_start};
       for (int c = 0; c < Channels; c++) samples[c*Width+:Width] <= in_samples[c*Width+:Width] - Width'(level_now);
     end
-    if (rst) {valid, abort, in_frame} <= '0;
+    if (rst) {valid, abort} <= '0;
   end
 
   always_comb begin
@@ -65,7 +61,6 @@ module fv_black_level #(
         old_settings: cover (out_samples != '0 && !out_frame_start && level == '0 && own_level != '0);
         below_black: cover (out_samples[Width-1] && out_colour == 2'd3);
       end
-      if (held) holds: assert (out_q == out);
     end
   end
 

@@ -3,8 +3,7 @@
 //
 // An arbitrary block column of a frame is followed (`pick` is free). The specification adds up whole rows from the
 // beginning of the frame and takes the difference of what it has at the ends of two blocks, modulo the width of a total.
-// Assumed: a row begins with its first pixel, a frame with a row; the columns of a block end at most Columns times in a
-// row, and as often in every row but the last of a frame that is cut short. ram_check watches the memory.
+// ram_check watches the memory.
 
 `default_nettype none
 
@@ -46,19 +45,13 @@ module fv_block_totals #(
     .clk, .write_en, .write_address, .read_en, .read_address
   );
 
-  // The source.
-  logic started = 1'b0;
-  logic in_frame, row_is_blue;
-  logic [2:0] column_q, column;  // blocks of the row that have ended
-  assign column = in_row_start ? '0 : column_q;
-  always_comb begin
-    if (!started) assume (rst);
-    if (in_frame_start) assume (in_row_start);
-    if (in_row_start) assume (in_frame_start || (in_frame && column_q == 3'(Columns)));
-    if (in_ends) assume ((in_row_start || in_frame) && column < 3'(Columns));
-    if (!in_row_start) assume (in_blue_row == row_is_blue);
-    assume (32'(in_red_columns) <= Numerator);
-  end
+  logic allowed, started;
+  logic [7:0] column;
+  protocol_block_totals #(.Columns(Columns), .Numerator(Numerator)) u_protocol (
+    .clk, .rst, .en, .in_row_start, .in_frame_start, .in_blue_row, .in_ends, .in_red_columns, .out_valid, .column,
+    .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // Where the row ends, from the beginning of its block; its part in the block.
   logic [BlockWidth:0] begin_q, begins, ends;
@@ -82,7 +75,7 @@ module fv_block_totals #(
   logic [1:0] followed;
   logic watched, fresh_column;
   logic [3*TotalWidth-1:0] come_q, until_q, come, totals;
-  assign watched = in_ends && column == 3'(followed);
+  assign watched = in_ends && column == 8'(followed);
   always_comb begin
     for (int c = 0; c < 3; c++) begin
       logic [SumWidth-1:0] sum;
@@ -104,7 +97,6 @@ module fv_block_totals #(
   logic [9*TotalWidth-1:0] due_totals;
   logic [3*BlockWidth-1:0] due_red_rows, due_red_columns;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (!started) followed <= pick;
     if (en) begin
       due <= {due[1:0], in_ends & ends_now};
@@ -112,10 +104,7 @@ module fv_block_totals #(
       due_totals <= {due_totals[6*TotalWidth-1:0], totals};
       due_red_rows <= {due_red_rows[2*BlockWidth-1:0], red_rows};
       due_red_columns <= {due_red_columns[2*BlockWidth-1:0], in_red_columns};
-      column_q <= column + 3'(in_ends);
       if (in_row_start) begin
-        in_frame <= 1'b1;
-        row_is_blue <= in_blue_row;
         row_part <= part;
         row_ends_block <= block_ends;
         first_row <= in_frame_start;
@@ -134,10 +123,7 @@ module fv_block_totals #(
         end
       end
     end
-    if (rst) begin
-      due <= '0;
-      in_frame <= 1'b0;
-    end
+    if (rst) due <= '0;
   end
 
   logic [2*BlockWidth-1:0] red_area, blue_area;
@@ -158,7 +144,7 @@ module fv_block_totals #(
             - blue_area[AreaWidth-1:0], red_area[AreaWidth-1:0]
           });
         end
-        later_block: cover (!first_row && 32'(column_q) == Columns);
+        later_block: cover (!first_row && !in_row_start && 32'(column) == Columns);
       end
     end
   end

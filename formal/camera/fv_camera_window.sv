@@ -40,11 +40,9 @@ module fv_camera_window #(
     .out_row_start, .out_frame_start, .out_abort, .row_short, .row_long, .start_missing, .start_early, .window_outside
   );
 
-  logic started = 1'b0;
-  always_comb begin
-    if (!started) assume (rst);
-    assume (columns <= 3'd4 && rows <= 3'd3);
-  end
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
+  always_comb assume (columns <= 3'd4 && rows <= 3'd3);
 
   // Settings of a picture that starts now, and of the present one.
   logic [4*Bits-1:0] settings_q, settings;
@@ -89,12 +87,12 @@ module fv_camera_window #(
   logic [4:0] marks;
   logic [23:0] data;
   logic [7:0] low;
-  logic [30:0] out_q;
+  kept #(.Width(31)) u_kept (
+    .clk, .rst, .en, .held,
+    .out({out_valid, out_abort, out_data, out_inside, out_odd_row, out_odd_column, out_row_start, out_frame_start})
+  );
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     settings_q <= {columns, rows, window_x, window_y};
-    held <= started & ~en & ~rst;
-    out_q <= {out_valid, out_abort, out_data, out_inside, out_odd_row, out_odd_column, out_row_start, out_frame_start};
     if (en) begin
       leaves <= pixel;
       breaks <= fault;
@@ -135,10 +133,6 @@ module fv_camera_window #(
         pixels: assert (out_data == data);
         marked: assert ({out_inside, out_odd_row, out_odd_column} == marks[4:2]);
         if (out_inside) started_marks: assert ({out_row_start, out_frame_start} == marks[1:0]);
-      end
-      if (held) begin
-        holds: assert (out_q == {
-          out_valid, out_abort, out_data, out_inside, out_odd_row, out_odd_column, out_row_start, out_frame_start});
       end
 
       window_passes: cover (out_valid && out_inside && passed && x == (PixelPairs != 0 ? 8'd0 : 8'd1) && y == 8'd1);

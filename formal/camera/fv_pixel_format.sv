@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_pixel_format: the samples of each pixel of the window, with their marks, in order and in time; breaks too.
 //
-// YUYV: BT.601 of the pixel's own luma and its pair's chroma, rounded half to even. Assumed: pixels of a row come in pairs, even columns first; no pixel comes with
-// a break. Nothing is assumed of the other formats.
+// YUYV: BT.601 of the pixel's own luma and its pair's chroma, rounded half to even.
 
 `default_nettype none
 
@@ -36,16 +35,15 @@ module fv_pixel_format
     .in_abort, .out_valid, .out_samples, .out_colour, .out_row_start, .out_frame_start, .out_abort
   );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic allowed, started;
+  protocol_pixel_format #(.Format(Format)) u_protocol (
+    .clk, .rst, .en, .in_valid, .in_odd_column, .in_abort, .out_valid, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
   logic held;
-  logic [Channels*Width+3:0] out_q;
-  always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= started & ~en & ~rst;
-    out_q <= {out_valid, out_abort, out_row_start, out_frame_start, out_samples};
-  end
-  always_comb if (started && held) holds: assert (out_q == {out_valid, out_abort, out_row_start, out_frame_start, out_samples});
+  kept #(.Width(Channels * Width + 4)) u_kept (
+    .clk, .rst, .en, .out({out_valid, out_abort, out_row_start, out_frame_start, out_samples}), .held
+  );
 
   if (format_is_yuyv(Format) == 0) begin : g_word
     logic [Channels*Width-1:0] samples, samples_q;
@@ -88,11 +86,6 @@ module fv_pixel_format
       end
     end
   end else begin : g_pair
-    logic expects_odd;  // the first pixel of a pair has come
-    always_comb begin
-      if (in_valid) assume (in_odd_column == expects_odd);
-      assume (!(in_valid && in_abort));
-    end
     // What leaves in so many clocks: of the pair that is complete now its first in 3, its second in 4.
     logic [15:0] first;
     logic [2:0] first_marks;
@@ -103,7 +96,6 @@ module fv_pixel_format
     assign pair = in_valid & in_odd_column;
     always_ff @(posedge clk) begin
       if (en) begin
-        if (in_valid || in_abort) expects_odd <= in_valid & ~in_odd_column;
         if (in_valid && !in_odd_column) begin
           first <= in_data[15:0];
           first_marks <= {in_inside, in_row_start, in_frame_start};
@@ -118,7 +110,6 @@ module fv_pixel_format
       if (rst) begin
         valid <= '0;
         abort <= '0;
-        expects_odd <= 1'b0;
       end
     end
     logic signed [21:0] red_cr, green_cb, green_cr, blue_cb;

@@ -22,7 +22,9 @@ module fv_round_divide #(
   round_divide #(.TotalWidth(TotalWidth), .WeightWidth(WeightWidth), .Drop(Drop)) dut (
     .clk, .en, .total, .weight, .mean
   );
-  always_comb assume (weight != '0);
+  logic allowed;
+  protocol_round_divide #(.WeightWidth(WeightWidth)) u_protocol (.clk, .en, .weight, .holds(allowed));
+  always_comb assume (allowed);
 
   // The operands of the present mean.
   logic [Latency*TotalWidth-1:0] totals;

@@ -2,7 +2,7 @@
 // fv_row_sums: a word with the last pixel of each block, 3 enabled clocks later, with the sums of each lane over it.
 //
 // The specification adds up whole pixels from the beginning of the row and takes the difference of what it has at the
-// ends of two blocks, modulo the width of a sum; the core sums block by block. Nothing is assumed but that rows begin.
+// ends of two blocks, modulo the width of a sum; the core sums block by block.
 
 `default_nettype none
 
@@ -32,12 +32,9 @@ module fv_row_sums #(
     .clk, .rst, .en, .in_valid, .in_samples, .in_blue_column, .in_row_start, .out_ends, .out_sums, .out_red_columns
   );
 
-  logic started = 1'b0;
-  logic in_row;  // a row has begun since the reset
-  always_comb begin
-    if (!started) assume (rst);
-    if (in_valid && !in_row) assume (in_row_start);
-  end
+  logic allowed, started;
+  protocol_row_sums u_protocol (.clk, .rst, .en, .in_valid, .in_row_start, .out_ends, .holds(allowed));
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // Where the pixel ends, from the beginning of its block; its part in the block.
   logic [BlockWidth:0] begin_q, begins, ends;
@@ -67,13 +64,11 @@ module fv_row_sums #(
   logic [3*Lanes*SumWidth-1:0] due_sums;
   logic [3*BlockWidth-1:0] due_red;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (en) begin
       due <= {due[1:0], in_valid & block_ends};
       due_sums <= {due_sums[2*Lanes*SumWidth-1:0], sums};
       due_red <= {due_red[2*BlockWidth-1:0], red};
       if (in_valid) begin
-        in_row <= 1'b1;
         begin_q <= block_ends ? ends - (BlockWidth + 1)'(Numerator) : ends;
         red_come_q <= (in_row_start ? '0 : red_come_q) + (in_blue_column ? '0 : BlockWidth'(Denominator));
         if (block_ends) red_until_q <= (in_row_start ? '0 : red_come_q) + (in_blue_column ? '0 : part);
@@ -89,10 +84,7 @@ module fv_row_sums #(
         end
       end
     end
-    if (rst) begin
-      due <= '0;
-      in_row <= 1'b0;
-    end
+    if (rst) due <= '0;
   end
 
   always_comb begin

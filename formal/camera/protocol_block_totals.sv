@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_block_totals: whole rows of Columns blocks, of any number, from a frame's start on; totals count with out_valid.
+// protocol_block_totals: whole rows of Columns blocks, of any number, from a frame's start on, in a reset
+// too; totals count with out_valid.
 
 `default_nettype none
 
@@ -17,6 +18,7 @@ module protocol_block_totals #(
   input  logic                  in_ends,
   input  logic [BlockWidth-1:0] in_red_columns,
   input  logic                  out_valid,
+  output logic [7:0]            column,  // blocks of the row that have ended
   output logic                  holds,
   output logic                  counts_out_valid,
   output logic                  counts_out_totals,
@@ -24,12 +26,12 @@ module protocol_block_totals #(
 );
 
   logic reset, live = 1'b0, in_frame = 1'b0, blue_row = 1'b0, starts_right, stays_right;
-  logic [7:0] ended = '0, column;  // blocks of the row
+  logic [7:0] ended = '0;
   assign column = in_row_start ? '0 : ended;
   assign starts_right = in_row_start ? in_frame_start | (in_frame & ended == 8'(Columns)) : ~in_frame_start;
   assign stays_right = (~in_ends | ((in_frame | in_row_start) & column != 8'(Columns)))
       & (in_row_start | in_blue_row == blue_row);
-  assign holds = rst | (starts_right & stays_right & 32'(in_red_columns) <= Numerator);
+  assign holds = starts_right & stays_right & 32'(in_red_columns) <= Numerator;
   assign reset = rst | ~holds;
   always_ff @(posedge clk) begin
     live <= live | reset;

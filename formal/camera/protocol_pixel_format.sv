@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_pixel_format: a break comes without a pixel; pixels of YUYV come in pairs. Samples and marks count with
+// protocol_pixel_format: pixels of YUYV come in pairs, a break without a pixel; any others. Samples and marks count with
 // out_valid, the colour of a pixel in RAW formats alone.
 
 `default_nettype none
@@ -26,7 +26,7 @@ module protocol_pixel_format
 
   logic reset, live = 1'b0, expects_odd = 1'b0, pixel;
   assign reset = rst | ~holds;
-  assign holds = rst | ~in_valid | (~in_abort & (format_is_yuyv(Format) == 0 | in_odd_column == expects_odd));
+  assign holds = rst | ~in_valid | format_is_yuyv(Format) == 0 | (~in_abort & in_odd_column == expects_odd);
   always_ff @(posedge clk) begin
     live <= live | reset;
     if (en && (in_valid || in_abort)) expects_odd <= in_valid & ~in_odd_column;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_centroid: done exactly Latency clocks after the last start, with both means to the nearest, ties to even. Ties need an
 // area of 32, which only the simulation has.
-//
-// Assumed: row_sum and area are held from start to done; no sum is more than that of as many largest positions.
 
 `default_nettype none
 
@@ -21,14 +19,17 @@ module fv_centroid #(
   input logic [AreaWidth-1:0] area
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
   logic done;
   logic [MeanWidth-1:0] column, row;
   centroid #(.PositionWidth(PositionWidth), .AreaWidth(AreaWidth)) dut (
     .clk, .rst, .start, .column_sum, .row_sum, .area, .done, .column, .row
   );
+
+  logic allowed, started;
+  protocol_centroid #(.PositionWidth(PositionWidth), .AreaWidth(AreaWidth)) u_protocol (
+    .clk, .rst, .start, .column_sum, .row_sum, .area, .done, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [Latency-1:0] due;
   logic [SumWidth-1:0] columns, rows;
@@ -40,22 +41,13 @@ module fv_centroid #(
   near_mean #(.SumWidth(SumWidth), .AreaWidth(AreaWidth), .MeanWidth(MeanWidth)) u_row (
     .sum(rows), .area(count), .mean(row), .near(row_near), .up(unused_row_up)
   );
-  localparam logic [PositionWidth-1:0] Largest = '1;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     due <= Latency'({due, start});
     if (start) begin
       due <= Latency'(1);
       {columns, rows, count} <= {column_sum, row_sum, area};
     end
     if (rst) due <= '0;
-  end
-  always_comb begin
-    if (due != '0 && !start) assume (row_sum == rows && area == count);
-    if (start) begin
-      assume (area != '0);
-      assume (32'(column_sum) <= 32'(area) * 32'(Largest) && 32'(row_sum) <= 32'(area) * 32'(Largest));
-    end
   end
 
   always_comb begin

@@ -18,8 +18,8 @@ module fv_contact_debounce #(
   input logic [7:0]           debounce
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   logic touching, touching_next, began, ended;
   contact_debounce #(.AreaWidth(AreaWidth)) dut (
@@ -34,7 +34,6 @@ module fv_contact_debounce #(
   assign needed = debounce == 0 ? Most'(1) : Most'((1 << debounce) - 1);
   assign changes = area_valid & ((Most'({against, differs}) & needed) == needed);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     debounce_q <= debounce;
     if (area_valid) against <= changes ? '0 : Most'({against, differs});
     touching_q <= touching;

@@ -3,8 +3,7 @@
 // only 3 clocks after a last depth, and the record says so; in it are the number of the frame, and the time of its first
 // depth.
 //
-// Whatever frames come, one may begin inside another. That their last depths lie Latency clocks apart is assumed, which
-// frames of so many depths have. Sums, decision, centroid and packets are proven of the cores in it.
+// Sums, decision, centroid and packets are proven of the cores in it.
 
 `default_nettype none
 
@@ -19,7 +18,7 @@ module fv_contact_events
   input logic                    clk,
   input logic                    rst,
   input logic                    in_valid,
-  input logic                    restart,
+  input depth_position_t         in_position,
   input logic [Width-1:0]        in_data,
   input logic [31:0]             in_time,
   input logic signed [31:0]      on_threshold,
@@ -30,26 +29,20 @@ module fv_contact_events
 );
 
   localparam int Words = 13;
-  localparam int Pixels = Rows * Columns;
-  localparam int PlaceWidth = $clog2(Pixels);
-
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
 
   logic touching, record_valid, record_lost, m_event_tvalid, m_event_tlast;
   logic [32*Words-1:0] record;
   logic [31:0] m_event_tdata;
-  depth_position_t in_position;
   contact_events #(.Width(Width), .Rows(Rows), .Columns(Columns)) dut (
     .clk, .rst, .in_valid, .in_position, .in_data, .in_time, .on_threshold, .off_threshold, .minimum_area, .debounce,
     .touching, .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
 
-  logic [PlaceWidth-1:0] next_place, place;
-  assign in_position.frame_start = restart | (next_place == '0);
-  assign place = in_position.frame_start ? '0 : next_place;
-  assign in_position.row_end = place % PlaceWidth'(Columns) == PlaceWidth'(Columns - 1);
-  assign in_position.frame_end = place == PlaceWidth'(Pixels - 1);
+  logic allowed, started;
+  protocol_contact_events #(.Rows(Rows), .Columns(Columns)) u_protocol (
+    .clk, .rst, .in_valid, .in_position, .m_event_tvalid, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // When a record is due, and what it says of its frame.
   logic [Latency-1:0] due;
@@ -57,10 +50,8 @@ module fv_contact_events
   logic [31:0] number, begun, begun_last;
   logic was_reset, touching_q;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     was_reset <= rst;
     if (in_valid) begin
-      next_place <= in_position.frame_end ? '0 : place + PlaceWidth'(1);
       if (in_position.frame_start) begun <= in_time;
       if (in_position.frame_end) begun_last <= begun;
     end
@@ -69,16 +60,19 @@ module fv_contact_events
     record_q <= record;
     touching_q <= touching;
     if (rst) begin
-      next_place <= '0;
       due <= '0;
       number <= '0;
     end
   end
 
-  always_comb if (due[Latency-2:0] != '0) assume (!(in_valid && in_position.frame_end));
-
+  logic [Latency-1:0] early;
+  for (genvar n = 0; n < Latency; n++) begin : g_early
+    assign early[n] = due[n] && 32'(u_protocol.u_frames.next_place) > n;
+  end
   always_comb begin
     if (started) begin
+      // Behind the proof: frames of so many depths are Latency clocks long.
+      apart: assert (early == '0);
       record_due: assert (record_valid == due[Latency-1]);
       if (!record_valid && !was_reset) keeps: assert (record == record_q);
       if (!was_reset && !due[2]) between_frames: assert (touching == touching_q);

@@ -2,7 +2,7 @@
 // fv_contact_sums: area 2 clocks after the last beat of each frame, sums 3 + log2(Lanes); the area counts the depths above the
 // threshold; limits and peak enclose an arbitrary depth above it, and are attained; the first of equal peaks.
 //
-// Whatever frames come, one may begin inside another; `touching` takes any value in any clock. Sums of rows, columns and
+// `touching` takes any value in any clock. Sums of rows, columns and
 // depths are left to simulation against the model.
 
 `default_nettype none
@@ -19,7 +19,7 @@ module fv_contact_sums
   input logic                    clk,
   input logic                    rst,
   input logic                    in_valid,
-  input logic                    restart,
+  input depth_position_t         in_position,
   input logic [Lanes*Width-1:0]  in_data,
   input logic signed [Width:0]   on_level,
   input logic signed [Width:0]   off_level,
@@ -32,12 +32,8 @@ module fv_contact_sums
   localparam int ToSums = 3 + $clog2(Lanes);  // clocks from the last beat of a frame
   localparam int Behind = ToSums - 2;         // clocks from the area to the sums
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
   logic area_valid, sums_valid;
   logic [AreaWidth-1:0] area;
-  depth_position_t in_position;
   contact_sums_t sums;
   contact_sums #(
     .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
@@ -46,11 +42,14 @@ module fv_contact_sums
     .area_valid, .area, .sums_valid, .sums
   );
 
-  logic [3:0] next_place, place;  // of the first depth of a beat
-  assign in_position.frame_start = restart | (next_place == '0);
-  assign place = in_position.frame_start ? '0 : next_place;
-  assign in_position.row_end = place % 4'(Columns) == 4'(Columns - Lanes);
-  assign in_position.frame_end = place == 4'(Pixels - Lanes);
+  logic allowed, started;
+  logic [$clog2(Pixels/Lanes)-1:0] beat;
+  logic [3:0] place;  // of the first depth of a beat
+  assign place = 4'(Lanes * 32'(beat));
+  protocol_contact_sums #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
+    .clk, .rst, .in_valid, .in_position, .area_valid, .sums_valid, .place(beat), .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // A beat one clock later, with the thresholds of its frame.
   logic valid_q, first_q;
@@ -93,12 +92,8 @@ module fv_contact_sums
   assign {count_q, held_q, in_row_q, in_column_q, depth_q} = later[(Behind-1)*(AreaWidth+3+Width)+:AreaWidth+3+Width];
 
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (!started) watched <= chosen;
-    if (in_valid) begin
-      next_place <= in_position.frame_end ? '0 : place + 4'(Lanes);
-      if (in_position.frame_start) {on_q, off_q} <= {on_level, off_level};
-    end
+    if (in_valid && in_position.frame_start) {on_q, off_q} <= {on_level, off_level};
     valid_q <= in_valid & ~rst;
     first_q <= in_position.frame_start;
     data_q <= in_data;
@@ -112,10 +107,7 @@ module fv_contact_sums
       depth <= depth_now;
     end
     later <= (Behind * (AreaWidth + 3 + Width))'({later, count, held, in_row, in_column, depth});
-    if (rst) begin
-      next_place <= '0;
-      due <= '0;
-    end
+    if (rst) due <= '0;
   end
   always_comb assume (chosen < 4'(Pixels));
 

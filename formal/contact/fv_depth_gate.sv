@@ -4,43 +4,38 @@
 // tapped once and in order: of a frame that does not wait in the clock after it came; of one that does no later than it
 // leaves, and sooner only when the next frame does not wait. With such a frame en is high, but for the first clock.
 //
-// One arbitrary word is followed: `pick` is free. Frames are of Words words, in successive enabled clocks, with any gaps
-// between them; drop_frames and m_ready move freely.
+// One arbitrary word is followed: `pick` is free. drop_frames and m_ready move freely.
 
 `default_nettype none
 
 module fv_depth_gate
   import td_types_pkg::*;
 #(
-  parameter int Width = 1,
-  parameter int Words = 3
+  parameter int Width = 1
 ) (
   input logic             clk,
   input logic             rst,
   input logic             drop_frames,
-  input logic             go,
-  input logic             in_last,
+  input logic             in_valid,
+  input depth_position_t  in_position,
   input logic [Width-1:0] in_data,
   input logic             m_ready,
   input logic             pick
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic en, in_valid, in_frame_start, in_frame_end, event_dropped, m_valid, tap_valid;
+  logic en, event_dropped, m_valid, tap_valid;
   depth_position_t m_position, tap_position;
   logic [Width-1:0] m_data, tap_data;
   depth_gate #(.Width(Width)) dut (
-    .clk, .rst, .drop_frames, .en, .in_valid, .in_position({in_frame_start, in_last, in_frame_end}), .in_data,
+    .clk, .rst, .drop_frames, .en, .in_valid, .in_position, .in_data,
     .event_dropped, .m_valid, .m_ready, .m_position, .m_data, .tap_valid, .tap_position, .tap_data
   );
 
-  logic [3:0] place;  // of the word that is present
-  logic stays;  // it was present in the clock before, and did not move
-  assign in_valid = stays | (place != '0) | go;
-  assign in_frame_start = place == '0;
-  assign in_frame_end = place == 4'(Words - 1);
+  logic allowed, started;
+  protocol_depth_gate #(.Width(Width)) u_protocol (
+    .clk, .rst, .en, .in_valid, .in_position, .in_data, .m_valid, .tap_valid, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // What is given to the output: as long as its two places and the frame allow.
   logic drops, refused, moves, room, given, leaves;  // `drops`: of the frame that is, or would be, present
@@ -48,11 +43,11 @@ module fv_depth_gate
   logic [1:0] held, untapped;  // words that have not left, that have not been tapped
   assign moves = en & in_valid;
   assign room = (held != 2'd2) & ~fresh;
-  assign given = moves & room & (in_frame_start | ~refused);
+  assign given = moves & room & (in_position.frame_start | ~refused);
   assign leaves = m_valid & m_ready;
 
   logic [Width+2:0] word, value, sent, tapped, stalled_word;
-  assign word = {in_frame_start, in_last, in_frame_end, in_data};
+  assign word = {in_position, in_data};
   assign sent = {m_position, m_data};
   assign tapped = {tap_position, tap_data};
 
@@ -62,12 +57,9 @@ module fv_depth_gate
   assign leaves_now = follows_out & (ahead_out == 2'd0) & leaves;
   assign tapped_now = follows_tap & (ahead_tap == 2'd0) & tap_valid;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     fresh <= rst;
-    stays <= in_valid & ~en;
-    if (moves) place <= in_frame_end ? '0 : place + 4'd1;
     if (moves) refused <= ~given;
-    if (!in_valid || (moves && in_frame_end)) drops <= drop_frames;
+    if (!in_valid || (moves && in_position.frame_end)) drops <= drop_frames;
     drops_q <= drops;
     came_dropping <= moves & drops;
     held <= held + 2'(given) - 2'(leaves);
@@ -88,8 +80,6 @@ module fv_depth_gate
       if (leaves) ahead_out <= ahead_out - 2'd1;
     end
     if (rst) begin
-      place <= '0;
-      stays <= 1'b0;
       drops <= 1'b0;
       drops_q <= 1'b0;
       came_dropping <= 1'b0;
@@ -102,18 +92,13 @@ module fv_depth_gate
   end
   assign forced = waits & drops;  // it has waited, but what comes now does not
 
-  // A word stays while it does not move.
-  logic [Width:0] word_q;
-  always_ff @(posedge clk) word_q <= {in_last, in_data};
-  always_comb if (stays) assume (word_q == {in_last, in_data});
-
   always_comb begin
     if (started) begin
       enable_is_room: assert (dut.en == (dut.dropping ? dut.tap_room : dut.room));
       offered: assert (m_valid == (held != 2'd0));
       if (stalled) stable: assert (m_valid && sent == stalled_word);
       if (follows_out && ahead_out == 2'd0) in_place: assert (sent == value);
-      said: assert (event_dropped == (moves & ~given & (in_frame_start | ~refused)));
+      said: assert (event_dropped == (moves & ~given & (in_position.frame_start | ~refused)));
       if (!drops) nothing_refused: assert (!moves || given);
       if (drops && drops_q && !fresh) never_waits: assert (en);
       if (!drops) waits_for_room: assert (en == room);
@@ -122,8 +107,8 @@ module fv_depth_gate
       if (came_dropping) seen_at_once: assert (tap_valid && untapped == 2'd1);
       if (leaves_now) no_later: assert (!follows_tap || tapped_now);
       if (tapped_now && waits && !forced) no_sooner: assert (leaves_now);
-      cut: cover (event_dropped && !in_frame_start && follows_out);
-      whole_dropped: cover (event_dropped && in_frame_start && held == 2'd2);
+      cut: cover (event_dropped && !in_position.frame_start && follows_out);
+      whole_dropped: cover (event_dropped && in_position.frame_start && held == 2'd2);
       two_stand: cover (drops && !en && follows_tap && ahead_tap == 2'd1);
       seen_before: cover (leaves_now && !follows_tap && !drops && waits && held == 2'd2 && untapped == 2'd1);
       recovers: cover (leaves && m_position.frame_end && refused && drops);

@@ -17,8 +17,8 @@ module fv_record_packets #(
   input logic [3:0]          pick
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   logic record_valid, record_lost, m_event_tvalid, m_event_tlast;
   logic [32*Words-1:0] record;
@@ -36,7 +36,6 @@ module fv_record_packets #(
   assign first_bit = 1'(record_q >> {watched, 5'd0});
 
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     was_reset <= rst;
     new_q <= new_valid;
     if (new_valid) newest <= new_record;

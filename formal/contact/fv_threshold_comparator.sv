@@ -2,8 +2,6 @@
 // fv_threshold_comparator: contact rises in the clock after a beat with a depth above the threshold leaves, and at no other time.
 // While hold is high it does not fall. Otherwise it is high from such a depth on until the clock after the first depth of
 // the next frame, so it falls in the clock after hold is cleared if this frame has had no depth above the threshold.
-//
-// Assumed: what leaves first after a reset is the first depth of a frame (frame_output sends whole frames).
 
 `default_nettype none
 
@@ -25,10 +23,10 @@ module fv_threshold_comparator #(
     .clk, .rst, .in_valid, .in_frame_start, .in_data, .threshold, .hold, .contact
   );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic allowed, started;
+  protocol_threshold_comparator u_protocol (.clk, .rst, .in_valid, .in_frame_start, .holds(allowed));
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
-  logic framed;  // a frame has begun since reset
   logic signed [31:0] of_frame, in_force;  // threshold when the frame began; that which counts now
   assign in_force = in_valid & in_frame_start ? threshold : of_frame;
   logic [Lanes-1:0] exceeds;  // depths of the beat above the threshold
@@ -42,17 +40,14 @@ module fv_threshold_comparator #(
 
   logic fired, of_this_frame, contact_q, hold_q, beat_q, within_frame;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    framed <= ~rst & (framed | (in_valid & in_frame_start));
     of_frame <= in_force;
     fired <= ~rst & in_valid & (exceeds != '0);
     of_this_frame <= ~rst & (in_valid ? exceeds != '0 | (of_this_frame & ~in_frame_start) : of_this_frame);
-    within_frame <= framed & in_valid & ~in_frame_start;
+    within_frame <= in_valid & ~in_frame_start;
     contact_q <= contact & ~rst;
     hold_q <= hold;
     beat_q <= in_valid;
   end
-  always_comb if (in_valid && !framed) assume (in_frame_start);
 
   always_comb begin
     if (started) begin
@@ -64,7 +59,7 @@ module fv_threshold_comparator #(
       refires: cover (fired && contact_q && !within_frame);
       holds: cover (contact && !fired && !within_frame && in_valid && in_frame_start);
       falls: cover (contact_q && !contact);
-      falls_as_hold_is_cleared: cover (contact_q && !contact && !beat_q && framed);
+      falls_as_hold_is_cleared: cover (contact_q && !contact && !beat_q);
     end
   end
 

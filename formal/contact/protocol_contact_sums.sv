@@ -6,25 +6,27 @@
 module protocol_contact_sums #(
   parameter int Rows    = 128,
   parameter int Columns = 128,
-  parameter int Lanes   = 1    // depths in a beat
+  parameter int Lanes   = 1,   // depths in a beat
+  localparam int PlaceWidth = $clog2(Rows * Columns / Lanes)
 ) (
-  input  logic       clk,
-  input  logic       rst,
-  input  logic       in_valid,
-  input  logic [2:0] in_position,
-  input  logic       area_valid,
-  input  logic       sums_valid,
-  output logic       holds,
-  output logic       counts_area,
-  output logic       counts_sums,
-  output logic       counts
+  input  logic                  clk,
+  input  logic                  rst,
+  input  logic                  in_valid,
+  input  logic [2:0]            in_position,
+  input  logic                  area_valid,
+  input  logic                  sums_valid,
+  output logic [PlaceWidth-1:0] place,  // of the beat in its frame
+  output logic                  holds,
+  output logic                  counts_area,
+  output logic                  counts_sums,
+  output logic                  counts
 );
 
   logic reset;
   assign counts_area = counts & area_valid;
   assign counts_sums = counts & sums_valid;
   depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (
-    .clk, .rst, .in_valid, .in_position, .holds, .reset, .counts
+    .clk, .rst, .in_valid, .in_position, .place, .holds, .reset, .counts
   );
 
 endmodule

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_depth_gate: frames of any number of words, in successive enabled clocks; after a reset the first word is a
-// frame's first. A word stays while en is low.
+// frame's first, in a reset too. A word stays while en is low.
 
 `default_nettype none
 
@@ -27,8 +27,8 @@ module protocol_depth_gate #(
   logic [Width+2:0] word, word_before;
   assign reset = rst | ~holds;
   assign word = {in_position, in_data};
-  assign holds = rst | ((in_valid | ~open) & (~in_valid | in_position[2] == ~open)
-      & (~stays | (in_valid & word == word_before)));
+  assign holds = (in_valid | ~open) & (~in_valid | in_position[2] == ~open)
+      & (~stays | (in_valid & word == word_before));
   always_ff @(posedge clk) begin
     live <= live | reset;
     if (reset) open <= 1'b0;

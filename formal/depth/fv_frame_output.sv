@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_frame_output: a frame that is due and good leaves whole, with frame_start on its first word, row_end on the last of
 // each row and frame_end on its last; a bad one, or one that does not begin when due, does not leave at all; out_of_step is high
-// exactly where bursts and frames do not begin as they should. Whatever bursts come; frames are due at least Rows *
-// Columns enabled clocks apart (frame_tags).
+// exactly where bursts and frames do not begin as they should. Whatever bursts come, and whenever frames are due.
 
 `default_nettype none
 
@@ -19,17 +18,14 @@ module fv_frame_output
   input logic             in_start,
   input logic             in_frame_start,
   input logic [Width-1:0] in_data,
-  input logic             offer,
+  input logic             in_due,
   input logic             in_bad
 );
 
   localparam int Pixels = Rows * Columns;
   localparam int CountWidth = $clog2(Pixels + 1);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic in_due, active, out_of_step, out_valid;
+  logic active, out_of_step, out_valid;
   depth_position_t out_position;
   logic [Width-1:0] out_data;
   frame_output #(.Width(Width), .Rows(Rows), .Columns(Columns)) dut (
@@ -37,10 +33,12 @@ module fv_frame_output
     .out_valid, .out_position, .out_data
   );
 
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
+
   logic [CountWidth-1:0] left;  // words of the frame after this clock's
   logic present, good, good_q;
   logic [CountWidth-1:0] word;
-  assign in_due = offer & (left == '0);
   assign present = in_due | (left != '0);
   assign word = in_due ? '0 : CountWidth'(Pixels) - left;
   assign good = in_due ? in_frame_start & ~in_bad : good_q;
@@ -49,7 +47,6 @@ module fv_frame_output
 
   logic [CountWidth-1:0] sent;  // words of this frame that left
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (en) begin
       left <= in_due ? CountWidth'(Pixels - 1) : left != '0 ? left - CountWidth'(1) : left;
       good_q <= good;

@@ -6,8 +6,6 @@
 // to its node and to no other, and the zero offset of a node is its sum's mean, ties to even; what does nothing but add does
 // so to all. With several lanes the first part is so for beats one clock after they came, and the depths of a beat that
 // belong to one block are added up: then what is proven of one lane is so for their sum.
-//
-// Assumed: frames in raster order, whole but for a reset.
 
 `default_nettype none
 
@@ -48,12 +46,15 @@ module fv_zero_capture #(
     .map_write, .map_write_node, .map_write_zero
   );
 
-  logic [3:0] row_in, column_in, position, row, column;
-  raster_counter #(.Rows(Rows), .Columns(Columns / Lanes)) u_raster (
-    .clk, .rst, .en, .in_valid, .row(row_in), .column(column_in), .position
+  logic [15:0] row_in, column_in, row, column;
+  logic [1:0] given;
+  logic started;
+  protocol_zero_capture #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
+    .clk, .rst, .en, .in_valid, .in_frame_start, .in_frame_end, .map_write, .row(row_in), .column(column_in),
+    .given_in_frame_start(given[1]), .given_in_frame_end(given[0])
   );
+  assumed u_assumed (.clk, .rst, .allowed({in_frame_start, in_frame_end} == given), .started);
 
-  logic started = 1'b0;
   // With several lanes the two depths of a block in a beat are added up first.
   logic take, frame_start;
   if (Lanes > 1) begin : g_lanes
@@ -93,7 +94,6 @@ module fv_zero_capture #(
   logic [NodeWidth*ToMap-1:0] closed_node;
   logic written;  // the watched node, in this capture
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (!started) watched <= chosen;
     closes <= {closes[ToMap-2:0], block_ends && state == Summing && wanted == (MaxLog2 + 1)'(1)};
     closed_node <= {closed_node[NodeWidth*(ToMap-1)-1:0], node};
@@ -116,11 +116,6 @@ module fv_zero_capture #(
     if (request) state <= Armed;
     if (rst) state <= Idle;
     if (rst || request) closes <= '0;
-  end
-
-  always_comb begin
-    if (!started) assume (rst);
-    if (in_valid) assume (in_frame_start == &position[1:0] && in_frame_end == &position[3:2]);
   end
 
   if (Sums == 0) begin : g_order

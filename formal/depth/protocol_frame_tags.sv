@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_frame_tags: frames end at least Pixels enabled clocks apart; a push stays while en is low.
+// protocol_frame_tags: frames end at least Pixels enabled clocks apart.
 
 `default_nettype none
 
 module protocol_frame_tags #(
-  parameter int Pixels = 16384
+  parameter int Pixels = 16384,
+  localparam int CountWidth = $clog2(Pixels + 1)
 ) (
   input  logic clk,
   input  logic rst,
@@ -14,17 +15,15 @@ module protocol_frame_tags #(
   output logic counts
 );
 
-  logic reset, live = 1'b0, still = 1'b0, push_before;
-  logic [15:0] since = '0;  // the last push; 0: none after the reset
+  logic reset, live = 1'b0;
+  logic [CountWidth-1:0] left = '0;  // enabled clocks until the next push may come
   assign reset = rst | ~holds;
-  assign holds = (~push | rst | since == '0 | since == 16'(Pixels)) & (~still | rst | push == push_before);
+  assign holds = ~push | rst | left == '0;
   assign counts = live;
   always_ff @(posedge clk) begin
     live <= live | reset;
-    still <= ~en & ~reset;
-    push_before <= push;
-    if (reset) since <= '0;
-    else if (en) since <= push ? 16'd1 : since + 16'(since != '0 && since != 16'(Pixels));
+    if (reset) left <= '0;
+    else if (en) left <= push ? CountWidth'(Pixels - 1) : left - CountWidth'(left != '0);
   end
 
 endmodule

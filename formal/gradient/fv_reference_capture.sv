@@ -4,7 +4,7 @@
 // that writes it, and nothing is written while idle. In a second part (Sums 1): an arbitrary pixel of a capture, the
 // only one that is not black, is added once to its node and to no other; what does nothing but add does so to all.
 //
-// Of the three colours, red; the quotients are left to simulation. Assumed: places in raster order.
+// Of the three colours, red; the quotients are left to simulation.
 
 `default_nettype none
 
@@ -49,9 +49,13 @@ module fv_reference_capture #(
     .clk, .write_en(map_write), .write_address(map_write_node), .read_en(map_read), .read_address(map_read_node)
   );
 
-  logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_position, .row, .column);
-  logic started = 1'b0;
+  logic started;
+  logic [15:0] row, column;
+  logic [3:0] given;
+  protocol_reference_capture #(.Rows(Rows), .Columns(Columns)) u_protocol (
+    .clk, .rst, .en, .in_valid, .in_position, .map_write, .map_read, .row, .column, .given_in_position(given)
+  );
+  assumed u_assumed (.clk, .rst, .allowed(in_position == given), .started);
   typedef enum logic [1:0] {Idle, Armed, Summing, Dividing} state_e;
   state_e state;
   logic [NodeWidth-1:0] watched;  // chosen in the first clock, then constant
@@ -66,7 +70,6 @@ module fv_reference_capture #(
   assign in_watched = 32'(row) < Rows / 2 * 2 && 32'(row) / 2 * (Columns / 2) + 32'(column) / 2 == 32'(watched);
   assign wanted_next = (MaxLog2 + 1)'(1) << (32'(log2_frames) > MaxLog2 ? 4'(MaxLog2) : log2_frames);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (!started) watched <= chosen;
     if (map_write && map_write_node == watched) held_sum <= map_write_gains[Width-1:0];
     if (first && state == Armed) begin
@@ -94,7 +97,6 @@ module fv_reference_capture #(
   end
 
   always_comb begin
-    if (!started) assume (rst);
     assume ((in_pixel & ~24'h010000) == '0);
     if (counts && seen && !(first && state == Armed)) assume (!in_pixel[16]);
   end

@@ -18,8 +18,8 @@ module fv_back_substitution #(
   input logic                     clk,
   input logic                     rst,
   input logic                     en,
-  input logic                     go,
-  input logic                     restart,
+  input logic [Lanes-1:0]         in_start,
+  input logic [Lanes-1:0]         in_frame_start,
   input logic [2*Lanes-1:0]       in_data,
   input logic [PositionWidth-1:0] chosen
 );
@@ -34,24 +34,14 @@ module fv_back_substitution #(
   localparam int Aligned = InWidth - Drop + CoeffWidth - 1;
   localparam int ExactWidth = (Aligned > Width + CoeffWidth ? Aligned : Width + CoeffWidth) + 1;
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
   logic [PositionWidth-1:0] column;  // chosen in the first clock, then constant
-  logic [Lanes-1:0] in_start, in_frame_start, active, present;  // present: the word of the column
+  logic allowed, started;
+  logic [Lanes-1:0] active, present;  // present: the word of the column
   logic [Lanes*PositionWidth-1:0] position;
   logic [Lanes*RowWidth-1:0] row;
-  if (Lanes == 1) begin : g_one_lane  // gaps between bursts, and frames that begin before the last one is whole
-    logic unused_last;
-    burst_source #(.Columns(Columns), .Rows(Rows)) u_source (
-      .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row,
-      .last_row(unused_last)
-    );
-  end else begin : g_lanes
-    lane_source #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_source (
-      .clk, .rst, .en, .go, .start(in_start), .frame_start(in_frame_start), .active, .position, .row
-    );
-  end
+  lane_places #(.Columns(Columns), .Lanes(Lanes), .RowWidth(RowWidth)) u_places (
+    .clk, .reset(rst), .en, .start(in_start), .frame_start(in_frame_start[0]), .active, .position, .row
+  );
   logic [Lanes-1:0] out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
   logic [$clog2(Lanes+1)-1:0] saturations;
@@ -62,6 +52,10 @@ module fv_back_substitution #(
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
+  protocol_back_substitution #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // The word of the column, and z of the one before it when that leaves.
   logic [LaneWidth-1:0] lane, lane_q, lane_q2;
@@ -103,11 +97,8 @@ module fv_back_substitution #(
   );
 
   logic held;
-  logic [Lanes*(Width+2)-1:0] out_q;
+  kept #(.Width(Lanes * (Width + 2))) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_start, out_frame_start, out_data};
     if (!started) column <= chosen;
     if (en) begin
       start_q <= (Latency * Lanes)'({start_q, in_start});
@@ -140,7 +131,6 @@ module fv_back_substitution #(
       start_when_due: assert (out_start == start_q[(Latency-1)*Lanes+:Lanes]);
       frame_start_when_due: assert (out_frame_start == frame_start_q[(Latency-1)*Lanes+:Lanes]);
       if (old[Latency-1]) substituted: assert (out_word == below);
-      if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
       last_out: cover (old[Latency-1] && of_first_row_q && below != '0 && held);
     end
   end

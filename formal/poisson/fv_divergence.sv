@@ -10,16 +10,15 @@
 
 module fv_divergence #(
   parameter int Width   = 2,
-  parameter int Rows    = 3,
   parameter int Columns = 4,
   parameter int Neumann = 0,
-  localparam int ColumnWidth = $clog2(Columns),
-  localparam int RowWidth = $clog2(Rows)
+  localparam int ColumnWidth = $clog2(Columns)
 ) (
   input logic                    clk,
   input logic                    rst,
   input logic                    en,
   input logic                    in_valid,
+  input logic [3:0]              in_position,
   input logic signed [Width-1:0] in_gx,
   input logic signed [Width-1:0] in_gy,
   input logic [ColumnWidth-1:0]  chosen
@@ -27,23 +26,20 @@ module fv_divergence #(
 
   localparam int OutWidth = Width + 2;
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
   logic [ColumnWidth-1:0] column, watched;  // watched: chosen in the first clock, then constant
-  logic [RowWidth-1:0] row;
-  logic first_row, first_column, last_row, last_column;
-  assign first_row = row == '0;
-  assign first_column = column == '0;
-  assign last_row = row == RowWidth'(Rows - 1);
-  assign last_column = column == ColumnWidth'(Columns - 1);
+  logic allowed, started, first_row, first_column, last_row, last_column;
+  assign {last_column, last_row, first_column, first_row} = in_position;
 
   logic out_valid, out_frame_start;
   logic signed [OutWidth-1:0] out_data;
   divergence #(.Width(Width), .Columns(Columns), .Neumann(Neumann)) dut (
-    .clk, .rst, .en, .in_valid, .in_position({last_column, last_row, first_column, first_row}), .in_gx, .in_gy,
+    .clk, .rst, .en, .in_valid, .in_position, .in_gx, .in_gy,
     .out_valid, .out_frame_start, .out_data
   );
+  protocol_divergence #(.Columns(Columns)) u_protocol (
+    .clk, .rst, .en, .in_valid, .in_position, .out_valid, .column, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   int gx, gy, left, above;
   assign gx = Neumann != 0 && last_column ? 0 : 32'(in_gx);
@@ -56,16 +52,11 @@ module fv_divergence #(
 
   logic [1:0] valid, frame_start, of_column;
   logic held;
-  logic [OutWidth+1:0] out_q;
+  kept #(.Width(OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_valid, out_frame_start, out_data}), .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_valid, out_frame_start, out_data};
     if (!started) watched <= chosen;
     if (en) begin
       if (in_valid) begin
-        column <= last_column ? '0 : column + ColumnWidth'(1);
-        if (last_column) row <= last_row ? '0 : row + RowWidth'(1);
         gx_before <= Width'(gx);
         if (column == watched) gy_before <= Width'(gy);
       end
@@ -76,8 +67,6 @@ module fv_divergence #(
       f_q2 <= f_q;
     end
     if (rst) begin
-      column <= '0;
-      row <= '0;
       valid <= '0;
       frame_start <= '0;
       of_column <= '0;
@@ -89,7 +78,6 @@ module fv_divergence #(
       valid_when_due: assert (out_valid == valid[1]);
       frame_start_when_due: assert (out_frame_start == frame_start[1]);
       if (of_column[1]) difference: assert (out_data == f_q2);
-      if (held) holds: assert ({out_valid, out_frame_start, out_data} == out_q);
       largest: cover (of_column[1] && f_q2 == (Neumann != 0 ? OutWidth'(4) : OutWidth'(6)) && last_row);
       first_of_second_frame: cover (of_column[1] && out_frame_start && held && first_row && watched == '0);
     end

@@ -17,8 +17,8 @@ module fv_forward_elimination #(
   input logic                     clk,
   input logic                     rst,
   input logic                     en,
-  input logic                     go,
-  input logic                     restart,
+  input logic                     in_start,
+  input logic                     in_frame_start,
   input logic signed [2:0]        in_data,
   input logic [PositionWidth-1:0] chosen
 );
@@ -36,16 +36,9 @@ module fv_forward_elimination #(
   localparam int MeanLatency = 12;  // from f to the mean that it is in
   localparam int MomentWidth = Width + 2 * $clog2(Rows) + 2;
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic in_start, in_frame_start, active, last_row;
+  logic allowed, started, active, last_row;
   logic [PositionWidth-1:0] position, column;  // column: chosen in the first clock, then constant
   logic [RowWidth-1:0] row;
-  burst_source #(.Columns(Columns), .Rows(Rows)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
   logic out_start, out_frame_start;
   logic signed [OutWidth-1:0] out_data;
   logic [2:0] saturations;
@@ -56,6 +49,10 @@ module fv_forward_elimination #(
   ) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
+  protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);
@@ -96,12 +93,9 @@ module fv_forward_elimination #(
   assign d = singular ? mean_q : rounded;
 
   logic held;
-  logic [OutWidth+1:0] out_q;
   logic [RowWidth-1:0] row_of_addend;
+  kept #(.Width(OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_start, out_frame_start, out_data};
     if (!started) column <= chosen;
     if (en) begin
       start_q <= Latency'({start_q, in_start});
@@ -139,7 +133,6 @@ module fv_forward_elimination #(
       start_when_due: assert (out_start == start_q[Latency-1]);
       frame_start_when_due: assert (out_frame_start == frame_start_q[Latency-1]);
       if (old[Latency-1]) eliminated: assert (out_data == expected);
-      if (held) holds: assert ({out_start, out_frame_start, out_data} == out_q);
       last_row_out: cover (old[Latency-1] && row_q == RowWidth'(Rows - 1) && expected != '0 && expected != '1);
       if (Neumann != 0) mean_out: cover (old[Latency-1] && singular && expected != '0);
     end

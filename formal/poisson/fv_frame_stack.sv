@@ -22,28 +22,24 @@ module fv_frame_stack #(
   input logic             clk,
   input logic             rst,
   input logic             en,
-  input logic             go,
-  input logic             restart,
+  input logic             in_start,
+  input logic             in_frame_start,
   input logic [Width-1:0] in_data,
   input logic             pick
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-  always_ff @(posedge clk) started <= 1'b1;
-
-  logic in_start, in_frame_start, active, last_row;
+  logic allowed, started, active, last_row;
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row;
-  burst_source #(.Columns(Columns), .Rows(Rows)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
   logic [Lanes-1:0] out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
   frame_stack #(.Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .WordsPerRow(WordsPerRow)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
+  protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start(out_start[0]), .active, .position, .row, .last_row, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // A place is a clock of the frame that leaves; with the word goes the lane that it leaves from.
   logic due, present, watched;
@@ -66,18 +62,13 @@ module fv_frame_stack #(
     for (int e = 0; e < Lanes; e++) if (Lanes == 1 || lane == LaneWidth'(e)) out_word = out_data[e*Width+:Width];
   end
   logic held;
-  logic [Lanes*Width-1:0] out_data_q;
-  always_ff @(posedge clk) begin
-    held <= ~en;
-    out_data_q <= out_data;
-  end
+  kept #(.Width(Lanes * Width)) u_kept (.clk, .rst(1'b0), .en, .out(out_data), .held);
 
   always_comb begin
     if (started) begin
       frame_when_due: assert (out_frame_start == frame_starts);
       row_when_due: assert (out_start == starts);
       if (watched) in_place: assert (out_word == value);
-      if (held) holds: assert (out_data == out_data_q);
       last_word: cover (watched && place == PlaceWidth'(Clocks - 1));
       last_word_behind_next: cover (watched && place == PlaceWidth'(Clocks - 1) && active && held);
     end

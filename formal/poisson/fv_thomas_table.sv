@@ -24,8 +24,6 @@ module fv_thomas_table #(
 
   localparam int Latency = 5;
 
-  always_comb assume (32'(row) < Rows);
-
   logic signed [CoeffWidth-1:0] coefficient;
   logic [LastShiftWidth-1:0] shift;
   thomas_table #(
@@ -38,29 +36,20 @@ module fv_thomas_table #(
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);
 
-  logic following = 1'b0;
-  logic held = 1'b0;
-  logic [2:0] age;
-  logic [LastShiftWidth+CoeffWidth-1:0] expected, out_q;
-  always_ff @(posedge clk) begin
-    held <= ~en;
-    out_q <= {shift, coefficient};
-    if (en) begin
-      if (!following || age == 3'(Latency)) begin
-        following <= pick;
-        age <= 3'd1;
-        expected <= square[32'(row) * Columns + 32'(position)];
-      end else begin
-        age <= age + 3'd1;
-      end
-    end
-  end
+  localparam int Width = LastShiftWidth + CoeffWidth;
+  logic allowed, due, held;
+  logic [Width-1:0] expected;
+  protocol_thomas_table #(.Rows(Rows)) u_protocol (.clk, .en, .row, .holds(allowed));
+  always_comb assume (allowed);
+  follow_delay #(.Width(Width), .Latency(Latency)) u_follow (
+    .clk, .rst(1'b0), .en, .pick, .in(square[32'(row) * Columns + 32'(position)]), .due, .word(expected)
+  );
+  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out({shift, coefficient}), .held);
 
   always_comb begin
-    if (following && age == 3'(Latency)) own_coefficient: assert ({shift, coefficient} == expected);
-    if (held) holds: assert ({shift, coefficient} == out_q);
-    inner: cover (following && age == 3'(Latency) && shift == '0 && held);
-    last: cover (following && age == 3'(Latency) && shift != '0 && held);
+    if (due) own_coefficient: assert ({shift, coefficient} == expected);
+    inner: cover (due && shift == '0 && held);
+    last: cover (due && shift != '0 && held);
   end
 
 endmodule

@@ -3,7 +3,7 @@
 //
 // With one lane a row may come at any time after the row before, with several exactly Columns / Lanes enabled clocks
 // behind its start. in_frame_start is high with the first burst of a frame in each lane. A frame begins in lane 0, when
-// no row is coming in, after less than a frame too; after a reset none has begun. Inputs stay while en is low.
+// no row is coming in, after less than a frame too; after a reset none has begun.
 
 `default_nettype none
 
@@ -28,17 +28,16 @@ module protocol_back_substitution #(
 
   localparam int Step = Columns / Lanes;
 
-  logic reset, live = 1'b0, still = 1'b0, due, in_turn, begins;
-  logic [Lanes-1:0] next_lane = Lanes'(1), first_round = '0, start_before, frame_start_before;
+  logic reset, live = 1'b0, due, in_turn, begins;
+  logic [Lanes-1:0] next_lane = Lanes'(1), first_round = '0;
   logic [15:0] rows_left = '0, step_left = '0, in_left = '0;
   logic [Lanes*16-1:0] out_left = '0;
   assign reset = rst | ~holds;
   assign begins = in_frame_start[0];
   assign due = step_left == '0 & rows_left != '0 & (Lanes == 1 | in_left != '0);
   assign in_turn = due & in_start == next_lane & in_frame_start == (next_lane & first_round);
-  assign holds = (rst | (begins ? in_left == '0 & in_start == Lanes'(1) & in_frame_start == Lanes'(1)
-      : (in_start == '0 & in_frame_start == '0) | in_turn))
-      & (~still | rst | (in_start == start_before & in_frame_start == frame_start_before));
+  assign holds = rst | (begins ? in_left == '0 & in_start == Lanes'(1) & in_frame_start == Lanes'(1)
+      : (in_start == '0 & in_frame_start == '0) | in_turn);
   assign counts_out_start = live & ~reset & en;
   assign counts_out_frame_start = counts_out_start;
   assign counts_saturations = live & ~reset;
@@ -49,9 +48,6 @@ module protocol_back_substitution #(
 
   always_ff @(posedge clk) begin
     live <= live | reset;
-    still <= ~en & ~reset;
-    start_before <= in_start;
-    frame_start_before <= in_frame_start;
     if (en) begin
       step_left <= step_left - 16'(step_left != '0);
       in_left <= in_left - 16'(in_left != '0);

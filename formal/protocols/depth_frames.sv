@@ -7,34 +7,37 @@
 
 module depth_frames #(
   parameter int Rows    = 128,
-  parameter int Columns = 128
+  parameter int Columns = 128,
+  localparam int PlaceWidth = $clog2(Rows * Columns),
+  localparam int ColumnWidth = $clog2(Columns)
 ) (
-  input  logic       clk,
-  input  logic       rst,
-  input  logic       in_valid,
-  input  logic [2:0] in_position,  // frame_start, row_end, frame_end
-  output logic       holds,
-  output logic       reset,
-  output logic       counts
+  input  logic                  clk,
+  input  logic                  rst,
+  input  logic                  in_valid,
+  input  logic [2:0]            in_position,  // frame_start, row_end, frame_end
+  output logic [PlaceWidth-1:0] place,
+  output logic                  holds,
+  output logic                  reset,
+  output logic                  counts
 );
 
   logic live = 1'b0, frame_start, row_end, frame_end;
-  logic [15:0] next_place = '0, next_column = '0;  // of the next depth; place 0: the first of a frame
-  logic [15:0] place, column;
+  logic [PlaceWidth-1:0] next_place = '0;  // of the next depth; 0: the first of a frame
+  logic [ColumnWidth-1:0] next_column = '0, column;
   assign {frame_start, row_end, frame_end} = in_position;
   assign reset = rst | ~holds;
   assign place = frame_start ? '0 : next_place;
   assign column = frame_start ? '0 : next_column;
   assign holds = ~in_valid | rst | ((frame_start | next_place != '0)
-      & (row_end == (column == 16'(Columns - 1))) & (frame_end == (place == 16'(Rows * Columns - 1))));
+      & (row_end == (column == ColumnWidth'(Columns - 1))) & (frame_end == (place == PlaceWidth'(Rows * Columns - 1))));
   assign counts = live & ~reset;
   always_ff @(posedge clk) begin
     live <= live | reset;
     if (reset) begin
       next_place <= '0;
     end else if (in_valid) begin
-      next_place <= frame_end ? '0 : place + 16'd1;
-      next_column <= row_end ? '0 : column + 16'd1;
+      next_place <= frame_end ? '0 : place + PlaceWidth'(1);
+      next_column <= row_end ? '0 : column + ColumnWidth'(1);
     end
   end
 

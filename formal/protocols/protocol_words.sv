@@ -2,7 +2,7 @@
 // protocol_words: single words going in, bursts of Columns words going out, Lanes words in a clock.
 //
 // A frame begins with in_frame_start. It has Rows times Columns words, and the next begins after it is whole; a frame
-// may begin at any word if Rows is 0. Inputs stay while en is low.
+// may begin at any word if Rows is 0.
 
 `default_nettype none
 
@@ -24,14 +24,13 @@ module protocol_words #(
   output logic counts
 );
 
-  logic reset, live = 1'b0, still = 1'b0, valid_before, frame_start_before, begun = 1'b0;
+  logic reset, live = 1'b0, begun = 1'b0;
   logic [23:0] left = '0;  // words of the frame to come
   logic [15:0] out_left = '0;
   assign reset = rst | ~holds;
   assign holds = (~in_frame_start | in_valid)
       & (~in_valid | rst | in_frame_start | (Rows == 0 ? begun : left != '0))
-      & (~in_frame_start | Rows == 0 | left == '0)
-      & (~still | rst | (in_valid == valid_before & in_frame_start == frame_start_before));
+      & (~in_frame_start | Rows == 0 | left == '0);
   assign counts_out_start = live & ~reset & en;
   assign counts_out_frame_start = counts_out_start;
   assign counts_saturations = live & ~reset;
@@ -39,9 +38,6 @@ module protocol_words #(
 
   always_ff @(posedge clk) begin
     live <= live | reset;
-    still <= ~en & ~reset;
-    valid_before <= in_valid;
-    frame_start_before <= in_frame_start;
     if (en) begin
       if (in_valid) begin
         begun <= 1'b1;

@@ -39,8 +39,8 @@ module fv_frame_guard
     .faults({timed_out, start_early, start_missing, row_long, row_short})
   );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   // What should happen in this clock.
   typedef enum logic [1:0] {Idle, Open, Broken, Dropped} state_e;
@@ -78,11 +78,8 @@ module fv_frame_guard
   logic [CountWidth-1:0] waited;  // enabled clocks for which a start has been refused
   logic [1:0] flagged;            // faults flagged in the frame now coming in, or between frames
   logic behind_fault;
-  logic [30+CountWidth:0] out_q;
+  kept #(.Width(30)) u_kept (.clk, .rst, .en, .out({out_valid, out_data, out_position, out_bad}), .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= 31'({out_valid, out_data, out_position, out_bad});
     if (en) begin
       state <= state_next;
       count <= count_next;
@@ -142,8 +139,6 @@ module fv_frame_guard
       frame_end: assert (out_frame_end == (out_valid && left == Whole - One));
       if (out_frame_end) marked: assert (out_bad == (flags_of_frame == 2'd1));
       if (out_frame_end) mark_expected: assert (out_bad == leaves_bad);
-      if (held) holds: assert (out_q == 31'({
-          out_valid, out_data, out_position, out_bad}));
 
       good_after_fault: cover (out_frame_end && !out_bad && behind_fault);
       filled: cover (out_frame_end && out_bad && state == Dropped);

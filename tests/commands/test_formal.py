@@ -46,18 +46,6 @@ def test_the_list_names_every_core() -> None:
     assert {line.split(" | ")[0].removeprefix("| ") for line in listing.splitlines() if line} >= set(CORES)
 
 
-def test_a_proof_without_a_result_is_not_proven(tmp_path: Path) -> None:
-    results = tmp_path / "results.xml"
-    noted = '<properties><property name="status" value="PASS"/><property name="cpu_seconds" value="1.5"/></properties>'
-    results.write_text(
-        f'<testsuites><testsuite><testcase name="test_proof[a-prove]">{noted}</testcase>'
-        '<testcase name="test_proof[a-cover]"/></testsuite></testsuites>'
-    )
-    passed, ended = formal.outcomes_in(results).values()
-    assert passed == formal.Outcome("PASS", 1.5)
-    assert formal.combined({"prove": passed, "cover": ended}) == "cover ERROR"
-
-
 @pytest.mark.parametrize("core", QUICK)
 @pytest.mark.parametrize("mode", formal.MODES)
 def test_holds(core: str, mode: Any) -> None:

@@ -16,7 +16,8 @@ module fv_corner_turn #(
   input logic                   clk,
   input logic                   rst,
   input logic                   en,
-  input logic                   go,
+  input logic [Lanes-1:0]       in_start,
+  input logic                   in_frame_start,
   input logic [Lanes*Width-1:0] in_data,
   input logic                   pick,
   input logic [LaneWidth-1:0]   chosen
@@ -26,21 +27,24 @@ module fv_corner_turn #(
   localparam int Longest = Latency + Columns - 1 + Columns / Lanes;
   localparam int LeftWidth = $clog2(Longest + 1);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic [Lanes-1:0] in_start, frame_start, active;
+  logic allowed, started;
+  logic [Lanes-1:0] active;
   logic [Lanes*PositionWidth-1:0] position;
   logic [Lanes*RowWidth-1:0] row;
-  lane_source #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_source (
-    .clk, .rst, .en, .go, .start(in_start), .frame_start, .active, .position, .row
+  lane_places #(.Columns(Columns), .Lanes(Lanes), .RowWidth(RowWidth)) u_places (
+    .clk, .reset(rst), .en, .start(in_start), .frame_start(in_frame_start), .active, .position, .row
   );
 
   logic out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
   corner_turn #(.Width(Width), .Columns(Columns), .Lanes(Lanes)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start(frame_start[0]), .in_data, .out_start, .out_frame_start, .out_data
+    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
+
+  protocol_corner_turn #(.Columns(Columns), .Lanes(Lanes)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // The word that is present in the chosen lane, and where it shall leave: even samples are in the first half.
   logic [PositionWidth-1:0] place, sample;
@@ -63,12 +67,9 @@ module fv_corner_turn #(
   logic [LaneWidth-1:0] slot;
   logic [Width-1:0] value;
   logic [Latency-1:0] row_ends, first_row_ends, frame_ends;
-  logic [Lanes*Width-1:0] out_data_q;
+  kept #(.Width(Lanes * Width)) u_kept (.clk, .rst(1'b0), .en, .out(out_data), .held);
   assign watched = following & (left == '0);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en;
-    out_data_q <= out_data;
     if (en) begin
       row_ends <= Latency'({row_ends, |last_word});
       first_row_ends <= Latency'({first_row_ends, last_word[0] & (row[RowWidth-1:0] == '0)});
@@ -96,7 +97,6 @@ module fv_corner_turn #(
       row_when_due: assert (out_start == row_ends[Latency-1]);
       frame_start_when_due: assert (out_frame_start == first_row_ends[Latency-1]);
       if (watched) in_place: assert (out_data[slot*Width+:Width] == value);
-      if (held) holds: assert (out_data == out_data_q);
       last_row: cover (frame_ends[Latency-1] && watched && held);
       next_frame: cover (out_frame_start && watched && active[0]);
     end

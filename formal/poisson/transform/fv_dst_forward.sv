@@ -12,12 +12,12 @@ module fv_dst_forward #(
   input logic                    clk,
   input logic                    rst,
   input logic                    en,
-  input logic                    go,
-  input logic                    restart,
+  input logic                    in_start,
+  input logic                    in_frame_start,
   input logic signed [Width-1:0] in_data
 );
 
-  logic in_start, in_frame_start, out_start, out_frame_start;
+  logic out_start, out_frame_start;
   logic signed [Width-1:0] out_data;
   logic [7:0] saturations;
   dst_forward #(
@@ -26,8 +26,13 @@ module fv_dst_forward #(
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
   );
 
-  timed_bursts #(.Columns(Size), .Latency(Latency)) u_bursts (
-    .clk, .rst, .en, .go, .restart, .in_start, .in_frame_start, .out_start, .out_frame_start
+  logic allowed, started;
+  protocol_bursts #(.Columns(Size)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
 
 endmodule

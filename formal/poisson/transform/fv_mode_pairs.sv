@@ -13,8 +13,8 @@ module fv_mode_pairs #(
   input logic             clk,
   input logic             rst,
   input logic             en,
-  input logic             go,
-  input logic             restart,
+  input logic             in_start,
+  input logic             in_frame_start,
   input logic signed [Width-1:0] in_mode,
   input logic             pick
 );
@@ -22,21 +22,17 @@ module fv_mode_pairs #(
   localparam int Latency = Size / 2 + 2;
   localparam int AgeWidth = PositionWidth + 2;
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic in_start, in_frame_start, active, last_row;
+  logic allowed, started, active;
   logic [PositionWidth-1:0] position;
-  logic [1:0] row;
-  burst_source #(.Columns(Size), .Rows(2)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_mode, out_mirrored;
   mode_pairs #(.Width(Width), .Size(Size)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_mode, .out_start, .out_frame_start, .out_mode, .out_mirrored
   );
+  protocol_bursts #(.Columns(Size)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // Position of a mode: its number with the bits reversed; its mirror is Size minus its number.
   function automatic logic [PositionWidth-1:0] reversed(input logic [PositionWidth-1:0] word);
@@ -51,13 +47,10 @@ module fv_mode_pairs #(
   logic [AgeWidth-1:0] age, mirror_age;  // enabled clocks since the word was present; when it shall be beside another
   logic signed [Width-1:0] value;
   logic held;
-  logic [2*Width+1:0] out_q;
   logic done;
   assign done = age >= AgeWidth'(Latency) && (!has_mirror || age >= mirror_age);
+  kept #(.Width(2 * Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_mode, out_mirrored}), .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_start, out_frame_start, out_mode, out_mirrored};
     if (en) begin
       if (!following || done) begin
         following <= pick & active;
@@ -80,7 +73,6 @@ module fv_mode_pairs #(
       if (following && age == AgeWidth'(Latency)) mode_in_place: assert (out_mode == value);
       if (following && has_mirror && age == mirror_age) mirror_in_place: assert (out_mirrored == value);
       if (out_start) mode_0_alone: assert (out_mirrored == '0);
-      if (held) holds: assert ({out_start, out_frame_start, out_mode, out_mirrored} == out_q);
       early_mirror: cover (following && age == mirror_age && mirror_age < AgeWidth'(Latency));
       late_mirror: cover (following && age == mirror_age && mirror_age > AgeWidth'(Latency) && held);
       own_mirror: cover (following && has_mirror && age == AgeWidth'(Latency) && age == mirror_age);

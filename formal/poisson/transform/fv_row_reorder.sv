@@ -14,36 +14,34 @@ module fv_row_reorder #(
   input logic             rst,
   input logic             en,
   input logic             in_valid,
-  input logic             restart,
+  input logic             in_frame_start,
   input logic [Width-1:0] in_data,
   input logic             pick
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic out_start, out_frame_start, in_frame_start;
+  logic allowed, started, out_start, out_frame_start;
   logic [Width-1:0] out_data;
   row_reorder #(.Width(Width), .Columns(Columns), .ToBurst(ToBurst)) dut (
     .clk, .rst, .en, .in_valid, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
 
-  // Place in the row; the first word of all begins a frame.
-  logic framed, of_first_row, of_first_row_q;
+  protocol_words #(.Columns(Columns)) u_protocol (
+    .clk, .rst, .en, .in_valid, .in_frame_start, .out_start, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+
+  // Place in the row.
+  logic of_first_row, of_first_row_q;
   logic [PositionWidth-1:0] position, next_position;
-  assign in_frame_start = in_valid & (restart | ~framed);
   assign position = in_frame_start ? '0 : next_position;
   assign of_first_row = in_frame_start | (of_first_row_q & (position != '0));
   logic row_end;
   assign row_end = in_valid & (position == PositionWidth'(Columns - 1));
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (en && in_valid) begin
-      framed <= 1'b1;
       next_position <= position + PositionWidth'(1);
       of_first_row_q <= of_first_row;
     end
-    if (rst) framed <= 1'b0;
   end
 
   // Makhoul's order: even samples upwards, then odd samples downwards.
@@ -62,12 +60,10 @@ module fv_row_reorder #(
   );
   logic [1:0] first_row_ends;
   logic held;
-  logic [Width-1:0] out_data_q;
+  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out(out_data), .held);
   always_ff @(posedge clk) begin
     if (en) first_row_ends <= {first_row_ends[0], row_end & of_first_row};
     if (rst) first_row_ends <= '0;
-    held <= ~en;
-    out_data_q <= out_data;
   end
 
   always_comb begin
@@ -75,9 +71,8 @@ module fv_row_reorder #(
       burst_when_due: assert (out_start == due);
       frame_start_when_due: assert (out_frame_start == first_row_ends[1]);
       if (watched) in_place: assert (out_data == value);
-      if (held) holds: assert (out_data == out_data_q);
       last_word: cover (watched && place == PositionWidth'(Columns - 1));
-      behind_restart: cover (watched && out_frame_start && restart && in_valid);
+      behind_restart: cover (watched && out_frame_start && in_frame_start);
       back_to_back: cover (due && next_position == '0 && in_valid && held);
     end
   end

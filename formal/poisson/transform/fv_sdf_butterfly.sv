@@ -17,8 +17,8 @@ module fv_sdf_butterfly #(
   input logic                    clk,
   input logic                    rst,
   input logic                    en,
-  input logic                    go,
-  input logic                    restart,
+  input logic                    in_start,
+  input logic                    in_frame_start,
   input logic signed [Width-1:0] in_re,
   input logic signed [Width-1:0] in_im,
   input logic                    pick
@@ -26,16 +26,8 @@ module fv_sdf_butterfly #(
 
   localparam int AgeWidth = $clog2(2 * Delay + 3);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic in_start, in_frame_start, active, last_row;
+  logic allowed, started, active;
   logic [PositionWidth-1:0] position;
-  logic [1:0] row;
-  burst_source #(.Columns(Size), .Rows(2)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_re, out_im;
   logic [1:0] saturations;
@@ -45,6 +37,10 @@ module fv_sdf_butterfly #(
     .clk, .rst, .en, .in_start, .in_frame_start, .in_re, .in_im,
     .out_start, .out_frame_start, .out_re, .out_im, .saturations
   );
+  protocol_bursts #(.Columns(Size)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // A word as it enters the sum: turned by -j or +j in the last quarter of its block.
   logic turned;
@@ -82,11 +78,8 @@ module fv_sdf_butterfly #(
   assign is_a = active & (32'(position) % (2 * Delay) < Delay);
   logic [3:0] clipped_q;
   logic [Delay:0] active_q;
-  logic [2*Width+1:0] out_q;
+  kept #(.Width(2 * Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_re, out_im}), .held);
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_start, out_frame_start, out_re, out_im};
     was_enabled <= en & ~rst;
     if (en) begin
       active_q <= (Delay + 1)'({active_q, active});
@@ -128,7 +121,6 @@ module fv_sdf_butterfly #(
         if (was_enabled) difference_counted: assert (32'(saturations) == 32'(clipped_q[2]) + 32'(clipped_q[3]));
       end
       if (none_leaves) not_counted: assert (saturations == '0);
-      if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
       // A halved sum stays in range; a difference, or a turned word, need not.
       if (following && (age == AgeWidth'(Delay + 2) || age == AgeWidth'(2 * Delay + 2))) begin
         clips: cover (saturations == 2'd2);

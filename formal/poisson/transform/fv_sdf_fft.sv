@@ -13,13 +13,13 @@ module fv_sdf_fft #(
   input logic                    clk,
   input logic                    rst,
   input logic                    en,
-  input logic                    go,
-  input logic                    restart,
+  input logic                    in_start,
+  input logic                    in_frame_start,
   input logic signed [Width-1:0] in_re,
   input logic signed [Width-1:0] in_im
 );
 
-  logic in_start, in_frame_start, out_start, out_frame_start;
+  logic out_start, out_frame_start;
   logic signed [Width-1:0] out_re, out_im;
   logic [6:0] saturations;
   sdf_fft #(.Width(Width), .CoeffWidth(2), .Size(Size), .Inverse(Inverse)) dut (
@@ -27,8 +27,13 @@ module fv_sdf_fft #(
     .out_start, .out_frame_start, .out_re, .out_im, .saturations
   );
 
-  timed_bursts #(.Columns(Size), .Latency(Latency)) u_bursts (
-    .clk, .rst, .en, .go, .restart, .in_start, .in_frame_start, .out_start, .out_frame_start
+  logic allowed, started;
+  protocol_bursts #(.Columns(Size)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
 
 endmodule

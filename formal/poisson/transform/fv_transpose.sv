@@ -15,28 +15,24 @@ module fv_transpose #(
   input logic             clk,
   input logic             rst,
   input logic             en,
-  input logic             go,
-  input logic             restart,
+  input logic             in_start,
+  input logic             in_frame_start,
   input logic [Width-1:0] in_data,
   input logic             pick
 );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-  always_ff @(posedge clk) started <= 1'b1;
-
-  logic in_start, in_frame_start, active, last_row;
+  logic allowed, started, active, last_row;
   logic [IndexWidth-1:0] position;
   logic [$clog2(Columns+1)-1:0] row;
-  burst_source #(.Columns(Columns), .Rows(Columns)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
   logic out_start, out_frame_start;
   logic [Width-1:0] out_data;
   transpose #(.Width(Width), .Columns(Columns), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (
     .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
   );
+  protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // Makhoul's order: even samples upwards, then odd samples downwards.
   function automatic logic [IndexWidth-1:0] place_of_sample(input logic [IndexWidth-1:0] n);
@@ -57,18 +53,13 @@ module fv_transpose #(
     .in_place({column, row_place}), .in_data, .close(in_start & last_row), .due, .present, .place, .watched, .value
   );
   logic held;
-  logic [Width-1:0] out_data_q;
-  always_ff @(posedge clk) begin
-    held <= ~en;
-    out_data_q <= out_data;
-  end
+  kept #(.Width(Width)) u_kept (.clk, .rst(1'b0), .en, .out(out_data), .held);
 
   always_comb begin
     if (started) begin
       frame_when_due: assert (out_frame_start == due);
       column_when_due: assert (out_start == (present && place[IndexWidth-1:0] == '0));
       if (watched) in_place: assert (out_data == value);
-      if (held) holds: assert (out_data == out_data_q);
       last_word: cover (watched && place == '1);
       last_word_behind_next: cover (watched && place == '1 && active && held);
     end

@@ -14,8 +14,8 @@ module fv_twiddle_multiply #(
   input logic clk,
   input logic rst,
   input logic en,
-  input logic go,
-  input logic restart,
+  input logic in_start,
+  input logic in_frame_start,
   input logic turned,
   input logic pick
 );
@@ -24,16 +24,8 @@ module fv_twiddle_multiply #(
   localparam int CoeffWidth = 5;
   localparam int OutWidth = 8;
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
-
-  logic in_start, in_frame_start, active, last_row;
+  logic allowed, started, active;
   logic [PositionWidth-1:0] position;
-  logic [1:0] row;
-  burst_source #(.Columns(Size), .Rows(2)) u_source (
-    .clk, .rst, .en, .go, .restart, .start(in_start), .frame_start(in_frame_start), .active, .position, .row, .last_row
-  );
-
   logic out_start, out_frame_start;
   logic signed [OutWidth-1:0] out_re, out_im;
   logic [1:0] saturations;
@@ -44,42 +36,32 @@ module fv_twiddle_multiply #(
     .clk, .rst, .en, .in_start, .in_frame_start, .in_re(turned ? 2'd0 : 2'd1), .in_im(turned ? 2'd1 : 2'd0),
     .out_start, .out_frame_start, .out_re, .out_im, .saturations
   );
+  protocol_bursts #(.Columns(Size)) u_protocol (
+    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [3*CoeffWidth-1:0] factors[Block];
   initial $readmemh("factors.hex", factors);
   logic signed [CoeffWidth-1:0] w_re, w_im, w_minus_im;
   assign {w_minus_im, w_im, w_re} = factors[32'(position) % Block];
 
-  logic following, held;
-  logic [2:0] age;
-  logic signed [OutWidth-1:0] re, im;
-  logic [2*OutWidth+1:0] out_q;
-  always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_start, out_frame_start, out_re, out_im};
-    if (en) begin
-      if (!following || age == 3'(Latency)) begin
-        following <= pick & active;
-        age <= 3'd1;
-        re <= turned ? OutWidth'(w_minus_im) : OutWidth'(w_re);
-        im <= RealOnly != 0 ? '0 : turned ? OutWidth'(w_re) : OutWidth'(w_im);
-      end else begin
-        age <= age + 3'd1;
-      end
-    end
-    if (rst) following <= 1'b0;
-  end
-
+  logic due, held;
+  logic signed [OutWidth-1:0] re, im, factor_re, factor_im;
+  assign factor_re = turned ? OutWidth'(w_minus_im) : OutWidth'(w_re);
+  assign factor_im = RealOnly != 0 ? '0 : turned ? OutWidth'(w_re) : OutWidth'(w_im);
+  follow_delay #(.Width(2 * OutWidth), .Latency(Latency)) u_follow (
+    .clk, .rst, .en, .pick(pick & active), .in({factor_re, factor_im}), .due, .word({re, im})
+  );
+  kept #(.Width(2 * OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_re, out_im}), .held);
   burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
   );
   always_comb begin
     if (started) begin
-      if (following && age == 3'(Latency)) own_factor: assert (out_re == re && out_im == im);
-      if (held) holds: assert ({out_start, out_frame_start, out_re, out_im} == out_q);
+      if (due) own_factor: assert (out_re == re && out_im == im);
       none_clipped: assert (saturations == '0);
-      last_word: cover (following && age == 3'(Latency) && held
+      last_word: cover (due && held
           && re == OutWidth'($signed(factors[Block-1][CoeffWidth-1:0])));
     end
   end

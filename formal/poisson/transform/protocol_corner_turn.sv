@@ -3,7 +3,7 @@
 // before.
 //
 // A frame begins with in_frame_start in lane 0, when no row of the frame before is coming in; after a reset none has
-// begun. It ends with the first step in which no row begins. Inputs stay while en is low.
+// begun. It ends with the first step in which no row begins.
 
 `default_nettype none
 
@@ -25,8 +25,8 @@ module protocol_corner_turn #(
 
   localparam int Step = Columns / Lanes;
 
-  logic reset, live = 1'b0, still = 1'b0, running = 1'b0, due, allowed, frame_start_before;
-  logic [Lanes-1:0] next_lane = '0, start_before;
+  logic reset, live = 1'b0, running = 1'b0, due, allowed;
+  logic [Lanes-1:0] next_lane = '0;
   logic [15:0] step_left = '0, in_left = '0, out_left = '0;
   assign reset = rst | ~holds;
   assign due = running & step_left == '0;
@@ -35,17 +35,13 @@ module protocol_corner_turn #(
     if (in_frame_start) allowed = in_start == Lanes'(1) & in_left == '0;
     else if (due) allowed = in_start == '0 | in_start == next_lane;
   end
-  assign holds = allowed & (~in_frame_start | in_start[0])
-      & (~still | rst | (in_start == start_before & in_frame_start == frame_start_before));
+  assign holds = allowed & (~in_frame_start | in_start[0]);
   assign counts_out_start = live & ~reset & en;
   assign counts_out_frame_start = counts_out_start;
   assign counts = counts_out_start & (out_start | out_left != '0);
 
   always_ff @(posedge clk) begin
     live <= live | reset;
-    still <= ~en & ~reset;
-    start_before <= in_start;
-    frame_start_before <= in_frame_start;
     if (en) begin
       if (in_start != '0) begin
         running <= 1'b1;
