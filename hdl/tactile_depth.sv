@@ -65,13 +65,15 @@ module tactile_depth
   output logic [31:0]             s_axil_rdata,
   output logic [1:0]              s_axil_rresp,
   output logic                    s_axil_rvalid,
-  input  wire                     s_axil_rready
+  input  wire                     s_axil_rready,
+  output register_command_t       register_command,  // to the registers of camera_unit
+  input  wire register_answer_t   register_answer    // ignored without a camera in Config
 );
 
   logic en;  // the whole pipeline moves, or none of it: low while the output is full
   events_t events;
   levels_t levels;
-  logic [31:0] timeout, now, frame_time;
+  logic [31:0] timeout, now, frame_time, depth_time, first_depth_latency;
   logic video_busy, pixel_valid, pixel_frame_start, pixel_frame_end, pixel_bad;
   logic [23:0] pixel_data;
   position_t pixel_position;
@@ -110,7 +112,6 @@ module tactile_depth
   logic out_of_step, depth_busy, depth_valid;
   depth_position_t depth_position;
   logic [Lanes*DataWidth-1:0] depth_data;
-  logic [31:0] depth_time;
   depth_unit #(.TableFolder(TableFolder), .Config(Config)) u_depth (
     .clk, .rst, .en, .table_command, .table_answer(zero_answer), .table_bank, .table_in_use(zero_in_use),
     .capture_command(zero_command), .capture_status(zero_status), .saturations(depth_saturations), .out_of_step,
@@ -120,7 +121,6 @@ module tactile_depth
 
   contact_settings_t contact_settings;
   logic first_depth_latency_valid;
-  logic [31:0] first_depth_latency;
   logic [32*RecordWords-1:0] record;
   contact_unit #(.Config(Config)) u_contact (
     .clk, .rst, .en, .settings(contact_settings), .now, .frame_leaves(events.frame_out),
@@ -142,7 +142,7 @@ module tactile_depth
     .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
     .dark_level, .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer),
     .table_bank, .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command,
-    .zero_status
+    .zero_status, .register_command, .register_answer
   );
 
 endmodule

@@ -19,7 +19,7 @@ package td_config_pkg;
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1248;
+  localparam int ConfigBits = 1664;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -59,9 +59,35 @@ package td_config_pkg;
   localparam int MeanReciprocalField = 36;
   localparam int MeanDropField = 37;
   localparam int WordsPerRowField = 38;
+  localparam int CameraField = 39;
+  localparam int CameraNumeratorField = 40;
+  localparam int CameraDenominatorField = 41;
+  localparam int CameraFormatField = 42;
+  localparam int CameraPhaseField = 43;
+  localparam int CameraPictureColumnsField = 44;
+  localparam int CameraPictureRowsField = 45;
+  localparam int CameraWindowXField = 46;
+  localparam int CameraWindowYField = 47;
+  localparam int CameraBlackLevelField = 48;
+  localparam int CameraRedGainField = 49;
+  localparam int CameraGreenGainField = 50;
+  localparam int CameraBlueGainField = 51;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
+    32'd4096,  // CameraBlueGain
+    32'd4096,  // CameraGreenGain
+    32'd4096,  // CameraRedGain
+    32'd0,  // CameraBlackLevel
+    32'd0,  // CameraWindowY
+    32'd80,  // CameraWindowX
+    32'd480,  // CameraPictureRows
+    32'd640,  // CameraPictureColumns
+    32'd0,  // CameraPhase
+    32'd6,  // CameraFormat
+    32'd4,  // CameraDenominator
+    32'd15,  // CameraNumerator
+    32'd0,  // Camera
     32'd1,  // WordsPerRow
     32'd16,  // MeanDrop
     32'd65536,  // MeanReciprocal

@@ -17,8 +17,8 @@
 //   f fault clock  the guard flags a fault, by the number of its name in models/tactile_depth/video/frame_guard.py
 //   r clock codes  a reset begins; codes written so far
 // A side-band signal out of place, a word that changes before it is taken, an unknown one: the run ends with an error.
-// Registers are reached through the AXI4-Lite ports. tactile_depth_bench is a wrapper that commands/hardware/wrapper.py
-// writes for each configuration. Simulation only.
+// Registers are reached through the AXI4-Lite ports. tactile_depth_bench, and with Camera 1 tactile_sensor_bench, is a
+// wrapper that commands/common/wrapper.py writes for each configuration. Simulation only.
 
 `default_nettype none
 
@@ -28,7 +28,8 @@ module frame_bench
   parameter int Rows      = 128,  // of the wrapper
   parameter int Columns   = 128,
   parameter int DataWidth = 24,
-  parameter int Lanes     = 1
+  parameter int Lanes     = 1,
+  parameter int Camera    = 0
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -67,19 +68,37 @@ module frame_bench
   logic [Lanes*DepthWidth-1:0] m_axis_tdata;
   logic m_axis_tvalid, m_axis_tready, m_axis_tlast, m_axis_tuser;
   logic contact, resetting;
+  logic [4:0] flagged;
   logic [31:0] m_event_tdata;  // records are seen in the testbench of the top
   logic m_event_tvalid, m_event_tlast, unused_events, unused_irq;
   assign unused_events = ^{m_event_tdata, m_event_tvalid, m_event_tlast};
 
-  tactile_depth_bench dut (
-    .clk, .rst(rst | resetting), .cold_rst(1'b0),
-    .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(unused_irq),
-    .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
-    .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
-    .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arprot('0), .s_axil_arvalid,
-    .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready
-  );
+  if (Camera != 0) begin : g_camera
+    logic unused_restart;
+    tactile_sensor_bench dut (
+      .clk, .rst(rst | resetting), .cold_rst(1'b0),
+      .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
+      .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(unused_irq),
+      .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
+      .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb,
+      .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
+      .s_axil_arprot('0), .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
+      .frames_lost('0), .setup_restart(unused_restart), .setup_done('0), .setup_failed('0), .setup_entry('0),
+      .setup_found('0)
+    );
+    assign flagged = dut.u_sensor.u_pipeline.u_video.faults;
+  end else begin : g_grid
+    tactile_depth_bench dut (
+      .clk, .rst(rst | resetting), .cold_rst(1'b0),
+      .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
+      .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast, .m_axis_tuser, .contact, .irq(unused_irq),
+      .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
+      .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb,
+      .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
+      .s_axil_arprot('0), .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready
+    );
+    assign flagged = dut.u_pipeline.u_video.faults;
+  end
 
   // Marsaglia's xorshift, one step a clock for each side.
   function automatic logic [31:0] xorshift(input logic [31:0] x);
@@ -101,7 +120,6 @@ module frame_bench
   logic below;        // no depth above the level has left since the frame began
   logic refused;
   logic started;  // a reset was seen: what registers come up with, in the first clock, is nobody's fault
-  logic [4:0] flagged;
   logic [Lanes*DepthWidth+1:0] leaving, held;
   integer entries_file, depth_file, events_file, bytes;
 
@@ -174,7 +192,6 @@ module frame_bench
 
   assign offers = accepts(source, source_place, random_gap);
   assign withdraw = deadline == 32'd1;
-  assign flagged = dut.u_pipeline.events.faults;
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
     assign depths[lane] = 32'($signed(m_axis_tdata[lane*DepthWidth+:DepthWidth]));
     assign above[lane] = depths[lane] > level;

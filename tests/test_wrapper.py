@@ -32,7 +32,7 @@ def test_the_package_has_the_default_configuration() -> None:
 
 
 def test_a_wrapper_has_every_port_of_the_top_and_every_field() -> None:
-    declared, names = wrapper.ports()
+    declared, names = wrapper.ports("tactile_depth")
     parameters = top_parameters(Configuration(**CONFIGURATIONS["left"]))
     text = wrapper.wrapper("left", parameters)
     assert declared in text
@@ -98,15 +98,16 @@ def test_the_zero_offset_is_in_its_table(tmp_path: Path) -> None:
     assert (tmp_path / "zero_0.hex").read_text() == (tmp_path / "direct" / "zero_0.hex").read_text()
 
 
-def test_with_a_camera_the_module_has_the_front_end_inside(tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", [("CAMERA=raw10_lsb", "BAYER=grbg"), ("CAMERA=yuyv_bytes",)], ids=lambda form: form[0])
+def test_with_a_camera_the_module_is_a_tactile_sensor(tmp_path: Path, form: tuple[str, ...]) -> None:
     """Elaborate the module in Icarus, which refuses an unknown port or parameter."""
-    choices = ("PRESET=published", "N=64", "SOLVER=tridiagonal", "CAMERA=raw10", "BAYER=grbg")
+    choices = ("PRESET=published", "N=64", "SOLVER=tridiagonal", *form)
     assert command("NAME=finger", f"OUT={tmp_path}", *choices)[0] == 0
-    path = tmp_path / "tactile_depth_finger.sv"
-    assert "camera_front_end #(" in path.read_text()
+    path = tmp_path / "tactile_sensor_finger.sv"
+    assert "frames_lost" in path.read_text()
     files, build = [*repository.sources(), path], tmp_path / "build"
     build.mkdir()
-    simulation.build("icarus", "tactile_depth_finger", files, {}, build, log=build / "build.log")
+    simulation.build("icarus", "tactile_sensor_finger", files, {}, build, log=build / "build.log")
 
 
 @pytest.mark.parametrize(

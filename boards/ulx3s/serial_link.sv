@@ -3,7 +3,7 @@
 //
 // Packets, both ways, are framed as in RFC 1055 (SLIP): End (C0) closes a packet and may stand before one too; within,
 // C0 is sent as DB DC and DB as DB DD. The first byte in says what follows, words have their low byte first:
-//   1  a frame: red, green, blue of each pixel, raster order      2  a register write: address, word of 32 bits
+//   1  a frame: red, green, blue of each pixel, raster order      2  a register write: address / 4, word of 32 bits
 // Out: each packet of words on s_event as one packet of bytes. After a reset `threshold` is written to THRESHOLD and
 // OFF_THRESHOLD by itself. What is neither is dropped up to the next End, and so is what follows a broken byte; a frame
 // that lacks bytes leaves as it is, and frame_guard drops it. Pixels wait here while the guard fills such a one up.
@@ -137,7 +137,7 @@ module serial_link
   localparam logic [2:0] WriteBytes = 3'd5;
   logic [1:0] initial_writes;  // done
   logic [2:0] count;
-  logic [39:0] write;  // word, address
+  logic [39:0] write;  // word, address / 4
   logic idle, starting;
   assign idle = ~m_axil_awvalid & ~m_axil_wvalid;
   assign starting = initial_writes != 2'd2;
@@ -159,7 +159,7 @@ module serial_link
         m_axil_wdata <= threshold;
         initial_writes <= initial_writes + 2'd1;
       end else begin
-        m_axil_awaddr <= AddressWidth'(write[7:0]);
+        m_axil_awaddr <= AddressWidth'({write[7:0], 2'b00});
         m_axil_wdata <= write[39:8];
       end
     end

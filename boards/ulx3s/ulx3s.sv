@@ -28,7 +28,7 @@ module ulx3s #(
   logic clk, locked;
   ulx3s_clock #(.ClockMhz(ClockMhz)) u_clock (.clk_25mhz, .clk, .locked);
 
-  logic contact, recorded, unused_ready, unused_rst, unused_irq;
+  logic contact, recorded, unused_ready, unused_rst, unused_irq, unused_restart;
   assign led = {locked, 5'd0, recorded, contact};
   ulx3s_system #(
     .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
@@ -36,6 +36,8 @@ module ulx3s #(
   ) u_system (
     .clk, .ready(locked & ~btn[1]), .rst(unused_rst), .ftdi_txd, .ftdi_rxd,
     .s_axis_tdata(24'd0), .s_axis_tvalid(1'b0), .s_axis_tready(unused_ready), .s_axis_tlast(1'b0), .s_axis_tuser(1'b0),
+    .frames_lost(8'd0), .setup_restart(unused_restart), .setup_done(1'b0), .setup_failed(1'b0), .setup_entry(8'd0),
+    .setup_found(8'd0),
     .contact, .recorded, .irq(unused_irq)
   );
 

@@ -2,9 +2,9 @@
 // ulx3s_camera: tactile_depth on the ULX3S board behind a parallel camera (DVP): records of contacts over the serial
 // port, registers written over it.
 //
-//   camera -> dvp_receive -> camera_front_end -> tactile_depth -> serial line (ulx3s_system)
+//   camera -> dvp_receive -> tactile_sensor -> serial line (ulx3s_system)
 //
-// The wrapper tactile_depth_ulx3s has the front end inside, for single bytes. After a reset camera_setup brings up the
+// The wrapper tactile_sensor_ulx3s has the front end inside, and its registers. After a reset camera_setup brings up the
 // camera, with the list camera.hex of models/tactile_depth/camera/register_lists.py. A picture that is malformed, or
 // cut short because its bytes found no room, is dropped whole and counted in FRAMES_DROPPED.
 // led[0]: contact; led[1] changes with every record; led[2]: the camera is set up; led[3]: it did not answer as it
@@ -53,16 +53,15 @@ module ulx3s_camera #(
   logic clk, locked, rst;
   ulx3s_clock #(.ClockMhz(ClockMhz)) u_clock (.clk_25mhz, .clk, .locked);
 
-  logic set_up, failed, sio_d_low, unused_setup;
+  logic set_up, failed, restart, sio_d_low;
   logic [$clog2(Entries)-1:0] entry;
   logic [7:0] found;
   assign camera_sio_d = sio_d_low ? 1'b0 : 1'bz;
-  assign unused_setup = ^{entry, found};
   camera_setup #(
     .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
     .MillisecondClocks(MillisecondClocks), .XclkHalfClocks(XclkHalfClocks)
   ) u_setup (
-    .clk, .rst, .restart(1'b0), .xclk(camera_xclk), .power_down(camera_power_down), .reset_n(camera_reset_n),
+    .clk, .rst, .restart, .xclk(camera_xclk), .power_down(camera_power_down), .reset_n(camera_reset_n),
     .sio_c(camera_sio_c), .sio_d_low, .sio_d(camera_sio_d), .done(set_up), .failed, .entry, .found
   );
 
@@ -82,8 +81,8 @@ module ulx3s_camera #(
   ) u_system (
     .clk, .ready(locked & ~btn[1]), .rst, .ftdi_txd, .ftdi_rxd,
     .s_axis_tdata({16'd0, byte_tdata}), .s_axis_tvalid(byte_tvalid), .s_axis_tready(byte_tready),
-    .s_axis_tlast(byte_tlast), .s_axis_tuser(byte_tuser),
-    .contact, .recorded, .irq
+    .s_axis_tlast(byte_tlast), .s_axis_tuser(byte_tuser), .frames_lost, .setup_restart(restart), .setup_done(set_up),
+    .setup_failed(failed), .setup_entry(8'(entry)), .setup_found(found), .contact, .recorded, .irq
   );
   always_ff @(posedge clk) begin
     if (frames_lost != '0) lost <= ~lost;

@@ -5,7 +5,8 @@
 //
 // Packets: serial_link.sv. With Camera 0 frames come from the serial line; with Camera 1 they come on s_axis, and those
 // on the line are dropped. Depth leaves the pipeline at full rate and is not sent; its record is. recorded changes with
-// every record. tactile_depth_ulx3s is a wrapper; `make fpga` writes it for a configuration. Threshold is a depth code.
+// every record. tactile_depth_ulx3s, with Camera tactile_sensor_ulx3s, is a wrapper, which `make fpga` writes for a
+// configuration. Threshold is a depth code.
 // Model: models/tactile_depth/boards/serial_link.py around models/tactile_depth/tactile_depth.py.
 
 `default_nettype none
@@ -32,6 +33,12 @@ module ulx3s_system
   output logic        s_axis_tready,
   input  wire         s_axis_tlast,
   input  wire         s_axis_tuser,
+  input  wire   [7:0] frames_lost,    // of dvp_receive
+  output logic        setup_restart,  // of camera_setup
+  input  wire         setup_done,
+  input  wire         setup_failed,
+  input  wire   [7:0] setup_entry,
+  input  wire   [7:0] setup_found,
   output logic        contact,
   output logic        recorded,
   output logic        irq
@@ -53,22 +60,8 @@ module ulx3s_system
     .clk, .rst, .in_valid(reply_valid), .in_ready(reply_ready), .in_data(reply_data), .line(ftdi_rxd)
   );
 
-  logic [23:0] sent_tdata, pixel_tdata;
-  logic sent_tvalid, sent_tready, sent_tlast, sent_tuser, pixel_tvalid, pixel_tready, pixel_tlast, pixel_tuser;
-  if (Camera != 0) begin : g_camera
-    assign {pixel_tdata, pixel_tvalid, pixel_tlast, pixel_tuser} =
-      {s_axis_tdata, s_axis_tvalid, s_axis_tlast, s_axis_tuser};
-    assign s_axis_tready = pixel_tready;
-    assign sent_tready = 1'b1;
-    logic unused_sent;
-    assign unused_sent = ^{sent_tdata, sent_tvalid, sent_tlast, sent_tuser};
-  end else begin : g_serial
-    assign {pixel_tdata, pixel_tvalid, pixel_tlast, pixel_tuser} = {sent_tdata, sent_tvalid, sent_tlast, sent_tuser};
-    assign sent_tready = pixel_tready;
-    assign s_axis_tready = 1'b0;
-    logic unused_camera;
-    assign unused_camera = ^{s_axis_tdata, s_axis_tvalid, s_axis_tlast, s_axis_tuser};
-  end
+  logic [23:0] sent_tdata;
+  logic sent_tvalid, sent_tready, sent_tlast, sent_tuser;
   logic [31:0] event_tdata;
   logic event_tvalid, event_tready, event_tlast;
   logic [AddressWidth-1:0] awaddr, araddr;
@@ -92,21 +85,47 @@ module ulx3s_system
   logic [1:0] bresp, rresp;
   logic bvalid, arready, rvalid;
   logic [31:0] rdata;
-  tactile_depth_ulx3s u_depth (
-    .clk, .rst, .cold_rst(1'b0),
-    .s_axis_tdata(pixel_tdata), .s_axis_tvalid(pixel_tvalid), .s_axis_tready(pixel_tready),
-    .s_axis_tlast(pixel_tlast), .s_axis_tuser(pixel_tuser),
-    .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
-    .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
-    .contact, .irq,
-    .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
-    .m_event_tlast(event_tlast),
-    .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
-    .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
-    .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
-    .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
-    .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1)
-  );
+  if (Camera != 0) begin : g_camera
+    tactile_sensor_ulx3s u_sensor (
+      .clk, .rst, .cold_rst(1'b0),
+      .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
+      .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
+      .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
+      .contact, .irq,
+      .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
+      .m_event_tlast(event_tlast),
+      .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
+      .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
+      .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
+      .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
+      .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1),
+      .frames_lost, .setup_restart, .setup_done, .setup_failed, .setup_entry, .setup_found
+    );
+    assign sent_tready = 1'b1;
+    logic unused_sent;
+    assign unused_sent = ^{sent_tdata, sent_tvalid, sent_tlast, sent_tuser};
+  end else begin : g_serial
+    tactile_depth_ulx3s u_depth (
+      .clk, .rst, .cold_rst(1'b0),
+      .s_axis_tdata(sent_tdata), .s_axis_tvalid(sent_tvalid), .s_axis_tready(sent_tready),
+      .s_axis_tlast(sent_tlast), .s_axis_tuser(sent_tuser),
+      .m_axis_tdata(depth_tdata), .m_axis_tvalid(depth_tvalid), .m_axis_tready(1'b1),
+      .m_axis_tlast(depth_tlast), .m_axis_tuser(depth_tuser),
+      .contact, .irq,
+      .m_event_tdata(event_tdata), .m_event_tvalid(event_tvalid), .m_event_tready(event_tready),
+      .m_event_tlast(event_tlast),
+      .s_axil_awaddr(awaddr), .s_axil_awprot(3'd0), .s_axil_awvalid(awvalid), .s_axil_awready(awready),
+      .s_axil_wdata(wdata), .s_axil_wstrb(4'hF), .s_axil_wvalid(wvalid), .s_axil_wready(wready),
+      .s_axil_bresp(bresp), .s_axil_bvalid(bvalid), .s_axil_bready(1'b1),
+      .s_axil_araddr(araddr), .s_axil_arprot(3'd0), .s_axil_arvalid(1'b0), .s_axil_arready(arready),
+      .s_axil_rdata(rdata), .s_axil_rresp(rresp), .s_axil_rvalid(rvalid), .s_axil_rready(1'b1)
+    );
+    assign s_axis_tready = 1'b0;
+    assign setup_restart = 1'b0;
+    logic unused_camera;
+    assign unused_camera = ^{s_axis_tdata, s_axis_tvalid, s_axis_tlast, s_axis_tuser, frames_lost, setup_done,
+      setup_failed, setup_entry, setup_found};
+  end
 
   always_ff @(posedge clk) begin
     if (event_tvalid && event_tready && event_tlast) recorded <= ~recorded;

@@ -68,7 +68,7 @@ def cores() -> Mapping[str, Core]:
 
 
 def units() -> list[str]:
-    """Return the units of the top, tested through it: `<folder>_unit` in each folder of hdl/ that has one."""
+    """Return the units of the tops, tested through them: `<folder>_unit` in each folder of hdl/ that has one."""
     return [core.name for core in cores().values() if core.name == f"{core.block}_unit"]
 
 
@@ -82,8 +82,9 @@ def chosen(names: str) -> list[str]:
 
 
 def tested(names: Sequence[str]) -> list[str]:
-    """Return the cores whose testbenches test the cores with these names: a unit is tested through the top."""
-    return list(dict.fromkeys("tactile_depth" if name in units() else name for name in names))
+    """Return the cores whose testbenches test the cores with these names: a unit is tested through its top."""
+    tops = dict.fromkeys(units(), "tactile_depth") | {"camera_unit": "tactile_sensor"}
+    return list(dict.fromkeys(tops.get(name, name) for name in names))
 
 
 def sources(top: str | None = None) -> list[Path]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrappers of hdl/tactile_depth.sv with a configuration inside, and the package of the configuration."""
+"""Wrappers of the tops with a configuration inside, and the package of the configuration."""
 
 import os
 import re
@@ -7,21 +7,25 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from commands.common import repository
-from tactile_depth.camera.camera_front_end import SETTINGS, camera_front_end_parameters, camera_settings
-from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.tactile_depth import CONSTANTS, default_parameters
 
-TOP = repository.HDL / "tactile_depth.sv"
 DEFAULTS = repository.HDL / "td_config_pkg.sv"
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 NAMES = "accepted are small letters, digits and _, beginning with a letter"
 
 
-def ports() -> tuple[str, list[str]]:
-    """Return the port declarations of hdl/tactile_depth.sv, and the names of its ports."""
-    header = re.search(r"^\) \(\n(.*?)^\);\n", TOP.read_text(), re.DOTALL | re.MULTILINE)
+def top_of(parameters: Mapping[str, int]) -> str:
+    """Return the top of hdl/ for the fields of a configuration."""
+    return "tactile_sensor" if parameters["Camera"] else "tactile_depth"
+
+
+def ports(top: str) -> tuple[str, list[str]]:
+    """Return the declarations of the ports of a top in hdl/, and their names; those between the two tops are left
+    out."""
+    text = (repository.HDL / f"{top}.sv").read_text()
+    header = re.search(r"^\) \(\n(.*?)(,\n  output register_command_t.*?)?\n\);\n", text, re.DOTALL | re.MULTILINE)
     assert header is not None
-    declared = header.group(1)
+    declared = f"{header.group(1)}\n"
     return declared, re.findall(r"(\w+),?(?: *//.*)?$", declared, re.MULTILINE)
 
 
@@ -67,28 +71,27 @@ endpackage
 """
 
 
-def wrapper(
-    name: str, parameters: Mapping[str, int], tables: str = "./", camera: CameraConfiguration | None = None
-) -> str:
-    """Return the text of the module tactile_depth_<name>, which finds its table files in the folder `tables`.
+def wrapper(name: str, parameters: Mapping[str, int], tables: str = "./") -> str:
+    """Return the text of the module <top>_<name>, which finds its table files in the folder `tables`.
 
-    With a `camera` its s_axis takes the stream of that camera.
+    The top is tactile_sensor for a configuration with a camera, whose words its s_axis takes, otherwise tactile_depth.
     """
-    declared, names = ports()
+    top = top_of(parameters)
+    declared, names = ports(top)
     fields = "".join(
         f"    configuration[32*{field}Field+:32] = {literal(number)};\n" for field, number in parameters.items()
     )
     connected = ", ".join(f".{port}" for port in names)
-    if camera is not None:
-        connected = connected.replace(", .s_axis_", ",\n    .s_axis_", 1)
-        for port in (name for name in names if name.startswith("s_axis_")):
-            connected = connected.replace(f".{port}", f".{port}({port.replace('s_axis', 'grid')})")
+    without = "" if parameters["Camera"] else "  register_command_t unused_command;\n"
+    if without:
+        connected += ", .register_command(unused_command), .register_answer('0)"
+    instance = "u_sensor" if parameters["Camera"] else "u_pipeline"
     depth_bytes = parameters["Lanes"] * -(-parameters["DataWidth"] // 8)
-    return f"""// tactile_depth_{name}: tactile_depth with one configuration. Generated: do not edit.
+    return f"""// {top}_{name}: {top} with one configuration. Generated: do not edit.
 
 `default_nettype none
 
-module tactile_depth_{name}
+module {top}_{name}
   import td_config_pkg::*;
   import td_register_map_pkg::*;
   import td_types_pkg::*;
@@ -101,8 +104,8 @@ module tactile_depth_{name}
   function automatic logic [ConfigBits-1:0] configuration();
 {fields}  endfunction
   localparam logic [ConfigBits-1:0] Config = configuration();
-{"" if camera is None else front_end(camera)}
-  tactile_depth #(.TableFolder(TableFolder), .Config(Config)) u_pipeline (
+{without}
+  {top} #(.TableFolder(TableFolder), .Config(Config)) {instance} (
     {connected}
   );
 
@@ -112,37 +115,9 @@ endmodule
 """
 
 
-def front_end(camera: CameraConfiguration) -> str:
-    """Return the instance of camera_front_end between s_axis and the signals grid_*."""
-    inside = ",\n".join(f"    .{name}({value})" for name, value in camera_front_end_parameters(camera).items())
-    settings = camera_settings(camera)
-    values = ", ".join(f"{width}'d{settings[name]}" for name, width in SETTINGS.items())
-    return f"""
-  logic [23:0] grid_tdata;
-  logic grid_tvalid, grid_tready, grid_tlast, grid_tuser;
-  camera_settings_t camera_settings;
-  camera_faults_t unused_faults;
-  assign camera_settings = {{{values}}};
-  camera_front_end #(
-{inside}
-  ) u_camera (
-    .clk, .rst, .settings(camera_settings), .faults(unused_faults),
-    .s_axis_tdata, .s_axis_tvalid, .s_axis_tready, .s_axis_tlast, .s_axis_tuser,
-    .m_axis_tdata(grid_tdata), .m_axis_tvalid(grid_tvalid), .m_axis_tready(grid_tready), .m_axis_tlast(grid_tlast),
-    .m_axis_tuser(grid_tuser)
-  );
-"""
-
-
-def write(
-    folder: Path,
-    name: str,
-    parameters: Mapping[str, int],
-    tables: str = "./",
-    camera: CameraConfiguration | None = None,
-) -> Path:
+def write(folder: Path, name: str, parameters: Mapping[str, int], tables: str = "./") -> Path:
     """Write the wrapper into a folder, and return its path; an equal file is left as it is."""
-    path, text = folder / f"tactile_depth_{name}.sv", wrapper(name, parameters, tables, camera)
+    path, text = folder / f"{top_of(parameters)}_{name}.sv", wrapper(name, parameters, tables)
     folder.mkdir(parents=True, exist_ok=True)
     if not path.is_file() or path.read_text() != text:
         draft = path.with_suffix(f".{os.getpid()}")

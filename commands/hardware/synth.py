@@ -33,7 +33,6 @@ from commands.common.signals import threads
 from commands.hardware import synthesis, yosys
 from commands.hardware.fpga_memory import BLOCKS_PER_ULTRA, TOP, Memory, memories, path_of
 from tactile_depth import files
-from tactile_depth.camera.camera_front_end import camera_front_end_parameters
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
@@ -45,7 +44,7 @@ OUT = repository.ROOT / "build" / "synth"
 TIMEOUT_S = 3600
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
-FRONT_END, FRONT_END_PATH = "camera_front_end", "u_camera"
+CAMERA_UNIT, CAMERA_PATH = "camera_unit", "u_camera"
 CONFIGURING = (
     *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
     *("DEPTH_RANGE", "REFERENCE", "ZERO"),
@@ -182,9 +181,9 @@ def elaborate(
     """Return the lines of Yosys that read a design, and all its modules, <core>$<path>.
 
     Sources and ROMs are written to the folder; <folder>/design.json holds the memories. With a `camera` the design is
-    its front end alone. Raises RuntimeError.
+    its camera_unit alone. Raises RuntimeError.
     """
-    top, parameters = (TOP, None) if camera is None else (FRONT_END, camera_front_end_parameters(camera))
+    top, parameters = (TOP, None) if camera is None else (CAMERA_UNIT, hdl_parameters(config, camera=camera))
     options = "--keep-hierarchy"
     lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, options=options)
     script = folder / "elaborate.ys"
@@ -274,16 +273,16 @@ def counted(
     return counts | {f"mapped {name}": counts[name] for name in plain} | plain
 
 
-def front_end(
+def camera_unit(
     config: Configuration, calibration: Sensor, camera: CameraConfiguration, folder: Path
 ) -> tuple[Core, list[Memory]]:
-    """Return the resources of a camera front end, and its memories. Raises RuntimeError."""
+    """Return the resources of a camera_unit, and its memories. Raises RuntimeError."""
     lines, modules = elaborate(config, calibration, folder, camera)
     arrays = memories(folder / "design.json")
-    device, logic = mapped(lines, [], [], folder, FRONT_END)
-    counts = counted(device[FRONT_END], logic[FRONT_END], modules, arrays)
-    named = [replace(memory, path=f"{FRONT_END_PATH}.{memory.path}") for memory in arrays]
-    return Core(FRONT_END, FRONT_END_PATH, counts), named
+    device, logic = mapped(lines, [], [], folder, CAMERA_UNIT)
+    counts = counted(device[CAMERA_UNIT], logic[CAMERA_UNIT], modules, arrays)
+    named = [replace(memory, path=f"{CAMERA_PATH}.{memory.path}") for memory in arrays]
+    return Core(CAMERA_UNIT, CAMERA_PATH, counts), named
 
 
 def synthesize(
@@ -314,7 +313,7 @@ def synthesize(
         counts = counted(device[module], logic[module], modules, inside)
         listed.append(Core(module.partition("$")[0], path, counts))
     if camera is not None:
-        core, camera_arrays = front_end(config, calibration, camera, folder / FRONT_END)
+        core, camera_arrays = camera_unit(config, calibration, camera, folder / CAMERA_UNIT)
         listed.append(core)
         arrays += camera_arrays
         stores = sum(memory.plain()["UltraRAM"] + memory.plain()["BRAM36"] / BLOCKS_PER_ULTRA for memory in arrays)

@@ -5,7 +5,8 @@ Takes NAME, OUT, TABLES (where simulator and synthesis find the table files) and
 a configuration. The module has the ports of tactile_depth. It and its table files go into the folder OUT; with ZERO
 the table of the zero offset holds what a capture of those frames measures. Modules for
 several configurations fit into one design, if each has its own folder of tables. With CAMERA, and BAYER and WINDOW, the
-module has the camera front end inside, and its s_axis takes the words of that camera.
+module is tactile_sensor_finger: its s_axis takes the words of that camera, and it has the pins of dvp_receive and
+camera_setup.
 """
 
 import os
@@ -35,8 +36,8 @@ def main() -> None:
         config, calibration, frames = synth.configured(request)
         zero = zero_of(untouched(request, frames), calibration, config)
         with files.workspace(out) as work:
-            parameters = top_parameters(config, calibration.pixel_pitch_mm)
-            path = wrapper.write(work, name, parameters, tables, frames.camera)
+            parameters = top_parameters(config, calibration.pixel_pitch_mm, frames.camera)
+            path = wrapper.write(work, name, parameters, tables)
             write_roms(work, calibration, config, zero)
             names = [file.name for file in work.iterdir()]
             files.replace(work, names, out)

@@ -110,8 +110,8 @@ def build(
     """Return the simulator for a configuration, which is built once for each state of the sources."""
     bench = repository.ROOT / "tb" / BENCH
     sources = [*repository.sources(), bench.with_suffix(".vlt"), bench.with_suffix(".sv")]
-    parameters = top_parameters(config)
-    text = wrapper.wrapper("bench", parameters, camera=camera)
+    parameters = top_parameters(config, camera=camera)
+    text = wrapper.wrapper("bench", parameters)
     key = hashlib.sha256(json.dumps([simulator, waves, text, simulation.versions()]).encode())
     for source in (*sources, Path(simulation.__file__)):
         key.update(source.read_bytes())
@@ -129,8 +129,8 @@ def build(
             simulation.build(
                 simulator,
                 BENCH,
-                [*sources, wrapper.write(folder, "bench", parameters, camera=camera)],
-                wrapper.grid(parameters),
+                [*sources, wrapper.write(folder, "bench", parameters)],
+                {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
                 folder,
                 fast=not waves,
                 waves=waves,

@@ -207,8 +207,9 @@ def board_sources() -> list[Path]:
 
 
 def wrappers_of_boards() -> list[Path]:
-    """Write the wrapper that each board instantiates, and return their paths."""
-    return [wrapper.write(FOLDER, name, default_parameters()) for name in repository.BOARDS]
+    """Write the wrappers that each board instantiates, without and with a camera, and return their paths."""
+    fields = [default_parameters() | {"Camera": camera} for camera in (0, 1)]
+    return [wrapper.write(FOLDER, name, each) for name in repository.BOARDS for each in fields]
 
 
 def checks() -> list[Check]:

@@ -38,7 +38,8 @@ module axil_registers
   localparam int DepthExponent    = value(Config, DepthExponentField),
   localparam int SlopeMantissa    = value(Config, SlopeMantissaField),
   localparam int SlopeExponent    = value(Config, SlopeExponentField),
-  localparam int PitchNm          = value(Config, PitchNmField)
+  localparam int PitchNm          = value(Config, PitchNmField),
+  localparam int Camera           = value(Config, CameraField)
 ) (
   input  wire                       clk,
   input  wire                       rst,
@@ -83,7 +84,9 @@ module axil_registers
   output capture_command_t          reference_command,
   input  wire capture_status_t      reference_status,
   output capture_command_t          zero_command,
-  input  wire capture_status_t      zero_status
+  input  wire capture_status_t      zero_status,
+  output register_command_t         register_command,  // to the registers of camera_unit
+  input  wire register_answer_t     register_answer    // ignored without Camera
 );
 
   localparam logic [31:0] GridWord = (Rows << GridRowsLsb) | (Columns << GridColumnsLsb);
@@ -110,11 +113,18 @@ module axil_registers
   logic write, entry_refused, capture_refused;
   logic read, read_refused, read_late, late_refused;
   logic [31:0] write_offset, write_ones, write_mask, read_offset, read_data, late_data;
+  register_answer_t camera_answer;
+  assign camera_answer = Camera != 0 ? register_answer : '0;
+  assign register_command.write = write;
+  assign register_command.write_offset = write_offset;
+  assign register_command.write_ones = write_ones;
+  assign register_command.write_mask = write_mask;
+  assign register_command.read_offset = read_offset;
   axil_port u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
     .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready, .write, .write_offset, .write_ones, .write_mask,
-    .write_refused(!is_writable(write_offset) || entry_refused || capture_refused),
+    .write_refused(!(is_writable(write_offset) || camera_answer.writable) || entry_refused || capture_refused),
     .read, .read_offset, .read_data, .read_refused, .read_late, .late_data, .late_refused
   );
 
@@ -183,8 +193,8 @@ module axil_registers
       if (read_offset == 32'(RecordEventOffset + 4 * n)) word = word | record[32*n+:32];
     end
   end
-  assign read_data = word | setting_data | event_data | bank_data | entry_data;
-  assign read_refused = !is_register(read_offset);
+  assign read_data = word | setting_data | event_data | bank_data | entry_data | camera_answer.data;
+  assign read_refused = !(is_register(read_offset) || camera_answer.readable);
 
   logic unused_pins;
   assign unused_pins = ^{s_axil_awprot, s_axil_arprot};

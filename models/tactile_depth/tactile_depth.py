@@ -12,6 +12,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from tactile_depth.camera.camera_unit import DEFAULT, camera_fields
+from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.common import td_node_map
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import (
@@ -177,13 +179,15 @@ def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) 
     return spectral_solver.spectral_solver(f, config, monitor)
 
 
-def top_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:
-    """Return the number of each field of Config, the parameter of hdl/tactile_depth.sv.
+def top_parameters(
+    config: Configuration, pixel_pitch_mm: float = 0.0, camera: CameraConfiguration | None = None
+) -> dict[str, int]:
+    """Return the number of each field of Config, the parameter of hdl/tactile_depth.sv and hdl/tactile_sensor.sv.
 
     The fields of an option that the configuration leaves out have the numbers of a configuration with the option. The
     device tells its host the pitch of the grid, 0: unknown.
     """
-    return default_parameters() | _own_parameters(config, pixel_pitch_mm)
+    return default_parameters() | _own_parameters(config, pixel_pitch_mm) | camera_fields(camera)
 
 
 @cache
@@ -194,7 +198,7 @@ def default_parameters() -> MappingProxyType[str, int]:
     merged: dict[str, int] = {}
     for config in (*options, Configuration()):
         merged |= _own_parameters(config)
-    return MappingProxyType(merged)
+    return MappingProxyType(merged | camera_fields(DEFAULT) | camera_fields(None))
 
 
 def config_value(fields: Mapping[str, int]) -> str:
@@ -206,9 +210,11 @@ def config_value(fields: Mapping[str, int]) -> str:
     return f"{32 * len(order)}'h{words:x}"
 
 
-def hdl_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, str]:
-    """Return the parameters of hdl/tactile_depth.sv, as the tools take them by name."""
-    return {"Config": config_value(top_parameters(config, pixel_pitch_mm))}
+def hdl_parameters(
+    config: Configuration, pixel_pitch_mm: float = 0.0, camera: CameraConfiguration | None = None
+) -> dict[str, str]:
+    """Return the parameters of hdl/tactile_depth.sv and hdl/tactile_sensor.sv, as the tools take them by name."""
+    return {"Config": config_value(top_parameters(config, pixel_pitch_mm, camera))}
 
 
 def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[str, int]:

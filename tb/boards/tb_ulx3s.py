@@ -57,9 +57,9 @@ class Board:
         self.lights: list[Any] = []
         dut.ftdi_txd.value, dut.btn.value = 1, 0
 
-    def top(self) -> Any:
-        """Return the top of the board, which a bench around it has inside."""
-        return self.dut
+    def pipeline(self) -> Any:
+        """Return tactile_depth inside the board."""
+        return self.dut.u_system.g_serial.u_depth.u_pipeline
 
     async def start(self, button: bool = True) -> None:
         Clock(self.dut.clk_25mhz, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
@@ -89,7 +89,7 @@ class Board:
 
     async def note_starts(self) -> None:
         """Note the pipeline's cycle count at the first pixel of each frame; the record holds it."""
-        depth = self.top().u_system.u_depth.u_pipeline
+        depth = self.pipeline()
         while True:
             await RisingEdge(depth.s_axis_tvalid)  # tuser may be high from power-up on
             await ReadOnly()

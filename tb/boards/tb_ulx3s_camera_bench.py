@@ -61,8 +61,8 @@ class CameraBoard(Board):
         self.now = self.threshold, self.threshold
         dut.camera_pulls.value = dut.camera_vsync.value = dut.camera_href.value = dut.camera_data.value = 0
 
-    def top(self) -> Any:
-        return self.dut.u_board
+    def pipeline(self) -> Any:
+        return self.dut.u_board.u_system.g_camera.u_sensor.u_sensor.u_pipeline
 
     async def start(self, button: bool = True) -> None:
         Clock(self.dut.camera_pclk, PCLK_NS, unit="ns", impl="gpi").start(start_high=False)

@@ -80,6 +80,6 @@ def test_rtl(run_tb: Callable[..., None], simulator: str, structure: Structure, 
 def test_camera(run_tb: Callable[..., None], structure: Structure, tmp_path: Path) -> None:
     """The top behind a camera, with the real-sensor build: RAW8, two by two pixels for each of the grid."""
     config = Configuration(**BEHIND_A_CAMERA)
-    inside = wrapper.write(tmp_path, "ulx3s", top_parameters(config), camera=camera_of(config))
+    inside = wrapper.write(tmp_path, "ulx3s", top_parameters(config, camera=camera_of(config)))
     bench = ROOT / "tb" / "ulx3s_camera_bench.sv"
     run_tb(structure, toplevel="ulx3s_camera_bench", files=[*BOARDS["ulx3s"], inside, bench])

@@ -32,7 +32,7 @@ STRUCTURES = (
     built(OTHER, on=ICARUS, late=VERILATOR, mutants=True),
 )
 MUTANTS = Mutants(
-    "axil_registers",
+    "after_reset",
     outside=(
         "dropped",
         "lost",

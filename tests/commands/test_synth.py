@@ -43,9 +43,11 @@ def test_memories_and_cores_are_those_of_the_rtl(tmp_path: Path, lanes: int) -> 
 def test_the_front_end_of_a_camera_is_a_row_of_its_own(tmp_path: Path) -> None:
     """One multiplier for each channel's gain; the weights are not worth one. The memory is a line of totals."""
     camera = CameraConfiguration((24, 48), (8, 16), "raw8")
-    core, arrays = synth.front_end(TINY, synthetic(TINY.bits_per_channel), camera, tmp_path)
-    assert (core.name, core.path) == ("camera_front_end", "u_camera")
-    assert [(memory.path, memory.depth) for memory in arrays] == [("u_camera.u_average.u_block_totals.u_line", 16)]
+    core, arrays = synth.camera_unit(TINY, synthetic(TINY.bits_per_channel), camera, tmp_path)
+    assert (core.name, core.path) == ("camera_unit", "u_camera")
+    assert [(memory.path, memory.depth) for memory in arrays] == [
+        ("u_camera.u_front_end.u_average.u_block_totals.u_line", 16)
+    ]
     assert core.counts["LUT"] > core.counts["FF"] / 4 > 0
     assert core.counts["DSP48E2"] >= 1
 

@@ -30,8 +30,8 @@ def frame_packet(pixels: NDArray[np.uint8]) -> bytes:
 
 
 def write_packet(address: int, value: int) -> bytes:
-    """Return the bytes that write a 32-bit register."""
-    return packet((WRITE, address, *(value % (1 << 32)).to_bytes(WORD_BYTES, "little")))
+    """Return the bytes that write a 32-bit register at a byte address, a multiple of 4 below 1024."""
+    return packet((WRITE, address // WORD_BYTES, *(value % (1 << 32)).to_bytes(WORD_BYTES, "little")))
 
 
 def _unescaped(line: Iterable[int | None]) -> Iterator[int | bool]:
@@ -98,7 +98,9 @@ def serial_link(line: Iterable[int | None], columns: int) -> Taken:
     content: list[int] = []
     for byte in _unescaped(line):
         if byte is True and len(content) == 2 + WORD_BYTES and content[0] == WRITE:
-            taken.writes.append((content[1], int.from_bytes(bytes(content[2:]), "little"), len(taken.pixels)))
+            taken.writes.append(
+                (content[1] * WORD_BYTES, int.from_bytes(bytes(content[2:]), "little"), len(taken.pixels))
+            )
         if isinstance(byte, bool):
             content = []
             continue

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""tactile_sensor against the models: pictures under changing settings, broken pictures, the pins beside the stream."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
+from tactile_depth.built_in import synthetic
+from tactile_depth.camera.camera_front_end import camera_front_end, camera_settings
+from tactile_depth.camera_configuration import CameraConfiguration
+from tactile_depth.latency import last_word_to_first_depth
+from tactile_depth.registers.axil_port import Response
+from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, MAP, REGISTERS
+from tactile_depth.tactile_depth import tactile_depth
+from tb import axil
+from tb.axis import AxisMonitor, AxisSource
+from tb.camera.slots import camera_words
+from tb.settings import RUN
+from tb.stream import CLOCK_NS, MANY, configuration
+
+IDLE = {"frames_lost": 0, "setup_done": 0, "setup_failed": 0, "setup_entry": 0, "setup_found": 0}
+STATUS = CAMERA_REGISTERS["CAMERA_STATUS"]
+
+
+class Bench:
+    """Driver of the pins, and the models."""
+
+    def __init__(self, dut: Any) -> None:
+        self.dut, self.config = dut, configuration()
+        self.camera = CameraConfiguration(**RUN.device["camera"])
+        self.rng = np.random.default_rng(cocotb.RANDOM_SEED)
+        dut.rst.value, dut.cold_rst.value = 1, 0
+        dut.m_axis_tready.value = dut.m_event_tready.value = 1
+        for pin, value in IDLE.items():
+            getattr(dut, pin).value = value
+        self.source = AxisSource(dut, "s_axis", prefix="t")
+        self.came, self.left = (AxisMonitor(dut, side, prefix="t") for side in ("s_axis", "m_axis"))
+        self.master = axil.Master(dut)
+
+    async def start(self) -> None:
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await ClockCycles(self.dut.clk, 3)
+        self.dut.rst.value = 0
+        await RisingEdge(self.dut.clk)
+
+    async def use(self, camera: CameraConfiguration) -> None:
+        """Write the settings of a camera into the registers."""
+        s = camera_settings(camera)
+        words = {
+            "CAMERA_PICTURE": CAMERA_REGISTERS["CAMERA_PICTURE"].pack(columns=s["columns"], rows=s["rows"]),
+            "CAMERA_WINDOW": CAMERA_REGISTERS["CAMERA_WINDOW"].pack(x=s["window_x"], y=s["window_y"]),
+            **{f"CAMERA_{name.upper()}": s[name] for name in ("black_level", "red_gain", "green_gain", "blue_gain")},
+        }
+        for name, word in words.items():
+            assert await self.master.write(CAMERA_REGISTERS[name].offset, word) == Response.OKAY
+            assert await self.camera_word(name) == word
+        self.camera = camera
+
+    async def camera_word(self, name: str) -> int:
+        return await self.master.read(CAMERA_REGISTERS[name].offset)
+
+    def picture(self) -> np.ndarray:
+        """Return the words of a picture: a random colour with noise, so that slopes stay in their range."""
+        words = self.rng.integers(0, 1 << 24, self.camera.picture)
+        if self.camera.format.bayer:
+            top = self.camera.bits
+            words = self.rng.integers(0, 1 << top, self.camera.picture) << (16 - top if top > 8 else 0)
+        return words
+
+    async def show(self, words: np.ndarray) -> list[int]:
+        """Send a picture; return the codes that leave until the pipeline is empty."""
+        self.came.forget()
+        self.left.forget()
+        await self.source.send(camera_words(words, self.camera))
+        await ClockCycles(self.dut.clk, 100)
+        while await self.master.read(REGISTERS["STATUS"].offset) & REGISTERS["STATUS"].field("busy").mask:
+            pass
+        width = len(self.dut.m_axis_tdata)
+        return [word.data - (word.data >> width - 1 << width) for word in self.left.words]
+
+    def depth(self, words: np.ndarray) -> list[int]:
+        """Return the codes of the models."""
+        frame = camera_front_end(words, self.camera)
+        codes: list[int] = tactile_depth(frame[None], synthetic(self.config.bits_per_channel), self.config)[0].reshape(
+            -1
+        )
+        return [int(code) for code in codes]
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+async def settings_change_between_pictures(dut: Any) -> None:
+    """Write window, black level and gains between pictures: depth is that of the models, at its cycle."""
+    bench = Bench(dut)
+    await bench.start()
+    built = bench.camera
+    rows, columns = built.picture
+    _, _, width, height = built.crop
+    chance = bench.rng
+
+    def gain() -> float:
+        return int(chance.integers(0, 4 << 12)) / 4096
+
+    choices = [built] + [
+        replace(
+            built,
+            window=(
+                int(chance.integers(0, columns - width + 1)),
+                int(chance.integers(0, rows - height + 1)),
+                width,
+                height,
+            ),
+            black_level=int(chance.integers(0, 1 << built.bits - 2)),
+            gains=(gain(), gain(), gain()),
+        )
+        for _ in range(3 * MANY)
+    ]
+    for place, camera in enumerate(choices):
+        if place:
+            await bench.use(camera)
+        words = bench.picture()
+        assert await bench.show(words) == bench.depth(words), camera
+        taken, first = bench.came.taken[camera.last_word], bench.left.offered[0]
+        assert first - taken == last_word_to_first_depth(camera, bench.config)
+    assert await bench.camera_word("CAMERA_STATUS") == 0
+
+
+@cocotb.test(timeout_time=5, timeout_unit="ms")
+async def broken_pictures_are_counted(dut: Any) -> None:
+    """A window outside the picture, a row too short: the fault has its bit and counts; the next picture is right."""
+    bench = Bench(dut)
+    await bench.start()
+    offset = CAMERA_REGISTERS["CAMERA_WINDOW"].offset
+    built = await bench.camera_word("CAMERA_WINDOW")
+    await bench.master.write(offset, bench.camera.picture[1])
+    assert await bench.show(bench.picture()) == []
+    await bench.master.write(offset, built)
+    words = bench.picture()
+    assert await bench.show(words[:, :-1]) == []
+    assert await bench.show(words) == bench.depth(words)
+    status = STATUS.unpack(await bench.camera_word("CAMERA_STATUS"))
+    assert [name for name, bit in status.items() if bit] == ["row_short", "window_outside"]
+    assert await bench.camera_word("CAMERA_DROPPED") == 2
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def pins_beside_the_stream(dut: Any) -> None:
+    """Frames that dvp_receive lost count; the state of camera_setup is read; a written bit restarts it."""
+    bench = Bench(dut)
+    await bench.start()
+    dut.frames_lost.value = 3
+    await RisingEdge(dut.clk)
+    dut.frames_lost.value = 0
+    dut.setup_failed.value, dut.setup_entry.value, dut.setup_found.value = 1, 0x12, 0x34
+    assert await bench.camera_word("CAMERA_LOST") == 3
+    assert await bench.camera_word("CAMERA_SETUP") == 0x3412
+    assert await bench.camera_word("CAMERA_STATUS") == STATUS.pack(lost=1, setup_failed=1)
+    restarts: list[int] = []
+    control = CAMERA_REGISTERS["CAMERA_CONTROL"]
+
+    async def watch() -> None:
+        while True:
+            await RisingEdge(dut.clk)
+            restarts.append(int(dut.setup_restart.value))
+
+    cocotb.start_soon(watch())
+    await bench.master.write(control.offset, control.pack(restart_setup=1))
+    assert sum(restarts) == 1
+
+
+@cocotb.test(timeout_time=1, timeout_unit="ms")
+async def one_port(dut: Any) -> None:
+    """Registers of pipeline and camera are on one port; every other offset is refused, as a write to what is read
+    only."""
+    bench = Bench(dut)
+    await bench.start()
+    registers: Mapping[int, Any] = {register.offset: register for register in (*MAP, *CAMERA_MAP)}
+    for offset in range(0, 0x200, 4):
+        register = registers.get(offset)
+        if register is None:
+            assert await axil.response_of(bench.master.master.read(offset)) == Response.SLVERR
+        elif "TABLE" not in register.name:
+            assert await axil.response_of(bench.master.master.read(offset)) == Response.OKAY
+        if register is None or not register.writable:
+            assert await bench.master.write(offset, 0) == Response.SLVERR
+    assert await bench.camera_word("CAMERA_FORMAT") == CAMERA_REGISTERS["CAMERA_FORMAT"].pack(
+        pixel_format=bench.camera.format.code, phase=bench.camera.phase_code, bits=bench.camera.bits
+    )
