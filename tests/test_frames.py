@@ -252,7 +252,7 @@ def claiming(path: Path, *shape: int) -> Path:
     return path
 
 
-def drawn(path: Path, *size: int, mode: str = "RGB", **options: Any) -> Path:
+def drawn(path: Path, *size: Any, mode: str = "RGB", **options: Any) -> Path:
     Image.new(mode, size or (24, 16)).save(path, **options)
     return path
 
@@ -274,7 +274,7 @@ def mixed(folder: Path) -> Path:
     return folder
 
 
-ANIMATION = {"save_all": True, "append_images": [Image.new("RGB", (24, 16), "red")]}
+ANIMATION: dict[str, Any] = {"save_all": True, "append_images": [Image.new("RGB", (24, 16), "red")]}
 TOO_LARGE = f"accepted are up to {LARGEST_CAMERA}"
 BAD: dict[str, Any] = {
     "an npz": (lambda t: npz(t / "f.npy"), "f.npy: not a readable .npy"),
