@@ -10,7 +10,7 @@ from commands import __main__ as entry
 
 
 class Ended(NamedTuple):
-    """End of a command: its exit status, its output, and the lines on stderr."""
+    """End of a command: its exit status, its output, and the lines on stderr without the notice of a first build."""
 
     status: int
     output: str
@@ -28,7 +28,8 @@ def run_command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[s
             entry.main()
         except SystemExit as ended:
             status = int(ended.code or 0)
-        return Ended(status, *((out := capsys.readouterr()).out, out.err.splitlines()))
+        output, errors = capsys.readouterr()
+        return Ended(status, output, [line for line in errors.splitlines() if not line.startswith("building the ")])
 
     return run
 
