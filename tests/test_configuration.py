@@ -3,7 +3,6 @@
 unchanged."""
 
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,14 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from commands.common.repository import ROOT
 from tactile_depth.bounds import bounds
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format
 from tactile_depth.errors import InputError
-from tactile_depth.poisson import tridiagonal_solver
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
+from tactile_depth.poisson.spectral_solver import spectral_solver
 from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.poisson.transform.orders import makhoul
@@ -250,24 +247,3 @@ def test_the_width_that_an_error_asks_for_is_accepted() -> None:
         Configuration(columns=32, data_width=12, depth_range_px=200.0)
     wanted = int(re.search(r"try data_width=(\d+)", str(caught.value))[1])  # type: ignore[index]
     assert Configuration(columns=32, data_width=wanted, depth_range_px=200.0).data_width == wanted
-
-
-def defaults(path: Any) -> dict[Any, Any]:
-    """Return the parameters of the module in a file, by name."""
-    head = re.search(r"#\((.*?)\n\)", (ROOT / path).read_text(), re.DOTALL)[1]  # type: ignore[index]
-    declared = re.findall(r"^\s*parameter int (\w+)\s*=\s*(-?\d+)", head, re.MULTILINE)
-    return {name: int(value) for name, value in declared}
-
-
-SPECTRAL, TRIDIAGONAL = Configuration(), Configuration(solver="tridiagonal")
-
-
-@pytest.mark.parametrize(
-    ("path", "derived"),
-    [
-        ("hdl/poisson/spectral_solver.sv", solver_parameters(SPECTRAL)),
-        ("hdl/poisson/tridiagonal_solver.sv", tridiagonal_solver.solver_parameters(TRIDIAGONAL)),
-    ],
-)
-def test_default_parameters_are_those_of_the_default_configuration(path: Path, derived: Any) -> None:
-    assert defaults(path) == derived

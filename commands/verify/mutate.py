@@ -27,6 +27,7 @@ from commands.common import repository, variables
 from commands.common.progress import following
 from commands.verify import equivalence, mutants, sign_off
 from commands.verify.equivalence import EQUIVALENT, settle
+from tactile_depth.configuration import Configuration
 
 OUT = repository.ROOT / "build" / "mutate"
 CORE_BAR, TOTAL_BAR = 95.0, 97.0  # per cent of the mutants that are not equivalent: each core, all cores together
@@ -96,6 +97,9 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
         outcome.killed += len(killed)
         called = {"Rows": core.rows_are, "Columns": core.columns_are}
         parameters = {**built.parameters, **{name: built.parameters[own] for name, own in called.items() if own}}
+        if "Config" in built.parameters:  # the protocol needs the grid
+            config = Configuration(**built.device["configuration"])
+            parameters |= {"Rows": config.rows, "Columns": config.columns}
         graph = equivalence.graph(name, folder, core.protocol or name, parameters)
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:

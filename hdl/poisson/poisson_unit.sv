@@ -23,30 +23,13 @@ module poisson_unit
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter logic [ConfigBits-1:0] Config = DefaultConfig,
-  localparam int Tridiagonal      = value(Config, TridiagonalField),  // solver: 0 spectral, 1 tridiagonal
-  localparam int Neumann          = value(Config, NeumannField),
-  localparam int Rows             = value(Config, RowsField),
-  localparam int Columns          = value(Config, ColumnsField),
-  localparam int GradientWidth    = value(Config, GradientWidthField),
-  localparam int DataWidth        = value(Config, DataWidthField),
-  localparam int CoeffWidth       = value(Config, CoeffWidthField),
-  localparam int RowForwardOut    = value(Config, RowForwardOutField),
-  localparam int ColumnForwardIn  = value(Config, ColumnForwardInField),
-  localparam int ColumnInverseOut = value(Config, ColumnInverseOutField),
-  localparam int RowInverseIn     = value(Config, RowInverseInField),
-  localparam int RowInverseOut    = value(Config, RowInverseOutField),
-  localparam int DivideShiftWidth = value(Config, DivideShiftWidthField),
-  localparam int DivideDrop       = value(Config, DivideDropField),
-  localparam int StoreStyle       = value(Config, StoreStyleField),
-  localparam int TableWords       = value(Config, TableWordsField),  // from here: tridiagonal
-  localparam int SettledWidth     = value(Config, SettledWidthField),
-  localparam int LastShiftWidth   = value(Config, LastShiftWidthField),
-  localparam int MomentDrop       = value(Config, MomentDropField),
-  localparam int MeanReciprocal   = value(Config, MeanReciprocalField),
-  localparam int MeanDrop         = value(Config, MeanDropField),
-  localparam int WordsPerRow      = value(Config, WordsPerRowField),
-  localparam int Lanes            = value(Config, LanesField),
-  localparam int ClippedWidth = 8 + $clog2(Lanes)
+  localparam int Tridiagonal   = value(Config, TridiagonalField),  // solver: 0 spectral, 1 tridiagonal
+  localparam int Neumann       = value(Config, NeumannField),
+  localparam int Columns       = value(Config, ColumnsField),
+  localparam int Lanes         = value(Config, LanesField),
+  localparam int GradientWidth = value(Config, GradientWidthField),
+  localparam int DataWidth     = value(Config, DataWidthField),
+  localparam int ClippedWidth  = 8 + $clog2(Lanes)
 ) (
   input  wire                             clk,
   input  wire                             rst,
@@ -62,7 +45,6 @@ module poisson_unit
 );
 
   localparam int InWidth = GradientWidth + 2;  // of a divergence
-  localparam int Width = DataWidth + GuardBits;  // of the arithmetic
 
   logic divergence_valid, divergence_frame_start;
   logic signed [InWidth-1:0] divergence_data;
@@ -72,59 +54,21 @@ module poisson_unit
   );
 
   if (Tridiagonal != 0) begin : g_tridiagonal
-    tridiagonal_solver #(
-      .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .InWidth(InWidth),
-      .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth), .Neumann(Neumann), .RowForwardOut(RowForwardOut),
-      .StoreDrop(GuardBits), .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut), .TableWords(TableWords),
-      .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
-      .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop), .StoreStyle(StoreStyle), .WordsPerRow(WordsPerRow)
-    ) u_solver (
+    tridiagonal_solver #(.TableFolder(TableFolder), .Config(Config)) u_solver (
       .clk, .rst, .en,
       .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
       .out_start(burst_start), .out_frame_start(depth_frame_start), .out_data(depth_data), .saturations
     );
   end else begin : g_spectral
-    spectral_solver #(
-      .TableFolder(TableFolder),
-      .Columns(Columns), .InWidth(InWidth), .DataWidth(DataWidth), .Width(Width), .CoeffWidth(CoeffWidth),
-      .RowForwardOut(RowForwardOut), .ColumnForwardIn(ColumnForwardIn), .ColumnInverseOut(ColumnInverseOut),
-      .RowInverseIn(RowInverseIn), .RowInverseOut(RowInverseOut),
-      .DivideShiftWidth(DivideShiftWidth), .DivideDrop(DivideDrop), .Neumann(Neumann), .StoreStyle(StoreStyle)
-    ) u_solver (
+    spectral_solver #(.TableFolder(TableFolder), .Config(Config)) u_solver (
       .clk, .rst, .en,
       .in_valid(divergence_valid), .in_frame_start(divergence_frame_start), .in_data(divergence_data),
       .out_start(burst_start), .out_frame_start(depth_frame_start), .out_data(depth_data), .saturations
     );
   end
 
-  if (Tridiagonal == 0 && Rows != Columns) begin : g_refused_0
-    the_spectral_solver_takes_square_grids_Rows_must_be_Columns u_refused ();
-  end
-  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_1
-    DataWidth_must_be_2_to_32 u_refused ();
-  end
-  if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused_2
+  if ((Tridiagonal | Neumann) > 1 || (Tridiagonal | Neumann) < 0) begin : g_refused
     Tridiagonal_and_Neumann_are_0_or_1 u_refused ();
-  end
-  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_3
-    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
-  end
-  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_4
-    StoreStyle_must_be_0_to_2 u_refused ();
-  end
-  if (Tridiagonal == 0 && (DivideShiftWidth < 1 || DivideShiftWidth > 6)) begin : g_refused_5
-    DivideShiftWidth_must_be_1_to_6 u_refused ();
-  end
-  if (Tridiagonal != 0
-      && (SettledWidth < 1 || SettledWidth > 16 || LastShiftWidth < 1 || LastShiftWidth > 6)) begin : g_refused_6
-    SettledWidth_must_be_1_to_16_and_LastShiftWidth_1_to_6 u_refused ();
-  end
-  if (Tridiagonal != 0 && Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1)))
-  begin : g_refused_7
-    MeanReciprocal_must_fit_CoeffWidth u_refused ();
-  end
-  if (Tridiagonal == 0 && Lanes != 1) begin : g_refused_8
-    the_spectral_solver_has_one_lane u_refused ();
   end
 
 endmodule

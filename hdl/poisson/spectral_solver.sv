@@ -10,22 +10,26 @@
 
 `default_nettype none
 
-module spectral_solver #(
+module spectral_solver
+  import td_config_pkg::*;
+#(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Columns          = 128,
-  parameter int InWidth          = 23,
-  parameter int DataWidth        = 24,  // of a stored word, and of a depth code
-  parameter int Width            = 27,  // of the arithmetic
-  parameter int CoeffWidth       = 18,
-  parameter int RowForwardOut    = 3,   // fraction bits dropped on the way out of, and into, each transform
-  parameter int ColumnForwardIn  = 1,
-  parameter int ColumnInverseOut = -1,
-  parameter int RowInverseIn     = -3,
-  parameter int RowInverseOut    = -1,
-  parameter int DivideShiftWidth = 4,
-  parameter int DivideDrop       = 23,
-  parameter int Neumann          = 0,   // 1: zero slope at the edge and zero mean, by cosine transforms
-  parameter int StoreStyle       = 1    // of the frame stores, hdl/common/td_ram.sv
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Columns          = value(Config, ColumnsField),  // a power of two
+  localparam int DataWidth        = value(Config, DataWidthField),  // of a stored word, and of a depth code
+  localparam int CoeffWidth       = value(Config, CoeffWidthField),
+  localparam int Neumann          = value(Config, NeumannField),  // by cosine transforms
+  localparam int RowForwardOut    = value(Config, RowForwardOutField),  // fraction bits dropped on the way
+  localparam int ColumnForwardIn  = value(Config, ColumnForwardInField),
+  localparam int ColumnInverseOut = value(Config, ColumnInverseOutField),
+  localparam int RowInverseIn     = value(Config, RowInverseInField),
+  localparam int RowInverseOut    = value(Config, RowInverseOutField),
+  localparam int DivideShiftWidth = value(Config, DivideShiftWidthField),
+  localparam int DivideDrop       = value(Config, DivideDropField),
+  localparam int StoreStyle       = value(Config, StoreStyleField),  // of a frame store, hdl/common/td_ram.sv
+  localparam int GradientWidth    = value(Config, GradientWidthField),
+  localparam int InWidth          = GradientWidth + 2,  // of a divergence
+  localparam int Width            = DataWidth + GuardBits  // of the arithmetic
 ) (
   input  wire                         clk,
   input  wire                         rst,
@@ -123,6 +127,25 @@ module spectral_solver #(
     saturations <= clipped_row_forward + clipped_column_forward + 8'(clipped_divide) + clipped_column_inverse
         + clipped_row_inverse;
     if (rst) saturations <= '0;
+  end
+
+  if (value(Config, RowsField) != Columns) begin : g_refused_0
+    the_spectral_solver_takes_square_grids_Rows_must_be_Columns u_refused ();
+  end
+  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_1
+    DataWidth_must_be_2_to_32 u_refused ();
+  end
+  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_2
+    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
+  end
+  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_3
+    StoreStyle_must_be_0_to_2 u_refused ();
+  end
+  if (DivideShiftWidth < 1 || DivideShiftWidth > 6) begin : g_refused_4
+    DivideShiftWidth_must_be_1_to_6 u_refused ();
+  end
+  if (value(Config, LanesField) != 1) begin : g_refused_5
+    the_spectral_solver_has_one_lane u_refused ();
   end
 
 endmodule

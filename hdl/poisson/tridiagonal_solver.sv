@@ -10,29 +10,32 @@
 
 `default_nettype none
 
-module tridiagonal_solver #(
+module tridiagonal_solver
+  import td_config_pkg::*;
+#(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Rows           = 128,
-  parameter int Columns        = 128,  // columns, a power of two
-  parameter int Lanes          = 1,    // rows at a time on the way up, depth codes in a cycle
-  parameter int InWidth        = 23,
-  parameter int DataWidth      = 24,   // of a stored word, and of a depth code
-  parameter int Width          = 27,   // of the arithmetic
-  parameter int CoeffWidth     = 18,
-  parameter int Neumann        = 0,
-  parameter int RowForwardOut  = 4,    // fraction bits dropped on the way
-  parameter int StoreDrop      = 3,
-  parameter int RowInverseIn   = -1,
-  parameter int RowInverseOut  = -1,
-  parameter int TableWords     = 1379,
-  parameter int SettledWidth   = 7,
-  parameter int LastShiftWidth = 1,
-  parameter int MomentDrop     = 7,
-  parameter int MeanReciprocal = 65536,
-  parameter int MeanDrop       = 16,
-  parameter int StoreStyle     = 1,    // of the frame store, hdl/common/td_ram.sv
-  parameter int WordsPerRow    = 1,    // of its memory
-  localparam int ClippedWidth = 8 + $clog2(Lanes)
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig,
+  localparam int Rows           = value(Config, RowsField),
+  localparam int Columns        = value(Config, ColumnsField),  // a power of two
+  localparam int Lanes          = value(Config, LanesField),  // rows at a time on the way up, depth codes in a cycle
+  localparam int DataWidth      = value(Config, DataWidthField),  // of a stored word, and of a depth code
+  localparam int CoeffWidth     = value(Config, CoeffWidthField),
+  localparam int Neumann        = value(Config, NeumannField),  // by cosine transforms
+  localparam int RowForwardOut  = value(Config, RowForwardOutField),  // fraction bits dropped on the way
+  localparam int RowInverseIn   = value(Config, RowInverseInField),
+  localparam int RowInverseOut  = value(Config, RowInverseOutField),
+  localparam int TableWords     = value(Config, TableWordsField),
+  localparam int SettledWidth   = value(Config, SettledWidthField),
+  localparam int LastShiftWidth = value(Config, LastShiftWidthField),
+  localparam int MomentDrop     = value(Config, MomentDropField),
+  localparam int MeanReciprocal = value(Config, MeanReciprocalField),
+  localparam int MeanDrop       = value(Config, MeanDropField),
+  localparam int StoreStyle     = value(Config, StoreStyleField),  // of a frame store, hdl/common/td_ram.sv
+  localparam int WordsPerRow    = value(Config, WordsPerRowField),  // of its memory
+  localparam int GradientWidth  = value(Config, GradientWidthField),
+  localparam int InWidth        = GradientWidth + 2,  // of a divergence
+  localparam int Width          = DataWidth + GuardBits,  // of the arithmetic
+  localparam int ClippedWidth   = 8 + $clog2(Lanes)
 ) (
   input  wire                        clk,
   input  wire                        rst,
@@ -76,7 +79,7 @@ module tridiagonal_solver #(
 
   forward_elimination #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns),
-    .StoreDrop(StoreDrop), .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(TableWords),
+    .StoreDrop(GuardBits), .OutWidth(DataWidth), .Neumann(Neumann), .TableWords(TableWords),
     .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth), .MomentDrop(MomentDrop),
     .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
   ) u_down (
@@ -94,7 +97,7 @@ module tridiagonal_solver #(
 
   back_substitution #(
     .TableFolder(TableFolder), .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes),
-    .InWidth(DataWidth), .Drop(-StoreDrop), .TableWords(TableWords), .SettledWidth(SettledWidth)
+    .InWidth(DataWidth), .Drop(-GuardBits), .TableWords(TableWords), .SettledWidth(SettledWidth)
   ) u_up (
     .clk, .rst, .en, .in_start(stacked_start), .in_frame_start(stacked_frame_start), .in_data(stacked),
     .out_start(solved_start), .out_frame_start(solved_frame_start), .out_data(solved), .saturations(clipped_up)
@@ -138,6 +141,22 @@ module tridiagonal_solver #(
   always_ff @(posedge clk) begin
     saturations <= clipped;
     if (rst) saturations <= '0;
+  end
+
+  if (DataWidth < 2 || DataWidth > 32) begin : g_refused_0
+    DataWidth_must_be_2_to_32 u_refused ();
+  end
+  if (GradientWidth < 2 || GradientWidth > 32 || CoeffWidth < 2 || CoeffWidth > 32) begin : g_refused_1
+    GradientWidth_and_CoeffWidth_must_be_2_to_32 u_refused ();
+  end
+  if (StoreStyle < 0 || StoreStyle > 2) begin : g_refused_2
+    StoreStyle_must_be_0_to_2 u_refused ();
+  end
+  if (SettledWidth < 1 || SettledWidth > 16 || LastShiftWidth < 1 || LastShiftWidth > 6) begin : g_refused_3
+    SettledWidth_must_be_1_to_16_and_LastShiftWidth_1_to_6 u_refused ();
+  end
+  if (Neumann != 0 && (MeanReciprocal < 1 || MeanReciprocal > 1 << (CoeffWidth - 1))) begin : g_refused_4
+    MeanReciprocal_must_fit_CoeffWidth u_refused ();
   end
 
 endmodule

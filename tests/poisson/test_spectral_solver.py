@@ -13,16 +13,17 @@ from tactile_depth import reference
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.poisson.spectral_solver import solver_parameters, spectral_solver
+from tactile_depth.poisson.spectral_solver import spectral_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
+from tactile_depth.tactile_depth import hdl_parameters
 from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 
 
 def built(choices: Any, **runs: Any) -> Structure:
     config = Configuration(**choices)
     return Structure(
-        solver_parameters(config),
+        hdl_parameters(config),
         device={"configuration": choices},
         roms=lambda folder: write_solver(folder, config),
         **runs,
@@ -35,7 +36,7 @@ STRUCTURES = (
     built({"columns": 32, "data_width": 12, "coefficient_width": 10}, mutants=True),
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5}),
 )
-MUTANTS = Mutants("words", rows_are="Columns", simulators=QUICK_FIRST, flat=False)
+MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
 
 
 @pytest.mark.seeds

@@ -12,9 +12,10 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import ULTRA, Configuration
 from tactile_depth.poisson import spectral_solver
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.poisson.tridiagonal_solver import solver_parameters, tridiagonal_solver
+from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
 from tactile_depth.rom_files import write_solver
 from tactile_depth.scenes import dome, slopes_of
+from tactile_depth.tactile_depth import config_value, top_parameters
 from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
 from tests.poisson.test_spectral_solver import PEAKS
 
@@ -25,7 +26,7 @@ PACKED = {"WordsPerRow": 3, "StoreStyle": ULTRA}  # as a large grid has them, mo
 def built(choices: Any, store: Any, **runs: Any) -> Structure:
     config = Configuration(**choices)
     return Structure(
-        solver_parameters(config) | store,
+        {"Config": config_value(top_parameters(config) | store)},
         device={"configuration": choices},
         roms=lambda folder: write_solver(folder, config),
         **runs,
