@@ -15,8 +15,6 @@ class Proof:
 
     Attributes
     ----------
-    core : str
-        formal/fv_<core>.sv is a bench around hdl/<core>.sv.
     claim : str
         The property, in words.
     sufficient : str
@@ -33,9 +31,10 @@ class Proof:
         Wires of the core that take any values instead of their own.
     clocks : int
         Clocks of the core. With more than one, time is in steps, and each clock rises whenever it likes.
+    core : str
+        The bench is formal/<unit>/fv_<core>.sv; `make formal` sets it, from the test that states the proof.
     """
 
-    core: str
     claim: str
     sufficient: str
     parameters: Mapping[str, int] = field(default_factory=dict)
@@ -44,6 +43,7 @@ class Proof:
     roms: Callable[[Path], None] | None = None
     free: tuple[str, ...] = ()
     clocks: int = 1
+    core: str = ""
 
     @property
     def name(self) -> str:
@@ -61,7 +61,7 @@ class Cone:
     claim: str
     sufficient: str
     choices: Mapping[str, Any]
-    core: str = "tactile_depth"
+    core: str = ""
     engine: str = "yosys select"
     depth: int = 0
 

@@ -67,7 +67,7 @@ def factor_rom(block: int) -> Callable[[Path], None]:
     )
 
 
-def reciprocal_rom(size: int) -> Callable[[Path], None]:
+def divide_rom(size: int) -> Callable[[Path], None]:
     """Words {S, M}, every one another; square.hex: M 2^S for every burst and word."""
 
     def write(folder: Path) -> None:

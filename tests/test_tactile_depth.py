@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from formal.entries import Cone
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import ULTRA, Configuration
 from tactile_depth.tactile_depth import config_value, top_parameters, write_roms
@@ -91,6 +92,21 @@ REFUSED = {
     "DataWidth=33": "Width_must_be_2_to_32",
     "ZeroOffset=2": "ZeroOffset_is_0_or_1",
 }
+PROOFS = tuple(
+    Cone(
+        "no pixel, no word of a memory, no table reaches a handshake or side-band: the latency is fixed",
+        "a structural fact, the same generate blocks at every grid; narrow words, since no bit is left out",
+        {"solver": solver, "rows": rows, "columns": 16, "neumann": neumann, "data_width": 12, "coefficient_width": 10}
+        | colours,
+    )
+    for solver, rows in (("spectral", 16), ("tridiagonal", 8))
+    for neumann, colours in (
+        (0, {}),
+        (1, {}),
+        (1, {"flat_field": 1, "zero_offset": 1}),
+        (0, {"flat_field": 1, "gradient_model": "quadratic"}),
+    )
+)
 
 
 def level_of(structure: Structure, simulator: str) -> str:

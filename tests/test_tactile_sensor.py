@@ -31,6 +31,7 @@ STRUCTURES = (
 )
 MUTANTS = Mutants(simulators=VERILATOR, flat=False)
 REFUSED = {"Camera=0": "Config_has_no_camera"}
+NO_PROOF = "camera_unit and tactile_depth in a row"
 
 
 def test_rtl(run_tb: Callable[..., None], structure: Structure) -> None:

@@ -14,15 +14,14 @@ import sys
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from commands.common import markdown, variables
-from commands.common.repository import ROOT, chosen, cores, sources, tested
+from commands.common.repository import ROOT, chosen, cores, sources, stated, tested, units
 from commands.hardware.yosys import in_wheel
 from commands.verify import items, sign_off
 from formal.entries import Cone, Proof
-from formal.proofs import PROOFS, STRUCTURES, WITHOUT_CONTROL
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
@@ -190,19 +189,26 @@ def combined(outcomes: Mapping[str, Outcome]) -> str:
     return ", ".join(wrong) or "PASS"
 
 
-def selected(cores: str) -> list[Proof | Cone]:
+def reasons() -> dict[str, str]:
+    """Return the cores without a proof of their own, each with the reason."""
+    of_units = dict.fromkeys(units(), "proven cores in a row; what it adds, the testbench of tactile_depth checks")
+    noted = {core: stated(core, "NO_PROOF") for core in cores()}
+    return of_units | {core: why for core, why in noted.items() if why}
+
+
+def selected(names: str) -> list[Proof | Cone]:
     """Return the proofs of the cores in a value of CORE=a,b, or all proofs for an empty value.
+
+    The test of a core states them as PROOFS, or as NO_PROOF why it has none.
 
     Raises InputError: a core does not exist or has no proof.
     """
-    every: tuple[Proof | Cone, ...] = (*STRUCTURES, *PROOFS)
-    if not cores:
-        return list(every)
-    names = tested(chosen(cores))
-    for name in names:
-        if name in WITHOUT_CONTROL:
-            raise InputError(f"CORE={name} has no proof: {WITHOUT_CONTROL[name]}")
-    return [proof for proof in every if proof.core in names]
+    wanted = tested(chosen(names)) if names else ["tactile_depth", *cores()]  # the longest first
+    missing = reasons() if names else {}
+    for name in wanted:
+        if name in missing:
+            raise InputError(f"CORE={name} has no proof: {missing[name]}")
+    return [replace(proof, core=name) for name in dict.fromkeys(wanted) for proof in stated(name, "PROOFS") or ()]
 
 
 def item(proof: Proof | Cone, mode: str) -> str:
@@ -253,7 +259,7 @@ def main() -> None:
         core, only_list = values.get("CORE", ""), variables.choice(values, "LIST", ("0", "1")) == "1"
         proofs = selected(core)
         if only_list:
-            print(listing(proofs, {} if core else WITHOUT_CONTROL))
+            print(listing(proofs, {} if core else reasons()))
         else:
             sys.exit(prove(proofs))
 

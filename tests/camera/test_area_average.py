@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.camera.area_average import area_average
 from tactile_depth.resampling import resampling
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure
@@ -43,6 +44,16 @@ REFUSED = {
     "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
     "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
 }
+PROOFS = tuple(
+    Proof(
+        "a word 12 clocks behind each complete block and 18 behind each break, with the marks of its position",
+        "rows and columns are only counted; what is complete is proven of row_sums and block_totals",
+        {"Rows": rows, "Columns": columns},
+        depth=50,
+        free=("complete",),
+    )
+    for rows, columns in ((3, 4), (2, 5))
+)
 
 
 @given(st.integers(1, 24), st.integers(1, 24), st.integers(0, 40), st.integers(0, 40), st.integers(0, 2**32 - 1))

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.camera.black_level import black_level
 from tactile_depth.camera.pixel_format import pixel_format
 from tactile_depth.camera_configuration import FORMATS, CameraConfiguration
@@ -19,6 +20,14 @@ STRUCTURES = (
     built(8, 1),
 )
 MUTANTS = Mutants(repeats=2)
+PROOFS = tuple(
+    Proof(
+        "the sample less the black level, beside the gains, of the frame's own settings; latency 1",
+        FULL_WIDTH,
+        {"Bits": bits, "Channels": channels},
+    )
+    for bits, channels in ((10, 1), (8, 3))
+)
 
 
 @pytest.mark.parametrize("form", FORMATS)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import Proof
 from tactile_depth.camera.block_totals import block_areas, block_totals
 from tactile_depth.camera.row_sums import red_columns, row_sums
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -29,6 +30,16 @@ STRUCTURES = (
 REFUSED = {
     "Columns=3": "Columns_must_be_at_least_4_or_a_word_is_read_while_it_is_written",
 }
+PROOFS = tuple(
+    Proof(
+        "a word with each complete block, with its areas" + (" and totals" if totals else "") + "; latency 3; memory "
+        "as td_ram.sv asks",
+        "columns are only counted; totals are left to simulation where a block has several rows",
+        {"Numerator": numerator, "Denominator": denominator, "Bayer": bayer, "Totals": totals},
+        depth=60,
+    )
+    for numerator, denominator, bayer, totals in ((1, 1, 0, 1), (3, 2, 0, 0), (5, 2, 1, 0))
+)
 
 
 @pytest.mark.parametrize("colour", [(0, 0), (0, 1), (1, 0), (1, 1)])

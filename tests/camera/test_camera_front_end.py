@@ -62,6 +62,7 @@ REFUSED = {
     "Numerator=7": "below_a_ratio_of_2_some_blocks_lack_a_colour",
     "Rows=4096": "WindowColumns_and_WindowRows_must_be_2_to_8191",
 }
+NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends"
 
 
 @pytest.mark.parametrize(

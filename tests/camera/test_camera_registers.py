@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.camera.camera_front_end import camera_settings
 from tactile_depth.camera.camera_registers import CameraRegisters, camera_registers_parameters
 from tactile_depth.camera_configuration import CameraConfiguration
@@ -46,6 +47,12 @@ REFUSED = {
     "BlackLevel=4096": "BlackLevel_must_fit_12_bits_and_gains_16",
     "BlueGain=65536": "BlackLevel_must_fit_12_bits_and_gains_16",
 }
+PROOFS = (
+    Proof(
+        "every register as the map has it: words, settings that leave, sticky bits, counters",
+        FULL_WIDTH,
+    ),
+)
 
 
 @pytest.mark.parametrize("choices", [VGA, OTHER])

@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from formal.entries import Proof
+from formal.tables import camera_list
 from tactile_depth.camera.camera_setup import CameraSetup, Kind
 from tactile_depth.camera.register_lists import (
     CAMERAS,
@@ -52,6 +54,17 @@ REFUSED = {
     "DeviceId=67": "DeviceId_must_be_an_even_byte",
     "DeviceId=256": "DeviceId_must_be_an_even_byte",
 }
+PROOFS = (
+    Proof(
+        "entries in order; at the end each that is compared was right at last, or one was wrong often in a row; "
+        "pins and waits as the list says",
+        "a list with every kind of entry",
+        {"Bus": 0},
+        depth=40,
+        roms=camera_list,
+        free=("sent", "caught"),
+    ),
+)
 
 
 @pytest.mark.parametrize("name", list(CAMERAS))

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from formal.entries import Proof
 from tactile_depth.camera.camera_window import Settings, Watched, camera_window
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, WITHOUT_START, broken, positions, video
@@ -35,6 +36,16 @@ REFUSED = {
     "WindowRows=8192": "WindowColumns_and_WindowRows_must_be_2_to_8191",
     "WordsPerPixel=3": "WordsPerPixel_is_1_or_2",
 }
+PROOFS = tuple(
+    Proof(
+        "pixels of whole pictures with the marks of the window; faults before its last pixel flagged once, with a "
+        "break; an early start kept; latency 1",
+        "rows and columns are only counted and compared",
+        {"WordsPerPixel": words, "PixelPairs": pairs},
+        depth=40,
+    )
+    for words, pairs in ((1, 0), (1, 1))
+)
 
 
 def picture(start: int) -> list[Word]:

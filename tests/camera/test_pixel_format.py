@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.camera.pixel_format import CHROMA_OFFSET, photograph, pixel_format, pixel_format_parameters
 from tactile_depth.camera_configuration import FORMATS, PHASES, CameraConfiguration
 from tactile_depth.registers.register_map import CAMERA_REGISTERS
@@ -40,6 +41,24 @@ REFUSED = {
     "Format=10": "Format_is_a_number_of_camera_format_e",
     "Phase=4": "Phase_is_0_to_3",
 }
+PROOFS = (
+    *(
+        Proof(
+            "samples of the window's pixels with their marks, in order; breaks behind them; latency 1",
+            FULL_WIDTH,
+            {"Format": FORMATS[form].code, "Phase": phase},
+        )
+        for form, phase in (
+            *(("rgb888", 0), ("rgb565", 0), ("rgb565_bytes", 0), ("raw8", 1), ("raw10", 0), ("raw10_lsb", 2)),
+            *(("raw12", 3), ("raw12_lsb", 0)),
+        )
+    ),
+    Proof(
+        "YUYV: colours from luma and chroma of the pixel's own pair, in order; latency 3 and 4, breaks 4",
+        FULL_WIDTH,
+        {"Format": FORMATS["yuyv"].code},
+    ),
+)
 
 
 def test_the_formats_are_those_of_the_register() -> None:

@@ -8,28 +8,31 @@ import pytest
 
 from commands.common.repository import cores, mutants, sources
 from commands.verify import formal, mutate
-from formal import proofs
+from formal.entries import Proof
 
 QUICK = ("td_axis_skid", "td_burst_counter")
 CORES = list(cores())
 
 
+ENTRIES = formal.selected("")
+REASONS = formal.reasons()
+
+
 def proof(core: str) -> Any:
-    return next(proof for proof in proofs.PROOFS if proof.core == core)
-
-
-ENTRIES: tuple[Any, ...] = (*proofs.PROOFS, *proofs.STRUCTURES)
+    return next(entry for entry in ENTRIES if entry.core == core)
 
 
 def test_every_core_is_proven_or_says_why_not() -> None:
     proven = {entry.core for entry in ENTRIES}
-    both_or_none = [core for core in CORES if (core in proven) == (core in proofs.WITHOUT_CONTROL)]
-    assert both_or_none == [], "each has a bench in formal/ or a reason in WITHOUT_CONTROL"
+    both_or_none = [core for core in CORES if (core in proven) == (core in REASONS)]
+    assert both_or_none == [], "each has PROOFS or NO_PROOF in its test"
 
 
 def test_names_are_those_of_cores_and_benches() -> None:
-    assert {entry.core for entry in ENTRIES} | set(proofs.WITHOUT_CONTROL) == set(CORES)
-    assert {path.stem for path in formal.BENCHES.rglob("fv_*.sv")} == {f"fv_{entry.core}" for entry in proofs.PROOFS}
+    assert {entry.core for entry in ENTRIES} | REASONS.keys() == set(CORES)
+    assert {path.stem for path in formal.BENCHES.rglob("fv_*.sv")} == {
+        f"fv_{entry.core}" for entry in ENTRIES if isinstance(entry, Proof)
+    }
     names = [entry.name for entry in ENTRIES]
     assert len(set(names)) == len(names)
 
@@ -42,7 +45,7 @@ def test_every_protocol_belongs_to_a_core() -> None:
 
 
 def test_the_list_names_every_core() -> None:
-    listing = formal.listing(ENTRIES, proofs.WITHOUT_CONTROL)
+    listing = formal.listing(ENTRIES, REASONS)
     assert {line.split(" | ")[0].removeprefix("| ") for line in listing.splitlines() if line} >= set(CORES)
 
 

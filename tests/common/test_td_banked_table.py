@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from cocotb_tools.runner import as_sv_literal
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.rom_files import write_words
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -30,6 +31,13 @@ STRUCTURES = (
     built(24, 36, BLOCK, on=VERILATOR),
     built(5, 6, DISTRIBUTED, on=ICARUS, mutants=True),
     built(42, 64, BLOCK),
+)
+PROOFS = (
+    Proof(
+        "a frame reads the bank named when it began; the free bank reads as it was written",
+        WORD_FREE,
+        depth=30,
+    ),
 )
 
 

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from formal.entries import Proof
 from tactile_depth.common.td_block_sum import block_sum
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
@@ -34,6 +35,15 @@ REFUSED = {
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
     "SumWidth=27": "SumWidth_must_be_more_than_Width_plus_ColumnLog2",
 }
+PROOFS = tuple(
+    Proof(
+        "a block's sum written 4 clocks behind its rows; an arbitrary word is added once to its block, to no other",
+        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width",
+        {"Signed": signed, "ColumnLog2": column_log2},
+        depth=40,
+    )
+    for signed, column_log2 in ((0, 1), (1, 1), (1, 0))
+)
 
 
 @given(arrays(np.int64, (2, 5, 8, 2), elements=st.integers(-8, 7)), st.integers(1, 2))

@@ -6,6 +6,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.common.td_delay_line import delay_line
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -24,6 +25,20 @@ STRUCTURES = (
 REFUSED = {
     "Delay=0": "Delay_must_be_at_least_1",
 }
+PROOFS = tuple(
+    Proof(
+        "out is in, Delay enabled clocks later; holds while en is low",
+        why,
+        {"Delay": delay},
+        depth=30,
+    )
+    for delay, why in (
+        (1, "the smallest"),
+        (4, f"the longest of registers; {WORD_FREE}"),
+        (5, f"the shortest in memory; {WORD_FREE}"),
+        (8, f"in memory, the pointer runs over at a power of two; {WORD_FREE}"),
+    )
+)
 
 
 @given(st.lists(st.integers()), st.integers(1, 9))

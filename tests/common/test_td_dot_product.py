@@ -7,6 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.common.td_dot_product import dot_product
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -21,6 +22,7 @@ STRUCTURES = (
     built(35, 24),
     built(4, 3, mutants=True),
 )
+PROOFS = (Proof("the exact sum of two products, 4 enabled clocks later", "no control but en; no width enters"),)
 
 
 @given(A, B, A, B)

@@ -3,7 +3,10 @@
 
 from typing import Any
 
+from formal.entries import Proof
+from formal.tables import gain_rom
 from tactile_depth.common.td_gain_map import ENTRIES_PER_NODE, table_entries
+from tactile_depth.latency import GAIN_MAP
 from tactile_depth.rom_files import write_gains
 from tb.gains import first_gains
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -35,6 +38,25 @@ REFUSED = {
     "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
 }
+PROOFS = tuple(
+    Proof(
+        claim,
+        "blocks of 2, where every clock reads a node; a cut row of blocks; weights and sums are exact at any width",
+        {"Along": along, "Columns": 4, "Channels": channels, "Latency": GAIN_MAP},
+        depth=45,
+        roms=gain_rom(4),
+        free=("sums",) if along else (),
+    )
+    for along, channels, claim in (
+        (
+            0,
+            3,
+            "down a column: sums of the nodes of the bank named when the frame began; entries read; its latency",
+        ),
+        (0, 1, "the same of one channel alone"),
+        (1, 3, "along a row: gains interpolated between any such sums, rounded to even; its latency"),
+    )
+)
 
 
 def test_entries_are_the_channels_of_each_node() -> None:

@@ -5,6 +5,9 @@ from typing import Any
 
 import pytest
 
+from formal.entries import Proof
+from formal.tables import zero_lanes_rom
+from tactile_depth.common import td_node_map
 from tactile_depth.common.td_node_map import latency, side
 from tactile_depth.rom_files import write_zero
 from tb.gains import first_gains
@@ -44,6 +47,28 @@ REFUSED = {
     "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
     "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
 }
+PROOFS = tuple(
+    Proof(
+        claim,
+        "a beat of a half, a whole block, two; a cut row of blocks; weights and sums are exact at any width",
+        {
+            "Along": along,
+            "Rows": (2 << block_log2) + 1,
+            "Columns": columns,
+            "BlockLog2": block_log2,
+            "Lanes": lanes,
+            "Latency": td_node_map.latency(lanes, block_log2),
+        },
+        depth=50,
+        roms=zero_lanes_rom(2 * (columns >> block_log2), td_node_map.side(lanes, block_log2)),
+        free=("sums",) if along else (),
+    )
+    for along, claim in (
+        (0, "down a column: sums of the nodes of the bank named when the frame began; entries read; its latency"),
+        (1, "along a row: words interpolated between any such sums, rounded to even; its latency"),
+    )
+    for columns, block_log2, lanes in ((8, 2, 2), (4, 1, 2), (8, 1, 4))
+)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from commands.common.repository import ROOT
 from commands.hardware.ecp5 import write_slices
+from formal.entries import WORD_FREE, Proof
 from tactile_depth.common.td_ram import ram
 from tactile_depth.rom_files import write_words
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -43,6 +44,9 @@ REFUSED = {
     "Depth=1": "Depth_must_be_at_least_2",
     'Style=2 File="contents.hex"': "an_ultra_memory_has_no_contents_at_power_up",
 }
+PROOFS = tuple(
+    Proof("a read returns what was last written to its address", WORD_FREE, {"Style": style}) for style in (0, 1, 2)
+)
 OF_ECP5 = (
     built(21, 4096, BLOCK, "contents.hex", on=VERILATOR, late=()),
     built(9, 16384, BLOCK, on=VERILATOR, late=()),

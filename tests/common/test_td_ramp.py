@@ -7,6 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.common.td_ramp import ramp
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -24,6 +25,14 @@ REFUSED = {
     "Count=3": "Count_must_be_a_power_of_two",
     "StepWidth=33": "StepWidth_must_be_at_most_Width",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word is the first and so many steps, log2(Count) enabled clocks later",
+        "sums are exact at any width; no tree, and one of two levels",
+        {"Count": count},
+    )
+    for count in (1, 4)
+)
 
 
 @given(st.integers(0, 2**40 - 1), st.integers(-(2**36), 2**36 - 1))  # the widest that occur

@@ -27,6 +27,7 @@ STRUCTURES = (
 REFUSED = {
     "Depth=1": "Depth_must_be_at_least_2",
 }
+NO_PROOF = "one read register and no other state; its contents and addresses are proven of those that use it"
 
 
 def test_addresses_read_their_words() -> None:

@@ -5,6 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.contact.beat_sums import beat_sums
 from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -24,6 +25,7 @@ REFUSED = {
     "Lanes=1": Refused("Lanes_must_be_a_power_of_two_at_least_2", {"verilator": "can't find definition of 'top_at'"}),
     "Lanes=12": "Lanes_must_be_a_power_of_two_at_least_2",
 }
+PROOFS = (Proof("sums, limits and peak of an arbitrary beat, 2 clocks later", "sums are exact at any width"),)
 
 
 @given(st.lists(DEPTH, min_size=8, max_size=8))

@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import ROUNDING, Proof
+from tactile_depth.contact import centroid
 from tactile_depth.contact.centroid import FRACTION, mean
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -18,6 +20,14 @@ STRUCTURES = (
     built(10, 21),
     built(2, 4),
     built(5, 9),
+)
+PROOFS = (
+    Proof(
+        "both means to the nearest, a fixed number of clocks after the last start",
+        f"every area and sum of this width; a bit is found in the same way at any width; {ROUNDING}",
+        {"Latency": centroid.cycles(2)},
+        depth=40,
+    ),
 )
 
 

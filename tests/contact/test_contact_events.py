@@ -8,8 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.built_in import load
 from tactile_depth.configuration import COLUMNS, Configuration
+from tactile_depth.contact import contact_events
 from tactile_depth.contact.contact_events import WORDS, ContactEvents, Record, Settings, record
 from tactile_depth.frames import load_frames, on_grid
 from tactile_depth.tactile_depth import tactile_depth
@@ -39,6 +41,15 @@ REFUSED = {
     "Columns=1025": "Columns_must_be_2_to_1024",
     "Rows=4 Columns=4": "a_frame_must_take_at_least_Latency_cycles",
 }
+PROOFS = (
+    Proof(
+        "a record at a fixed latency, kept until the next, with number and time of its frame",
+        "rows and columns are only counted; whatever sums, area and centroid come out: they have their own proofs",
+        {"Rows": 3, "Columns": 8, "Latency": contact_events.latency(3, 8)},
+        depth=90,
+        free=("sums", "area", "mean_position"),
+    ),
+)
 
 
 @given(*(st.integers(0, 2**32 - 1) for _ in range(4)), st.integers(-(2**31), 2**31 - 1), PLACE, PLACE, PLACE, PLACE)

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from formal.entries import Proof
 from tactile_depth.contact.contact_sums import ContactSums, Thresholds
 from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -30,6 +31,17 @@ REFUSED = {
     ),
     "Lanes=64": "Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns",
 }
+PROOFS = tuple(
+    Proof(
+        "area 2 and sums 3 + log2(Lanes) clocks after a frame's last beat; limits and peak enclose what is above, "
+        "are attained",
+        "positions are only counted; sums are exact at any width; either order of rows; the sums of a beat of "
+        "several depths are proven of beat_sums",
+        {"BottomFirst": bottom_first, "Columns": columns, "Lanes": lanes},
+        depth=30,
+    )
+    for bottom_first, columns, lanes in ((0, 3, 1), (1, 3, 1), (0, 4, 2), (1, 4, 2))
+)
 
 
 @given(arrays(np.int64, (5, 8), elements=st.integers(-8, 7)), st.integers(-9, 8), st.booleans(), st.booleans())

@@ -4,6 +4,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.contact.record_packets import RecordPackets
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -13,6 +14,13 @@ STRUCTURES = (
     built(13, on=VERILATOR),
     built(3, on=ICARUS, mutants=True),
     built(2),
+)
+PROOFS = (
+    Proof(
+        "the newest record kept; whole packets in order, each sent, or lost and said so",
+        "words are sent alike; three of them to a packet",
+        depth=20,
+    ),
 )
 
 

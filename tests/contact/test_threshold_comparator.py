@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """threshold_comparator: RTL against the model."""
 
+from formal.entries import FULL_WIDTH, Proof
 from tb.structures import BOTH, ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
@@ -16,3 +17,11 @@ REFUSED = {
     "Width=33": "Width_must_be_2_to_32",
     "Lanes=0": "Lanes_must_be_at_least_1",
 }
+PROOFS = tuple(
+    Proof(
+        "contact within one clock of a beat with a depth above the threshold, never otherwise",
+        f"{FULL_WIDTH}; of several depths, which are only compared, any one decides",
+        {"Width": width, "Lanes": lanes},
+    )
+    for width, lanes in ((24, 1), (4, 2))
+)

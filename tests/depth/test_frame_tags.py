@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_tags: RTL against the model."""
 
+from formal.entries import WORD_FREE, Proof
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
@@ -12,4 +13,13 @@ STRUCTURES = (
     built(33, 32, 16),
     built(33, 50, 13),
     built(4, 9, 6, mutants=True),
+)
+PROOFS = tuple(
+    Proof(
+        "an arbitrary tag is due exactly Latency enabled clocks after it was pushed, nothing else ever",
+        f"one, two and three places; {WORD_FREE}",
+        {"Latency": latency, "Pixels": pixels},
+        depth=30,
+    )
+    for latency, pixels in ((3, 4), (5, 4), (7, 3))
 )

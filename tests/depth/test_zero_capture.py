@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import ROUNDING, Proof
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tb.structures import BOTH, ICARUS, VERILATOR, Structure
@@ -41,6 +42,25 @@ REFUSED = {
     "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
     "MaxLog2=9": "MaxLog2_must_be_at_most_8",
 }
+PROOFS = (
+    *(
+        Proof(
+            "2^k frames behind a request, each node written once, 6 clocks behind its block, done after 7; memory as "
+            "td_ram.sv asks; of several lanes all a clock later, depths of a block in a beat added up",
+            "two rows of blocks and a cut one, and a single whole one; rows, columns and frames are only counted; a "
+            "beat of a block, and of two",
+            {"Sums": 0, "Rows": rows, "Columns": 4 * lanes, "Lanes": lanes},
+            depth=60,
+        )
+        for rows, lanes in ((5, 1), (2, 1), (3, 2), (3, 4))
+    ),
+    Proof(
+        "an arbitrary depth is added once to its node, and to no other; a zero offset is the mean, ties to even",
+        f"a cut row of blocks; sums are exact at any width; {ROUNDING}",
+        {"Sums": 1, "Rows": 3},
+        depth=60,
+    ),
+)
 
 
 @pytest.mark.parametrize("count", [1, 2, 8])

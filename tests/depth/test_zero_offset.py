@@ -6,11 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import zero_rom
 from tactile_depth.common.td_node_map import side
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, interpolated_zero, no_zero, zero_offset
+from tactile_depth.latency import zero_offset_latency
 from tactile_depth.rom_files import write_zero
 from tb.stream import places
 from tb.structures import ICARUS, VERILATOR, Structure
@@ -50,6 +53,18 @@ REFUSED = {
     "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
     "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
 }
+PROOFS = tuple(
+    Proof(
+        "the depths of an arbitrary beat less whatever td_gain_map or td_node_map holds, saturated, counted "
+        "if clipped, with their marks; its latency; active while a frame is inside; zero offsets read back",
+        f"subtraction is exact at any width; {ROUNDING}; td_gain_map and td_node_map are proven by themselves",
+        {"Rows": 2, "Lanes": lanes, "Latency": zero_offset_latency(lanes, 1)},
+        depth=45,
+        roms=zero_rom,
+        free=("zero_words",),
+    )
+    for lanes in (1, 2)
+)
 
 
 CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")

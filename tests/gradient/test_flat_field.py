@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import ROUNDING, WORD_FREE, Proof
+from formal.tables import gain_rom
 from tactile_depth.configuration import DEVIATION, Configuration, Format
 from tactile_depth.gradient.flat_field import (
     captured_gains,
@@ -43,6 +45,27 @@ STRUCTURES = (
 REFUSED = {
     "Offset=1": "Offset_must_be_even_it_is_subtracted_before_rounding_to_even",
 }
+PROOFS = (
+    Proof(
+        "beside a pixel's gains, 10 enabled clocks after it came, stand its own colours, valid and place",
+        f"every clock reads a node; {WORD_FREE}",
+        {"Meets": 1},
+        depth=45,
+        roms=gain_rom(2),
+        free=("gains",),
+    ),
+    *(
+        Proof(
+            "whatever stands there: a colour times its gain, rounded, saturated; dark pixels held, counted; 3 clocks",
+            f"products are exact at any width; {ROUNDING}",
+            {"Meets": 0, "GainWidth": 4, "Drop": 1, "Offset": offset, "OutWidth": width, "Flat": flat},
+            depth=45,
+            roms=gain_rom(2),
+            free=("gains", "gain_valid", "gain_position", "colours", "dim"),
+        )
+        for offset, width, flat in ((0, 1, 1), (2, 2, 0))
+    ),
+)
 
 
 CONFIG = Configuration(columns=32, rows=21, solver="tridiagonal")

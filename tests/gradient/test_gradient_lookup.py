@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import WORD_FREE, Proof
+from formal.tables import gradient_rom
 from tactile_depth import reference
 from tactile_depth.built_in import synthetic
 from tactile_depth.configuration import Configuration
@@ -38,6 +40,13 @@ STRUCTURES = (
 REFUSED = {
     "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
 }
+PROOFS = (
+    Proof(
+        "slopes of the pixel's own index in the bank its frame began with, latency 4; reads of the other bank",
+        f"{WORD_FREE}; one bit a channel has the same index",
+        roms=gradient_rom,
+    ),
+)
 if RUN.full:  # 4 GB of table
     REFUSED["BitsPerChannel=9"] = "BitsPerChannel_must_be_1_to_8"
 

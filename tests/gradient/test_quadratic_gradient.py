@@ -8,6 +8,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import quadratic_roms
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.quadratic_gradient import coefficients, gradient_parameters, slope_codes
@@ -39,6 +41,16 @@ STRUCTURES = (
     built(6, 4, 4, 4, 1),
     built(10, 4, 5, 9, -2),
     built(12, 4, 5, 9, -2),
+)
+PROOFS = tuple(
+    Proof(
+        "the coefficient of the pixel's own place, words written or from power-up; latency 11",
+        f"additions are exact at any width; the shortest rows; each colour, both axes; {ROUNDING}",
+        {"Polynomial": polynomial},
+        depth=30,
+        roms=quadratic_roms,
+    )
+    for polynomial in (0, 4, 2)
 )
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import Proof
 from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.reference_capture import (
     largest_log2_frames,
@@ -43,6 +44,23 @@ REFUSED = {
     "MaxLog2=11": "a_sum_over_2_to_the_MaxLog2_frames_must_fit_Width_bits",
     "GainFraction=10": "GainFraction_plus_2_BlockLog2_must_be_at_least_Width",
 }
+PROOFS = tuple(
+    Proof(
+        claim,
+        "a cut row of blocks; rows, columns and frames are only counted; sums are exact at any width"
+        + (", whatever the divider writes behind them" if sums else ""),
+        {"Sums": sums},
+        depth=60,
+        free=("word",) if sums else (),
+    )
+    for sums, claim in (
+        (
+            0,
+            "2^k good frames in a row behind a request, done a fixed number of clocks later; memory as td_ram asks",
+        ),
+        (1, "an arbitrary pixel is added once to its node, and to no other"),
+    )
+)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,8 @@
 
 from typing import Any
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import thomas_roms
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
@@ -45,3 +47,13 @@ REFUSED = {
     "Lanes=3": "Lanes_must_be_a_power_of_two_and_at_most_Columns_by_4",
     "Lanes=64": "Lanes_must_be_a_power_of_two_and_at_most_Columns_by_4",
 }
+PROOFS = tuple(
+    Proof(
+        "the recursion up an arbitrary column, from lane to lane; latency 8",
+        f"z that waits in the memory, and z that goes straight on; {ROUNDING}",
+        {"Rows": 3, "Columns": size, "Words": 2 * size, "Lanes": lanes},
+        depth=60,
+        roms=thomas_roms(3, size, 2 * size, 3, 2, 1),
+    )
+    for lanes, size in ((1, 8), (2, 16), (2, 8))
+)

@@ -5,6 +5,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from formal.entries import Proof
 from tactile_depth.poisson.divergence import divergence
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
@@ -21,6 +22,15 @@ STRUCTURES = (
 REFUSED = {
     "Columns=1": "Columns_must_be_at_least_2",
 }
+PROOFS = tuple(
+    Proof(
+        "differences to the left and above, for every pixel of an arbitrary column; latency 2",
+        "the subtractions are exact at any width; columns and rows are only counted",
+        {"Neumann": neumann},
+        depth=45,
+    )
+    for neumann in (0, 1)
+)
 
 
 @settings(max_examples=30, deadline=None)

@@ -3,6 +3,8 @@
 
 from typing import Any
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import thomas_roms
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.tridiagonal_solver import solver_parameters
 from tactile_depth.rom_files import write_thomas
@@ -33,3 +35,13 @@ STRUCTURES = (
     built(CHOICES | {"rows": 21, "neumann": True, "data_width": 32, "coefficient_width": 24}),
 )
 MUTANTS = Mutants("bursts")
+PROOFS = tuple(
+    Proof(
+        "the recursion down an arbitrary column" + (", and the mean" if neumann else "") + "; latency 9",
+        f"the smallest burst that holds the loop of the recursion; {ROUNDING}",
+        {"Rows": 3, "Columns": 8, "Words": 16, "Neumann": neumann},
+        depth=60,
+        roms=thomas_roms(3, 8, 16, 3, 2, 1),
+    )
+    for neumann in (0, 1)
+)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """frame_stack: RTL against the model."""
 
+from formal.entries import WORD_FREE, Proof
 from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
@@ -39,3 +40,23 @@ REFUSED = {
     "Lanes=3": "Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2",
     "Lanes=128": "Lanes_must_be_a_power_of_two_and_divide_Columns_into_steps_of_at_least_2",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its place, last row first; latency 3 from the first word of the last row",
+        "rows, positions and memory rows are only counted; rows and memory rows no power of two, and one; words to "
+        f"a memory row that divide a burst, and not; rows that lanes divide, and not, and fewer; {WORD_FREE}",
+        {"Rows": rows, "Columns": size, "WordsPerRow": words, "Lanes": lanes},
+        depth=3 * rows * size + 5,
+    )
+    for rows, size, words, lanes in (
+        (3, 4, 1, 1),
+        (4, 4, 1, 1),
+        (3, 4, 2, 1),
+        (3, 4, 3, 1),
+        (3, 5, 3, 1),
+        (2, 3, 3, 1),
+        (4, 4, 1, 2),
+        (5, 4, 3, 2),
+        (3, 8, 1, 4),
+    )
+)

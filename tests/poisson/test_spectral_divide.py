@@ -8,6 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import divide_rom
 from tactile_depth import reference
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
@@ -47,6 +49,16 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Columns=1": "Columns_must_be_a_power_of_two_at_least_2",
 }
+PROOFS = tuple(
+    Proof(
+        "word t of burst p meets the reciprocal of the pair (p, t); latency 6",
+        f"one recurrence for every size; {ROUNDING}",
+        {"Columns": size},
+        depth=40,
+        roms=divide_rom(size),
+    )
+    for size in (4, 8)
+)
 
 
 def divided(modes: Any, config: Configuration) -> Any:

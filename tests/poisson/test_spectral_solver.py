@@ -37,6 +37,7 @@ STRUCTURES = (
     built({"columns": 16, "data_width": 32, "coefficient_width": 24, "depth_range_px": 9.5}),
 )
 MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 
 @pytest.mark.seeds

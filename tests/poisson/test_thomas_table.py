@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import Proof
+from formal.tables import thomas_roms
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.poisson.transform.orders import eigenvalues
@@ -39,6 +41,14 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_2",
     "Rows=1": "Rows_must_be_at_least_2",
 }
+PROOFS = (
+    Proof(
+        "the coefficient of a row and position: base + min(row, settled), in the last row its own; latency 5",
+        "every row and position of a table with all its cases; contents do not matter",
+        {"Rows": 6, "Columns": 4, "Words": 14},
+        roms=thomas_roms(6, 4, 14, 5, 3, 2),
+    ),
+)
 
 
 @pytest.mark.parametrize("neumann", [False, True])

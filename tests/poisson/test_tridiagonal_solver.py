@@ -46,6 +46,7 @@ STRUCTURES = (
     built(CHOICES | {"columns": 64, "rows": 21, "lanes": 16}, {}),  # 32 lanes: the codes of `make regress`
 )
 MUTANTS = Mutants("words", simulators=QUICK_FIRST, flat=False)
+NO_PROOF = "a chain of proven cores, each of which takes what the one before it sends; no control of its own"
 
 
 @pytest.mark.seeds

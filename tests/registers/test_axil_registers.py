@@ -4,6 +4,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from formal.entries import FULL_WIDTH, Proof
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import config_value, default_parameters, top_parameters
 from tb.structures import BOTH, ICARUS, QUICK_FIRST, VERILATOR, Mutants, Structure
@@ -64,6 +65,15 @@ REFUSED = {
     "SlopeExponent=128": "an_exponent_does_not_fit_8_bits",
     "PitchNm=-1": "PitchNm_must_not_be_negative",
 }
+PROOFS = tuple(
+    Proof(
+        "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
+        f"{FULL_WIDTH}; either gradient model, all options",
+        {"Quadratic": quadratic},
+        depth=16,
+    )
+    for quadratic in (0, 1)
+)
 
 
 def test_axil_registers(run_tb: Callable[..., None], structure: Structure) -> None:

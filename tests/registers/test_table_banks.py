@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 
+from formal.entries import Proof
 from tb.structures import BOTH, ICARUS, Structure, of_parameters
 
 built = of_parameters("Present")
@@ -11,6 +12,14 @@ STRUCTURES = (
     built(2, on=ICARUS),
     built(4, on=ICARUS),
     built(9, on=ICARUS),
+)
+PROOFS = tuple(
+    Proof(
+        "the bank of an arbitrary table changes with a frame alone, after a commit or a capture; closed until then",
+        "all tables, and a build without some",
+        {"Present": present},
+    )
+    for present in (15, 8)
 )
 
 

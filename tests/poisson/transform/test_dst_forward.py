@@ -9,6 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.fft import dst
 
+from formal.entries import Proof
+from formal.tables import transform_roms
+from tactile_depth.latency import dst_forward_latency
 from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.poisson.transform.sdf_fft import halvings, twiddle_stages
@@ -34,6 +37,15 @@ STRUCTURES = (
     built(transform_parameters(64, 32, 1, 35, 24, 0, 35, 1)),
 )
 MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+PROOFS = (
+    Proof(
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
+        "the smallest transform, every core of a longer one is in it",
+        {"Size": 8, "Latency": dst_forward_latency(8)},
+        depth=60,
+        roms=transform_roms,
+    ),
+)
 
 
 def transform(x: np.ndarray, coeff: int, width: int = 40) -> Any:

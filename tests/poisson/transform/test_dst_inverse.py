@@ -9,6 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.fft import idst
 
+from formal.entries import Proof
+from formal.tables import transform_roms
+from tactile_depth.latency import dst_inverse_latency
 from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
@@ -35,6 +38,15 @@ STRUCTURES = (
     built(transform_parameters(64, 35, 0, 35, 24, -1, 32, 1)),
 )
 MUTANTS = Mutants("bursts", columns_are="Size", flat=False)
+PROOFS = (
+    Proof(
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
+        "the smallest transform, every core of a longer one is in it",
+        {"Size": 8, "Latency": dst_inverse_latency(8)},
+        depth=60,
+        roms=transform_roms,
+    ),
+)
 
 
 def inverse(modes: Any, coeff: int, width: int = 40) -> Any:

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.poisson.transform.mode_pairs import mode_pairs
 from tactile_depth.poisson.transform.orders import bit_reversed, mirror
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
@@ -22,6 +23,15 @@ REFUSED = {
     "Size=12": "Size_must_be_a_power_of_two_at_least_4",
     "Size=2": "Size_must_be_a_power_of_two_at_least_4",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary mode, and beside it mode N - k; latency N / 2 + 2",
+        f"{ONE_ORDER}; at 8 the delay line is in memory; {WORD_FREE}",
+        {"Size": size},
+        depth=45,
+    )
+    for size in (4, 8)
+)
 
 
 @pytest.mark.parametrize("size", [8, 16, 128, 512])

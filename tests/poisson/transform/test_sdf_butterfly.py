@@ -7,6 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import ROUNDING, Proof
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
 from tactile_depth.poisson.transform.sdf_fft import Stage
@@ -36,6 +37,21 @@ REFUSED = {
     "RotateBlock=6": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
     "RotateBlock=256": "RotateBlock_must_be_0_or_a_power_of_two_4_to_Size",
 }
+PROOFS = tuple(
+    Proof(
+        "sum and difference of an arbitrary pair at their places, turned and halved; latency Delay + 2",
+        f"stages as they occur in a transform of 8, one with its line in memory; {ROUNDING}",
+        {"Size": size, "Delay": delay, "RotateBlock": block, "Inverse": inverse, "Halve": halve},
+        depth=45,
+    )
+    for size, delay, block, inverse, halve in (
+        (8, 4, 0, 0, 0),
+        (8, 2, 8, 0, 1),
+        (8, 4, 8, 1, 1),
+        (8, 1, 0, 1, 1),
+        (16, 8, 0, 0, 0),
+    )
+)
 
 
 WORDS = st.lists(st.integers(-(2**20), 2**20), min_size=32, max_size=32)

@@ -8,6 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from formal.entries import Proof
+from formal.tables import transform_roms
+from tactile_depth.latency import sdf_fft_latency
 from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
@@ -42,6 +45,16 @@ REFUSED = {
     "Size=4": "Size_must_be_a_power_of_two_at_least_8",
     "Size=24": "Size_must_be_a_power_of_two_at_least_8",
 }
+PROOFS = tuple(
+    Proof(
+        "start and frame_start leave with their burst, at the latency of models/tactile_depth/latency.py",
+        "the smallest transform: pair, twiddle and lone butterfly; longer ones chain more of these",
+        {"Size": 8, "Inverse": inverse, "Latency": sdf_fft_latency(8)},
+        depth=60,
+        roms=transform_roms,
+    )
+    for inverse in (0, 1)
+)
 
 
 def transform(z: np.ndarray, inverse: bool, coeff: int, width: int = 40) -> Any:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from formal.entries import ONE_ORDER, WORD_FREE, Proof
 from tactile_depth.poisson.transform.orders import makhoul
 from tactile_depth.poisson.transform.transpose import transpose
 from tb.structures import ICARUS, VERILATOR, Mutants, of_parameters
@@ -25,6 +26,15 @@ REFUSED = {
     "Columns=12": "Columns_must_be_a_power_of_two_at_least_4",
     "Columns=2": "Columns_must_be_a_power_of_two_at_least_4",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word at its place in its column; latency 2 from the first word of the last row",
+        f"{ONE_ORDER}; {WORD_FREE}",
+        {"Columns": 4, "MakhoulIn": makhoul_in, "MakhoulOut": makhoul_out},
+        depth=45,
+    )
+    for makhoul_in, makhoul_out in ((0, 1), (1, 0))
+)
 
 
 @pytest.mark.parametrize("makhoul_out", [False, True])

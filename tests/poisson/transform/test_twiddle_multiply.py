@@ -8,6 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from formal.entries import ROUNDING, Proof
+from formal.tables import factor_rom
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.poisson.transform.twiddle_multiply import (
@@ -71,6 +73,16 @@ REFUSED = {
     "Block=1": "Block_must_be_a_power_of_two_2_to_Size",
     "Block=256": "Block_must_be_a_power_of_two_2_to_Size",
 }
+PROOFS = tuple(
+    Proof(
+        "an arbitrary word meets the factor of its own position; latency 7",
+        f"the address is the burst's position; {ROUNDING}",
+        {"Size": 8, "Block": block, "RealOnly": real_only},
+        depth=35,
+        roms=factor_rom(block),
+    )
+    for block, real_only in ((4, 0), (8, 1))
+)
 
 
 @pytest.mark.parametrize("inverse", [False, True])
