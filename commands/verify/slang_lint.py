@@ -91,11 +91,6 @@ WAIVERS = (
         lambda f: "_map_pkg" in f.place,
         "a register map is generated whole; no core uses every reset value and bit",
     ),
-    Waiver(
-        "unused-def",
-        lambda f: "hdl/camera/" in f.place,
-        "cores before s_axis: a design with a camera instantiates them, the board without one does not",
-    ),
     Waiver("unused-wildcard-import", lambda f: "build/" in f.place, "a generated wrapper imports every package"),
 )
 
