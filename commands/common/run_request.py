@@ -146,7 +146,7 @@ def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
     chosen = {"SOLVER": preset.solver, "BOUNDARY": preset.boundary}
     rows, columns = map(str, preset.grid)
     if "N" in values:
-        rows = columns = values["N"]
+        rows = columns = str(variables.number(values, "N", 0, -math.inf, math.inf))
     elif rows != columns and values.get("SOLVER") == SOLVERS[0]:
         rows = columns = values.get("COLS") or values.get("ROWS") or columns
     chosen |= {"ROWS": rows, "COLS": columns}
