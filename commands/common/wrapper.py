@@ -3,6 +3,7 @@
 
 import os
 import re
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -85,6 +86,7 @@ def wrapper(name: str, parameters: Mapping[str, int], tables: str = "./") -> str
     without = "" if parameters["Camera"] else "  register_command_t unused_command;\n"
     if without:
         connected += ", .register_command(unused_command), .register_answer('0)"
+    connected = "\n    ".join(textwrap.wrap(connected, 116))
     instance = "u_sensor" if parameters["Camera"] else "u_pipeline"
     depth_bytes = parameters["Lanes"] * -(-parameters["DataWidth"] // 8)
     return f"""// {top}_{name}: {top} with one configuration. Generated: do not edit.
