@@ -220,7 +220,7 @@ def test_a_file_without_a_part_of_its_camera_is_named(tmp_path: Path, key: str) 
 
 def test_an_old_file_needs_the_size_of_its_camera(tmp_path: Path) -> None:
     path = saved(tmp_path, **dict.fromkeys(CAMERA), **QUADRATIC)
-    assert "give camera_size=(rows, columns)" in refused(path)
+    assert "give camera_size=(<rows>, <columns>)" in refused(path)
     with pytest.warns(InputWarning, match="a calibration of version 0.1: taken for RGB pictures of 320 x 240 pixels"):
         sensor = load(path, camera_size=(240, 320))
     assert (sensor.camera, sensor.flat_field) == (Camera(240, 320), True)

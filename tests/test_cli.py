@@ -224,7 +224,7 @@ def test_a_reference_of_no_known_sensor_needs_a_calibration(
 ) -> None:
     picture = f"{mini}/rotated.png"
     assert main(["depth", picture, "--reference", picture, "--out", f"{tmp_path}/out"]) == 2
-    assert "give the one of its sensor with --calibration" in capsys.readouterr().err
+    assert "give the --calibration of the sensor that took it" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 

@@ -104,7 +104,7 @@ def test_the_configuration_follows_from_the_sensor(mini: Any) -> None:
 STEEP = Sensor("steep", np.full((16, 16, 16, 2), 1.5), 0.1)
 DISAGREEING: dict[str, Any] = {
     "bits_per_channel": (synthetic(5), {}, "bits_per_channel=4 of the configuration, but the table of synthetic has 5"),
-    "gradient_limit": (STEEP, {}, "gradient_limit=1 of the configuration is below the slopes of steep, which reach 2"),
+    "gradient_limit": (STEEP, {}, "gradient_limit=1.0 of the configuration is below the slopes of steep, which reach"),
     "flat_field": (synthetic().scaled(1, GREY), {}, "flat_field=False of the configuration, but synthetic has a ref"),
     "size of the reference": (
         synthetic().scaled(1, np.full((32, 16, 3), 128, np.uint8)),
@@ -207,5 +207,5 @@ def test_a_picture_of_no_known_sensor_is_not_identified(mini: Any, change: Any, 
 def test_the_real_sensor_is_identified() -> None:
     background = read_picture(FOLDER / "gelslam" / "background.png")
     assert identify(background).name == "gelsight-mini"
-    with pytest.raises(InputError, match="name the calibration of the sensor that took it"):
+    with pytest.raises(InputError, match="give the calibration of the sensor that took it"):
         identify(np.rot90(background, 2))

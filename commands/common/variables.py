@@ -14,32 +14,27 @@ from typing import Any
 
 from commands.common import signals
 from tactile_depth import interruption
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.errors import Argument, InputError, InputWarning, one_of
 from tactile_depth.files import cause
 
 EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the number of a signal
 
-# Errors of the package name arguments; a user of make gave variables.
+# Arguments of the package, and the variables that a user of make gave.
 SAME = (
-    *("rows", "solver", "data_width", "gain_width", "lanes", "reference", "calibration", "bits"),
-    *("exposure_us", "window"),
+    *("rows", "solver", "data_width", "gain_width", "lanes", "reference", "calibration", "bits", "camera_size"),
+    *("exposure_us", "window", "boundary", "presses"),
 )
-VARIABLES = {
-    r"\bcamera_size=\(rows, columns\)": "CAMERA_SIZE=<columns>x<rows>",
-    r"\bcamera_size=\((\d+), (\d+)\)": r"CAMERA_SIZE=\2x\1",
-    r"\bcamera_size\b": "CAMERA_SIZE",
-    r"\bomit the calibration\b": "omit CALIBRATION",
-    r"\bpitch_mm\b": "PITCH",
-    r"\bfolder=": "OUT=",
-    r"\bcolumns=": "N=",
-    r"\bcoefficient_width=": "COEFF_WIDTH=",
-    r"\b(gradient_model|models)=": "GRADIENT=",
-    r"\bdepth_range_mm=": "DEPTH_RANGE=",
-    r"\bpixel_format=": "CAMERA=",
-    r"\bphase=": "BAYER=",
-    **{rf"\b{name}=": f"{name.upper()}=" for name in SAME},
+VARIABLES = {name: name.upper() for name in SAME} | {
+    "columns": "N",
+    "coefficient_width": "COEFF_WIDTH",
+    "depth_range_mm": "DEPTH_RANGE",
+    "folder": "OUT",
+    "gradient_model": "GRADIENT",
+    "models": "GRADIENT",
+    "phase": "BAYER",
+    "pitch_mm": "PITCH",
+    "pixel_format": "CAMERA",
 }
-
 
 PLAIN = {int: r"[+-]?[0-9]+", float: r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"}
 PRINTABLE = re.compile("[!-^`-~]*")  # ASCII without space and _
@@ -61,15 +56,11 @@ def given(arguments: Sequence[str], accepted: Iterable[str]) -> dict[str, str]:
         if RENAMED.get(name) in names:
             raise InputError(f"{name} is called {RENAMED[name]} now: give {RENAMED[name]}={value}")
         if not equals or name not in names:
-            raise InputError(f"{argument}: unknown variable: {listed(names)}")
+            raise InputError(f"{argument}: unknown variable", accepted=names)
         if not value:
             raise InputError(f"{name}= has no value: omit {name} for the default")
         values[name] = value
     return values
-
-
-def listed(accepted: Sequence[str]) -> str:
-    return f"accepted {'are' if len(accepted) > 1 else 'is'} {', '.join(accepted) or 'none'}"
 
 
 def plain(text: str, kind: type) -> Any:
@@ -94,7 +85,7 @@ def number(values: Mapping[str, str], name: str, default: Any, low: float, high:
         what = "a whole number" if kind is int else "a number"
         to = f" from {low:,g} to {high:,g}" if math.isfinite(high) else ""
         how = "" if PRINTABLE.fullmatch(values[name]) else ", in digits 0 to 9 without spaces and _"
-        raise InputError(f"{name}={values[name]}: accepted is {what}{to}{how}")
+        raise InputError(Argument(name, values[name]), accepted=f"{what}{to}{how}")
     return value
 
 
@@ -109,8 +100,7 @@ def whole_numbers(values: Mapping[str, str], name: str, default: Sequence[int]) 
 def choice(values: Mapping[str, str], name: str, accepted: Sequence[str]) -> str:
     """Return the word in the variable `name`; the first that is accepted without that variable. Raises InputError."""
     value = values.get(name) or accepted[0]
-    if value not in accepted:
-        raise InputError(f"{name}={value} is unknown: {listed([*filter(None, accepted)])}")
+    one_of(Argument(name, value), accepted)
     return value
 
 
@@ -122,11 +112,10 @@ def usable(text: str) -> bool:
         return False
 
 
-def named(message: str) -> str:
-    """Name variables of make in a message of the package, which names arguments."""
-    for argument, variable in VARIABLES.items():
-        message = re.sub(argument, variable, message)
-    return message
+def named(argument: Argument) -> str:
+    """Return an argument of the package as the variable that a user of make typed."""
+    name = VARIABLES.get(argument.name)
+    return str(argument if name is None else Argument(name, argument.typed))
 
 
 def show_warning(target: str) -> Callable[..., None]:
@@ -134,8 +123,8 @@ def show_warning(target: str) -> Callable[..., None]:
     python = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
-        if issubclass(category, InputWarning):
-            print(f"make {target}: warning: {named(str(message))}", file=sys.stderr)
+        if isinstance(message, InputWarning):
+            print(f"make {target}: warning: {message.text(named)}", file=sys.stderr)
         else:
             python(message, category, *place, **more)
 
@@ -155,7 +144,7 @@ def reported(target: str, interrupted: str = "") -> Iterator[None]:
             warnings.showwarning = show_warning(target)
             yield
     except InputError as error:
-        message, status = named(str(error)), BAD_INPUT
+        message, status = error.text(named), BAD_INPUT
     except Mismatch as error:
         message, status = str(error), MISMATCH
     except KeyboardInterrupt as stop:

@@ -14,7 +14,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "models")]  # FuseSoC runs it by its path
 try:
     import yaml
 
-    from commands.common import run_request, wrapper
+    from commands.common import run_request, variables, wrapper
     from commands.common.zero_offset import untouched, zero_of
     from commands.hardware import synth
     from tactile_depth.errors import InputError
@@ -55,7 +55,7 @@ def main() -> None:
     try:
         generate(Path(sys.argv[1]), Path.cwd())
     except InputError as error:
-        print(f"tables of tactile_depth: {error}", file=sys.stderr)
+        print(f"tables of tactile_depth: {error.text(variables.named)}", file=sys.stderr)
         sys.exit(2)
 
 

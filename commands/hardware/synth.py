@@ -168,7 +168,7 @@ def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[ru
                 configured(each)
                 every.append((each, ""))
             except InputError as error:
-                reasons.append(str(error))
+                reasons.append(error.text(variables.named))
                 every.append((each, reasons[-1]))
         if len(reasons) == len(COLUMNS):
             raise InputError(f"GRIDS={size}: {reasons[-1]}")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError
 
 LARGEST_NUMBER = 1e6  # millimetres or pixels
 
@@ -51,15 +51,15 @@ class BallPress:
     ball_radius_px: float | None = None
 
     def __post_init__(self) -> None:
-        for key, length in (("diameter_mm", self.diameter_mm), ("ball_radius_px", self.ball_radius_px)):
-            if length is not None and not 0 < length < LARGEST_NUMBER:
-                raise InputError(f"{key} is {length:g}: accepted is a number above 0")
+        for length in (Argument("diameter_mm", self.diameter_mm), Argument("ball_radius_px", self.ball_radius_px)):
+            if length.value is not None and not 0 < length.value < LARGEST_NUMBER:
+                raise InputError(Argument(length.name), f" is {length.value:g}", accepted="a number above 0")
         if self.circle is None:
             return
         try:
             x, y, radius = (float(value) for value in self.circle)
         except (TypeError, ValueError) as error:
-            raise InputError(f"circle={self.circle!r}: accepted are x, y and radius in pixels") from error
+            raise InputError(Argument("circle", self.circle), accepted=("x", "y and radius in pixels")) from error
         if not (abs(x) < LARGEST_NUMBER and abs(y) < LARGEST_NUMBER and 0 < radius < LARGEST_NUMBER):
             raise InputError(f"the circle has x={x:g}, y={y:g}, radius={radius:g}: accepted are pixels, radius above 0")
         if self.ball_radius_px is not None and radius >= self.ball_radius_px:

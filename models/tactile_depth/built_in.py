@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.calibration_file import BUILT_IN, FOLDER, read_calibration
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError
 from tactile_depth.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
 from tactile_depth.sensor import COEFFICIENTS, LIGHTING_AGREES, Sensor
 
+PICTURE = "uint8 (rows, columns, 3), RGB"
 LARGEST_SLOPE = 0.99  # largest slope of the synthetic table, so that its gradient limit is 1
 
 
@@ -35,8 +36,9 @@ def load(name_or_path: str | Path, camera_size: tuple[int, int] | None = None) -
     if name_or_path == "synthetic":
         if camera_size is not None:
             raise InputError(
-                f"camera_size={camera_size} with the synthetic sensor, which takes pictures of any size: omit "
-                "camera_size"
+                Argument("camera_size", camera_size),
+                " with the synthetic sensor, which takes pictures of any size",
+                remedy=("omit ", Argument("camera_size")),
             )
         return synthetic()
     if name_or_path in BUILT_IN:
@@ -58,11 +60,9 @@ def identify(reference: np.ndarray) -> Sensor:
         No built-in calibration has the aspect ratio and the lighting of the picture.
     """
     if not isinstance(reference, np.ndarray):
-        raise InputError(f"the reference is a {type(reference).__name__}: accepted is uint8 (rows, columns, 3), RGB")
+        raise InputError("the ", Argument("reference"), f" is a {type(reference).__name__}", accepted=PICTURE)
     if reference.dtype != np.uint8 or reference.ndim != 3 or reference.shape[-1] != 3 or min(reference.shape) < 3:
-        raise InputError(
-            f"the reference is {reference.dtype} {reference.shape}: accepted is uint8 (rows, columns, 3), RGB"
-        )
+        raise InputError("the ", Argument("reference"), f" is {reference.dtype} {reference.shape}", accepted=PICTURE)
     rows, columns = reference.shape[:2]
     nearest, reasons = None, []
     for sensor in map(load, BUILT_IN):
@@ -84,8 +84,9 @@ def identify(reference: np.ndarray) -> Sensor:
             nearest = difference, sensor
     if nearest is None:
         raise InputError(
-            f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)}): name the "
-            "calibration of the sensor that took it"
+            *("the ", Argument("reference")),
+            f" looks like no sensor with a built-in calibration ({'; '.join(reasons)})",
+            remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
         )
     return nearest[1]
 

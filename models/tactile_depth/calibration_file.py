@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from tactile_depth.configuration import GRADIENT_LIMITS
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.errors import Argument, InputError, InputWarning, Part
 from tactile_depth.npy import is_file, read_header
 from tactile_depth.sensor import (
     BITS_PER_CHANNEL,
@@ -121,17 +121,18 @@ def _version(path: Path, version: np.ndarray) -> None:
 
 def _old_camera(path: Path, camera_size: tuple[int, int] | None) -> Camera:
     if camera_size is None:
+        size = Argument("camera_size", ("<rows>", "<columns>"))
         raise InputError(
-            f"{path}: a calibration of version 0.1, which names no camera: give camera_size=(rows, columns) of the "
-            "pictures that it was made from, or calibrate again"
+            f"{path}: a calibration of version 0.1, which names no camera",
+            remedy=("give ", size, " of the pictures that it was made from, or calibrate again"),
         )
     rows, columns = _given_size(camera_size)
-    warnings.warn(
-        f"{path}: a calibration of version 0.1: taken for RGB pictures of {columns} x {rows} pixels "
-        "(columns x rows) relative to a reference: calibrate again to have that written down",
-        InputWarning,
-        stacklevel=4,
+    warning = InputWarning(
+        f"{path}: a calibration of version 0.1: taken for RGB pictures of {columns} x {rows} pixels (columns x rows) "
+        "relative to a reference",
+        remedy="calibrate again to have that written down",
     )
+    warnings.warn(warning, stacklevel=4)
     return Camera(rows, columns)
 
 
@@ -141,8 +142,9 @@ def _camera(path: Path, arrays: Arrays, camera_size: tuple[int, int] | None) -> 
     rows, columns = _size(size, f"{path}: the size of the camera's pictures is {shown}")
     if camera_size is not None and _given_size(camera_size) != (rows, columns):
         raise InputError(
-            f"camera_size={camera_size} contradicts {path}, which was made from pictures of {columns} x {rows} pixels "
-            "(columns x rows): omit camera_size"
+            Argument("camera_size", camera_size),
+            f" contradicts {path}, which was made from pictures of {columns} x {rows} pixels (columns x rows)",
+            remedy=("omit ", Argument("camera_size")),
         )
     form = arrays["pixel_format"]
     if form.shape != () or form.dtype.kind != "U" or str(form) not in PIXEL_FORMATS:
@@ -157,13 +159,13 @@ def _camera(path: Path, arrays: Arrays, camera_size: tuple[int, int] | None) -> 
 
 
 def _given_size(camera_size: tuple[int, int]) -> tuple[int, int]:
-    return _size(np.array(camera_size), f"camera_size={camera_size}")
+    return _size(np.array(camera_size), Argument("camera_size", camera_size))
 
 
-def _size(size: np.ndarray, what: str) -> tuple[int, int]:
+def _size(size: np.ndarray, what: Part) -> tuple[int, int]:
     low, high = CAMERA_SIZES
     if size.shape != (2,) or size.dtype.kind not in "iu" or not ((size >= low) & (size <= high)).all():
-        raise InputError(f"{what}: accepted are rows and columns, whole numbers from {low} to {high}")
+        raise InputError(what, accepted=("rows and columns", f"whole numbers from {low} to {high}"))
     return int(size[0]), int(size[1])
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from tactile_depth.camera.block_weights import pixels_of
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError, one_of
 from tactile_depth.resampling import crop_origin, ratio
 
 LARGEST_PICTURE = 4096  # rows and columns
@@ -76,13 +76,14 @@ delivers them; `_lsb`: at the bottom of a word of 16 bits in place of its top.""
 
 def check_format(pixel_format: str, phase: str) -> None:
     """Raise InputError unless this is a pixel format, and a phase that it accepts."""
-    if pixel_format not in FORMATS:
-        raise InputError(f"pixel_format={pixel_format} is unknown: accepted are {', '.join(FORMATS)}")
-    if phase not in PHASES:
-        raise InputError(f"phase={phase} is unknown: accepted are {', '.join(PHASES)}")
+    one_of(Argument("pixel_format", pixel_format), FORMATS)
+    one_of(Argument("phase", phase), PHASES)
     if phase != PHASES[0] and not FORMATS[pixel_format].bayer:
         patterns = ", ".join(name for name, form in FORMATS.items() if form.bayer)
-        raise InputError(f"phase={phase} with pixel_format={pixel_format}: it goes with {patterns}")
+        raise InputError(
+            *(Argument("phase", phase), " with ", Argument("pixel_format", pixel_format)),
+            remedy=f"it goes with {patterns}",
+        )
 
 
 @dataclass(frozen=True)
@@ -144,9 +145,10 @@ class CameraConfiguration:
         if self.format.is_yuyv and columns % 2:
             raise InputError(f"a picture of {columns} columns: two share a chroma in yuyv: give an even number")
         if not 0 <= self.black_level < 1 << self.bits:
-            raise InputError(f"black_level={self.black_level}: accepted are 0 to {(1 << self.bits) - 1}")
+            raise InputError(Argument("black_level", self.black_level), accepted=range(1 << self.bits))
         if len(self.gains) != 3 or not all(0 <= code < 1 << GAIN_WIDTH for code in self.gain_codes):
-            raise InputError(f"gains={self.gains}: accepted are three factors below {1 << GAIN_WIDTH - GAIN_FRACTION}")
+            accepted = ("three factors", f"each below {1 << GAIN_WIDTH - GAIN_FRACTION}")
+            raise InputError(Argument("gains", self.gains), accepted=accepted)
         self._place_window()
         least = self.format.least_ratio
         if self.ratio < least:
@@ -166,14 +168,15 @@ class CameraConfiguration:
             object.__setattr__(self, "window", window)
             return
         x, y, width, height = self.window
-        given = "window=" + ",".join(map(str, self.window))
+        window_given = (Argument("window", self.window), " (x, y, width, height)")
         if min(x, y) < 0 or min(width, height) < 1 or x + width > columns or y + height > rows:
-            raise InputError(f"{given} (x, y, width, height) is not inside the picture of {columns} x {rows} pixels")
+            raise InputError(*window_given, f" is not inside the picture of {columns} x {rows} pixels")
         covered = self._covered(self.ratio)
         if covered != (width, height):
             raise InputError(
-                f"{given} (x, y, width, height) has not the aspect ratio of the grid of {self.grid[1]} x "
-                f"{self.grid[0]} (columns x rows): give {covered[0]} x {covered[1]} pixels"
+                *window_given,
+                f" has not the aspect ratio of the grid of {self.grid[1]} x {self.grid[0]} (columns x rows)",
+                remedy=f"give {covered[0]} x {covered[1]} pixels",
             )
 
     def _covered(self, scale: Fraction) -> tuple[int, int]:

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from tactile_depth.bounds import Bounds, bounds, difference_bounds
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError, one_of, within
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 
@@ -140,37 +140,30 @@ class Configuration:
     gain_width: int = 24
 
     def __post_init__(self) -> None:
-        def within(name: str, value: int, accepted: tuple[int, int]) -> None:
-            if not accepted[0] <= value <= accepted[1]:
-                raise InputError(f"{name}={value} is out of range: accepted are {accepted[0]} to {accepted[1]}")
-
-        if self.gradient_model not in GRADIENT_MODELS:
-            raise InputError(
-                f"gradient_model={self.gradient_model} is unknown: accepted are {', '.join(GRADIENT_MODELS)}"
-            )
+        model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
+        columns, data_width = Argument("columns", self.columns), Argument("data_width", self.data_width)
+        one_of(model, GRADIENT_MODELS)
         if self.gradient_model == "quadratic" and not self.flat_field:
-            raise InputError("gradient_model=quadratic without a reference: it takes colours relative to one: give one")
-        if self.solver not in COLUMNS:
-            raise InputError(f"solver={self.solver} is unknown: accepted are {', '.join(COLUMNS)}")
-        within("columns", self.columns, COLUMNS[self.solver])
+            raise InputError(model, " without a reference: it takes colours relative to one", remedy="give one")
+        one_of(solver, COLUMNS)
+        within(columns, *COLUMNS[self.solver])
         if self.columns & (self.columns - 1):
             lower = 1 << (self.columns.bit_length() - 1)
-            raise InputError(
-                f"columns={self.columns} is not a power of two: try columns={lower} or "
-                f"columns={min(2 * lower, COLUMNS[self.solver][1])}"
-            )
+            upper = min(2 * lower, COLUMNS[self.solver][1])
+            remedy = ("try ", Argument("columns", lower), " or ", Argument("columns", upper))
+            raise InputError(columns, " is not a power of two", remedy=remedy)
         if not self.rows:
             object.__setattr__(self, "rows", self.columns)
         if self.solver == "spectral" and self.rows != self.columns:
             raise InputError(
-                f"solver=spectral with rows={self.rows} and columns={self.columns}: it takes square grids: "
-                "set both the same, or solver=tridiagonal"
+                *(solver, " with ", Argument("rows", self.rows), " and ", columns, ": it takes square grids"),
+                remedy=("set both the same, or ", Argument("solver", "tridiagonal")),
             )
-        within("rows", self.rows, ROWS)
+        within(Argument("rows", self.rows), *ROWS)
         self._check_lanes()
-        within("data_width", self.data_width, DATA_WIDTHS)
-        within("coefficient_width", self.coefficient_width, COEFFICIENT_WIDTHS)
-        within("gain_width", self.gain_width, GAIN_WIDTHS)
+        within(data_width, *DATA_WIDTHS)
+        within(Argument("coefficient_width", self.coefficient_width), *COEFFICIENT_WIDTHS)
+        within(Argument("gain_width", self.gain_width), *GAIN_WIDTHS)
         self._check_sums()
         if self.depth_range_px is None:
             object.__setattr__(self, "depth_range_px", min(self.rows, self.columns) / 4)
@@ -192,32 +185,36 @@ class Configuration:
         step = modes.lsb * self.depth_limit_px
         if step > COARSEST_LSB * deepest:
             enough = self.data_width + math.ceil(math.log2(step / (COARSEST_LSB * deepest)))
-            mend = f"data_width={enough} or " if enough <= DATA_WIDTHS[1] else ""
+            wider = (Argument("data_width", enough), " or ") if enough <= DATA_WIDTHS[1] else ()
             raise InputError(
-                f"data_width={self.data_width} cannot hold the formats of columns={self.columns} and a depth range of "
-                f"{self.depth_range_px:g} pixels (the step of a mode would be {step:.3g} pixels, the largest depth is "
-                f"{deepest:.3g}): try {mend}a smaller depth range"
+                *(data_width, " cannot hold the formats of ", columns),
+                f" and a depth range of {self.depth_range_px:g} pixels (the step of a mode would be {step:.3g} pixels, "
+                f"the largest depth is {deepest:.3g})",
+                remedy=("try ", *wider, "a smaller depth range"),
             )
         for node, (bound, form) in self.bounds_within_range().items():
             if bound > form.limit - form.lsb:
                 raise InputError(
-                    f"{node} of columns={self.columns}, data_width={self.data_width} holds up to {form.limit:g} and a "
-                    f"depth within the range of {self.depth_range_px:g} pixels can ask for {bound:.4g}: a fault in the "
-                    "derivation of formats, please report it"
+                    *(f"{node} of ", columns, ", ", data_width),
+                    f" holds up to {form.limit:g} and a depth within the range of {self.depth_range_px:g} pixels can "
+                    f"ask for {bound:.4g}",
+                    remedy="a fault in the derivation of formats, please report it",
                 )
 
     def _check_lanes(self) -> None:
         most = most_lanes(self.columns)
+        lanes = Argument("lanes", self.lanes)
         if self.solver != "tridiagonal" and self.lanes != 1:
             raise InputError(
-                f"lanes={self.lanes} with solver={self.solver}: it puts out one depth value per clock: set lanes=1, or "
-                "solver=tridiagonal"
+                *(lanes, " with ", Argument("solver", self.solver), ": it puts out one depth value per clock"),
+                remedy=("set ", Argument("lanes", 1), ", or ", Argument("solver", "tridiagonal")),
             )
         if not 1 <= self.lanes <= most:
-            raise InputError(f"lanes={self.lanes} with columns={self.columns}: accepted are 1 to {most}")
+            raise InputError(lanes, " with ", Argument("columns", self.columns), accepted=range(1, most + 1))
         if self.lanes & (self.lanes - 1):
             lower = 1 << (self.lanes.bit_length() - 1)
-            raise InputError(f"lanes={self.lanes} is not a power of two: try lanes={lower} or lanes={2 * lower}")
+            remedy = ("try ", Argument("lanes", lower), " or ", Argument("lanes", 2 * lower))
+            raise InputError(lanes, " is not a power of two", remedy=remedy)
 
     def _check_sums(self) -> None:
         """Refuse gains that a capture cannot sum blocks in."""
@@ -225,8 +222,9 @@ class Configuration:
         if self.flat_field and self.gain_width < least:
             block = 1 << self.reference_block_log2
             raise InputError(
-                f"gain_width={self.gain_width} with columns={self.columns}: a capture of the reference sums blocks of "
-                f"{block} x {block} pixels in words of that width: set gain_width={least} or more"
+                *(Argument("gain_width", self.gain_width), " with ", Argument("columns", self.columns)),
+                f": a capture of the reference sums blocks of {block} x {block} pixels in words of that width",
+                remedy=("set ", Argument("gain_width", least), " or more"),
             )
 
     # Widths.

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The only error that a user's input raises, and the only warning."""
+"""The only error that a user's input raises, and the only warning; both hold the arguments that they name as data."""
 
+from collections.abc import Callable, Iterable
 from numbers import Real
+from typing import Any, NamedTuple
 
 LONGEST = 1000  # characters
 
@@ -11,18 +13,83 @@ def is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
-class InputError(ValueError):
-    """Input cannot be used; the message is one line that says what was given, what is accepted and how to fix it.
+class Argument(NamedTuple):
+    """An argument that a message names; with the value `...` the message names it alone."""
 
-    Line breaks in the message are replaced, and a long message is shortened to LONGEST characters.
+    name: str
+    value: Any = ...
+
+    def __str__(self) -> str:
+        value = f"({', '.join(map(str, self.value))})" if isinstance(self.value, tuple) else self.value
+        return self.name if value is ... else f"{self.name}={value}"
+
+    @property
+    def typed(self) -> Any:
+        """Value as a command line takes it: (rows, columns) as columns x rows, other tuples with commas."""
+        if not isinstance(self.value, tuple):
+            return self.value
+        words = [str(number) for number in self.value]
+        return "x".join(reversed(words)) if len(words) == 2 else ",".join(words)
+
+
+Part = str | Argument
+
+
+class _Message(Exception):
+    """Message of one line, of at most LONGEST characters: what was given, what is accepted, how to correct it.
+
+    Parameters
+    ----------
+    parts : str or Argument
+        Say what was given. The first Argument gives `argument` and `value`; both are None without one.
+    accepted : str, range or iterable of str, optional
+        One thing, whole numbers, or names.
+    remedy : str, or sequence of str and Argument
+        Says how to correct it.
     """
 
-    def __init__(self, message: str) -> None:
-        line = "".join(character if character.isprintable() else "?" for character in message)
-        if len(line) > LONGEST:
-            line = f"{line[: LONGEST // 2]} .. {line[-LONGEST // 4 :]}"
-        super().__init__(line)
+    def __init__(
+        self, *parts: Part, accepted: str | Iterable[Any] | None = None, remedy: str | Iterable[Part] = ()
+    ) -> None:
+        named = next((part for part in parts if isinstance(part, Argument)), Argument(""))
+        self.argument: str | None = named.name or None
+        self.value: Any = None if named.value is ... else named.value
+        self.accepted = accepted if isinstance(accepted, str | range | None) else tuple(accepted)
+        mend: tuple[Part, ...] = (remedy,) if isinstance(remedy, str) else tuple(remedy)
+        self.remedy = "".join(map(str, mend))
+        self.parts = (*parts, self._accepted(), *((": ", *mend) if mend else ()))
+        super().__init__(self.text())
+
+    def _accepted(self) -> str:
+        if self.accepted is None:
+            return ""
+        if isinstance(self.accepted, range):
+            return f": accepted are {self.accepted[0]} to {self.accepted[-1]}"
+        words = (self.accepted,) if isinstance(self.accepted, str) else self.accepted
+        return f": accepted {'are' if len(words) > 1 else 'is'} {', '.join(map(str, words)) or 'none'}"
+
+    def text(self, naming: Callable[[Argument], str] = str) -> str:
+        """Return the message with each argument as `naming` writes it; by default as Python does."""
+        whole = "".join(naming(part) if isinstance(part, Argument) else part for part in self.parts)
+        line = "".join(character if character.isprintable() else "?" for character in whole)
+        return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} .. {line[-LONGEST // 4 :]}"
 
 
-class InputWarning(UserWarning):
-    """Input is used but may be wrong; the message is one line that says how to make it certain."""
+class InputError(_Message, ValueError):
+    """Input cannot be used."""
+
+
+class InputWarning(_Message, UserWarning):
+    """Input is used but may be wrong; the message says how to make it certain."""
+
+
+def one_of(argument: Argument, accepted: Iterable[str]) -> None:
+    """Raise InputError, which lists the names, unless the value is one of them."""
+    if argument.value not in accepted:
+        raise InputError(argument, " is unknown", accepted=filter(None, accepted))
+
+
+def within(argument: Argument, low: int, high: int) -> None:
+    """Raise InputError unless the value is from `low` to `high`."""
+    if not low <= argument.value <= high:
+        raise InputError(argument, " is out of range", accepted=range(low, high + 1))

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
+    BACKGROUND,
     NOTHING_TOUCHES,
     PITCHES_AGREE,
     BallPress,
@@ -129,7 +130,7 @@ def evaluate(
     """
     pictures = gather(presses, background)
     rows, columns = pictures.background.shape[:2]
-    pitch = sensor.pixel_pitch_mm / sensor.zoom((rows, columns), "background")
+    pitch = sensor.pixel_pitch_mm / sensor.zoom((rows, columns), BACKGROUND)
     by_balls = float(np.median(pictures.pitches)) if pictures.pitches else pitch
     if abs(by_balls / pitch - 1) > PITCHES_AGREE:
         raise InputError(
@@ -143,7 +144,8 @@ def evaluate(
     cut = [f"{view.press.name}: the picture's middle square cuts the contact: left out" for view in on_grid.views]
     notes = on_grid.notes + tuple(note for note, view in zip(cut, on_grid.views, strict=True) if not view.is_whole)
     if not measured:
-        raise InputError(f"presses: none of {len(pictures.presses)} can be used{f': {notes[0]}' if notes else ''}")
+        problem = f": none of {len(pictures.presses)} can be used{f': {notes[0]}' if notes else ''}"
+        raise InputError(Argument("presses"), problem)
     scores = {model: scores_of(sensor, on_grid, measured, model) for model in sensor.models}
     return Evaluation(tuple(view.press.name for view in measured), scores, notes)
 

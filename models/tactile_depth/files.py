@@ -15,7 +15,7 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 from tactile_depth import interruption
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError
 
 # Failures of the machine; all others are due to the path.
 OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM)
@@ -70,16 +70,15 @@ def workspace(
 
 def _create(folder: Path, work: Path, names: Iterable[str], path: str) -> None:
     """Make a folder and `work` inside it, as `workspace` says."""
-    given = path or str(folder)
+    given = Argument("folder", path or str(folder))
     try:
         for part in (folder, *folder.parents):
             if part.is_symlink() and not part.exists():
-                link = "" if str(part) == given else f": {part}"
-                raise InputError(
-                    f"folder={given}{link} is a link to {os.readlink(part)}, which does not exist: give a folder"
-                )
+                link = "" if str(part) == given.value else f": {part}"
+                missing = f"{link} is a link to {os.readlink(part)}, which does not exist"
+                raise InputError(given, missing, remedy="give a folder")
         if folder.exists() and not folder.is_dir():
-            raise InputError(f"folder={given}{f': {folder}' if path else ''} is a file: give a folder")
+            raise InputError(given, f"{f': {folder}' if path else ''} is a file", remedy="give a folder")
         folder.mkdir(parents=True, exist_ok=True)
         refuse_folders(folder, names, path)
         for name in names:
@@ -92,7 +91,7 @@ def _create(folder: Path, work: Path, names: Iterable[str], path: str) -> None:
         if isinstance(error, OSError) and error.errno in OF_THE_MACHINE:
             raise
         reason = error.strerror if isinstance(error, OSError) else "a character that no path can hold"
-        raise InputError(f"folder={given} cannot be written ({reason}): give a folder that can") from error
+        raise InputError(given, f" cannot be written ({reason})", remedy="give a folder that can") from error
 
 
 def _remove(work: Path, empty: Iterable[Path]) -> None:
@@ -125,10 +124,8 @@ def refuse_folders(folder: Path, files: Iterable[str], path: str = "") -> None:
     """Raise InputError if one of `files`, which are to be written, is a folder there: replacing it would lose it."""
     for name in files:
         if (folder / name).is_dir():
-            place = "" if path else " in it"
-            raise InputError(
-                f"folder={path or folder} cannot be written ({name}{place} is a folder): remove it or give another"
-            )
+            problem = f" cannot be written ({name}{'' if path else ' in it'} is a folder)"
+            raise InputError(Argument("folder", path or folder), problem, remedy="remove it or give another")
 
 
 def replace(work: Path, names: Iterable[str], folder: Path, obsolete: Iterable[str] = ()) -> None:

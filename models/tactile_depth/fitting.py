@@ -33,7 +33,7 @@ from scipy.optimize import least_squares
 from tactile_depth import reference
 from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
 from tactile_depth.configuration import DEVIATION, GRADIENT_LIMITS
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.errors import Argument, InputError, InputWarning
 from tactile_depth.evaluation import Evaluation, Score, scores_of
 from tactile_depth.gradient.flat_field import FLAT_CODE
 from tactile_depth.poisson.divergence import divergence
@@ -140,7 +140,7 @@ def fit(
     pictures = gather(presses, background)
     on_grid = to_grid(pictures, camera_pitch_mm(pictures, pitch_mm), find_circles)
     for note in on_grid.notes:
-        warn(note, InputWarning, stacklevel=2)
+        warn(InputWarning(note), stacklevel=2)
     return fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us).sensor
 
 
@@ -150,15 +150,16 @@ def check_arguments(
     """Return the models; raise InputError if an argument of `fit` is not accepted."""
     wanted = (models,) if isinstance(models, str) else tuple(models)
     if not wanted or not set(wanted) <= set(MODELS):
-        raise InputError(f"models={', '.join(map(str, wanted))}: accepted are {', '.join(MODELS)}, one or both")
+        raise InputError(Argument("models", ", ".join(map(str, wanted))), accepted=(*MODELS, "one or both"))
     low, high = BITS_PER_CHANNEL
     if not isinstance(bits, int) or not low <= bits <= high:
-        raise InputError(f"bits={bits}: accepted is a whole number from {low} to {high}")
+        raise InputError(Argument("bits", bits), accepted=f"a whole number from {low} to {high}")
     shortest, longest = PIXEL_PITCHES_MM
     if pitch_mm is not None and not shortest <= pitch_mm <= longest:
-        raise InputError(f"pitch_mm={pitch_mm:g}: accepted are {shortest:g} to {longest:g}, in mm per camera pixel")
+        accepted = (f"{shortest:g} to {longest:g}", "in mm per camera pixel")
+        raise InputError(Argument("pitch_mm", pitch_mm), accepted=accepted)
     if exposure_us is not None and not 0 < exposure_us <= LONGEST_EXPOSURE_US:
-        raise InputError(f"exposure_us={exposure_us:g}: accepted is a time above 0, in microseconds")
+        raise InputError(Argument("exposure_us", exposure_us), accepted="a time above 0, in microseconds")
     return tuple(model for model in MODELS if model in wanted)
 
 

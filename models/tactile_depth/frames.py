@@ -17,7 +17,7 @@ from PIL import Image
 
 from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError
 from tactile_depth.grid_sampler import grid_sampler
 from tactile_depth.npy import is_file, read_header
 from tactile_depth.scenes import AS_EVER, SCENES, SYNTHETIC_PIXEL_PITCH_MM, Press, render, scene_pixel_pitch_mm
@@ -140,8 +140,8 @@ def on_grid(sensor: Sensor, frames: Frames) -> Sensor:
     """
     if sensor.camera is not None and frames.picture_size is None:
         raise InputError(
-            f"{frames.name}: a scene is drawn for the synthetic sensor, not for {sensor.name}: omit the calibration, "
-            "or give pictures of that sensor"
+            f"{frames.name}: a scene is drawn for the synthetic sensor, not for {sensor.name}",
+            remedy=("omit the ", Argument("calibration"), ", or give pictures of that sensor"),
         )
     sensor.require_reference(frames.reference is not None)
     zoom = 1.0 if frames.picture_size is None else sensor.zoom(frames.picture_size, frames.name)
@@ -264,7 +264,7 @@ def _scene(
     name: str, size: tuple[int, int], reference: str | None, seed: int, press: Press, camera: CameraChoice | None
 ) -> Frames:
     if reference not in (None, REST_SCENE):
-        raise InputError(f"reference={reference} with the scene {name}: accepted is reference={REST_SCENE}, or none")
+        raise InputError(Argument("reference", reference), f" with the scene {name}", accepted=f"{REST_SCENE}, or none")
     drawn = size if camera is None else SCENE_PICTURE
     scene = render(name, *drawn, seed, press)
     rest = render(REST_SCENE, *drawn, seed, Press(noise=0)).frames[0] if reference else None

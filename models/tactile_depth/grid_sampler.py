@@ -10,7 +10,7 @@ import numpy as np
 from tactile_depth.camera.camera_front_end import camera_front_end
 from tactile_depth.camera.pixel_format import photograph
 from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
-from tactile_depth.errors import InputError
+from tactile_depth.errors import InputError, Part
 from tactile_depth.resampling import Resampling, resampling
 
 
@@ -49,7 +49,7 @@ class GridSampler:
 
 
 def grid_sampler(
-    name: str, picture: tuple[int, int], grid: tuple[int, int], choice: CameraChoice | None = None
+    name: Part, picture: tuple[int, int], grid: tuple[int, int], choice: CameraChoice | None = None
 ) -> GridSampler:
     """Return the way from pictures to a grid, (rows, columns) each; `name` names the pictures in errors.
 
@@ -60,8 +60,8 @@ def grid_sampler(
     """
     if picture[0] < grid[0] or picture[1] < grid[1]:
         raise InputError(
-            f"{name}: frames of {picture[0]} x {picture[1]} are smaller than the grid of {grid[0]} x {grid[1]}: give "
-            "larger frames or a smaller grid"
+            *(name, f": frames of {picture[0]} x {picture[1]} are smaller than the grid of {grid[0]} x {grid[1]}"),
+            remedy="give larger frames or a smaller grid",
         )
     if choice is not None:
         camera = choice.on(picture, grid)

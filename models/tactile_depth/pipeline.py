@@ -17,7 +17,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
-from tactile_depth.errors import InputError, is_number
+from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale, read_pictures
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
@@ -42,6 +42,7 @@ SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 BOUNDARIES = ("neumann", "dirichlet")
 PARAMETERS = "parameters.json"
+PICTURES = Argument("pictures")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
 
 Pictures = np.ndarray | str | Path
@@ -124,16 +125,20 @@ class Pipeline:
         threshold_mm: float = 0.1,
     ) -> None:
         if not isinstance(sensor, Sensor):
-            raise InputError(f"sensor is a {type(sensor).__name__}: accepted is a Sensor, as load(..) returns it")
+            problem = f" is a {type(sensor).__name__}"
+            raise InputError(Argument("sensor"), problem, accepted="a Sensor, as load(..) returns it")
         if grid is not None and not (len(np.shape(grid)) == 1 and len(grid) == 2 and all(map(is_whole, grid))):
-            raise InputError(f"grid={grid!r}: accepted are (rows, columns), whole numbers")
-        widths = {"data_width": data_width, "coefficient_width": coefficient_width, "gain_width": gain_width}
-        for name, number in widths.items():
-            if not is_whole(number):
-                raise InputError(f"{name}={number!r}: accepted is a whole number")
-        for name, value, accepted in (("arithmetic", arithmetic, ARITHMETICS), ("boundary", boundary, BOUNDARIES)):
-            if value not in accepted:
-                raise InputError(f"{name}={value} is unknown: accepted are {', '.join(accepted)}")
+            raise InputError(Argument("grid", grid), accepted=("(rows, columns)", "whole numbers"))
+        widths = (
+            Argument("data_width", data_width),
+            Argument("coefficient_width", coefficient_width),
+            Argument("gain_width", gain_width),
+        )
+        for width in widths:
+            if not is_whole(width.value):
+                raise InputError(width, accepted="a whole number, of type int")
+        one_of(Argument("arithmetic", arithmetic), ARITHMETICS)
+        one_of(Argument("boundary", boundary), BOUNDARIES)
         sensor.require_reference(reference is not None)
         rows, columns = self.grid = default_grid(sensor, solver) if grid is None else grid
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
@@ -144,17 +149,16 @@ class Pipeline:
         self.config = self.sensor.configuration(
             model,
             **shape,
-            **widths,
+            **dict(widths),
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             zero_offset=zero_offset,
         )
         self.arithmetic = arithmetic
         self.depth_lsb_mm = self.config.depth_lsb_px * self.pixel_pitch_mm
         if not is_number(threshold_mm) or not 0 < threshold_mm / self.depth_lsb_mm < 2 ** (data_width - 1):
-            raise InputError(
-                f"threshold_mm={threshold_mm}: accepted is a depth above 0 and within the depth range of "
-                f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
-            )
+            limit = f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
+            accepted = f"a depth above 0 and within the depth range of {limit}"
+            raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
         self.threshold_mm = threshold_mm
         self._threshold = round(threshold_mm / self.depth_lsb_mm)
         self._events = ContactEvents(rows, columns, bottom_first=solver == "tridiagonal")
@@ -186,7 +190,7 @@ class Pipeline:
         ------
         InputError
         """
-        frames, single = self._read(pictures, "pictures")
+        frames, single = self._read(pictures, PICTURES)
         monitor = Monitor()
         if self.arithmetic == "chip":
             slopes, stream = self._chip(frames, monitor)
@@ -231,8 +235,9 @@ class Pipeline:
             The number of pictures is not accepted, they are too dark, or the pipeline takes colours as sent.
         """
         if not self.config.flat_field:
-            raise InputError("pictures: this pipeline takes colours as sent: make it with reference=<picture>")
-        frames, _ = self._read(pictures, "pictures")
+            problem = ": this pipeline takes colours as sent"
+            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("reference", "<picture>")))
+        frames, _ = self._read(pictures, PICTURES)
         _power_of_two(len(frames), largest_log2_frames(self.config))
         self._use_reference(frames)
 
@@ -245,8 +250,9 @@ class Pipeline:
             The number of pictures is not 1, 2, 4, .. 256, or the pipeline has no zero offset.
         """
         if not self.config.zero_offset:
-            raise InputError("pictures: this pipeline has no zero offset: make it with zero_offset=True")
-        frames, _ = self._read(pictures, "pictures")
+            problem = ": this pipeline has no zero offset"
+            raise InputError(PICTURES, problem, remedy=("make it with ", Argument("zero_offset", True)))
+        frames, _ = self._read(pictures, PICTURES)
         _power_of_two(len(frames), LARGEST_LOG2)
         self._use_zero(frames)
 
@@ -331,43 +337,38 @@ class Pipeline:
 
     def _read_reference(self, reference: Pictures) -> np.ndarray:
         images = _same_size(reference) if isinstance(reference, str | Path) else reference
-        frames, _ = self._read(images, "reference")
-        _power_of_two(len(frames), LARGEST_LOG2, "reference")
+        frames, _ = self._read(images, Argument("reference"))
+        _power_of_two(len(frames), LARGEST_LOG2, Argument("reference"))
         self._camera_sensor.check_lighting(images.reshape(-1, *images.shape[-3:])[0])
         return frames
 
-    def _read(self, pictures: Pictures, name: str) -> tuple[np.ndarray, bool]:
+    def _read(self, pictures: Pictures, name: Argument) -> tuple[np.ndarray, bool]:
         """Return frames on the grid, uint8 (frames, rows, columns, 3), and True if the input was a single picture."""
         if isinstance(pictures, np.ndarray):
             is_picture = pictures.ndim in (3, 4) and pictures.shape[-1] == 3 and pictures.size
             if pictures.dtype != np.uint8 or not is_picture:
-                raise InputError(
-                    f"{name} are {pictures.dtype} {pictures.shape}: accepted is uint8 (rows, columns, 3), RGB, or "
-                    "(frames, rows, columns, 3)"
-                )
+                accepted = "uint8 (rows, columns, 3), RGB, or (frames, rows, columns, 3)"
+                raise InputError(name, f" are {pictures.dtype} {pictures.shape}", accepted=accepted)
             single = pictures.ndim == 3
             images = pictures[None] if single else pictures
             return self._on_grid(images, name), single
         if not isinstance(pictures, str | Path):
-            raise InputError(f"{name} are {type(pictures).__name__}: accepted is a uint8 array or a path")
+            raise InputError(name, f" are {type(pictures).__name__}", accepted="a uint8 array or a path")
         labels, read = read_pictures(pictures)
         frames = [self._on_grid(image[None], f"{pictures}: {label}") for label, image in zip(labels, read, strict=True)]
         return np.concatenate(frames), Path(pictures).is_file() and Path(pictures).suffix.lower() != ".npy"
 
-    def _on_grid(self, images: np.ndarray, name: str) -> np.ndarray:
+    def _on_grid(self, images: np.ndarray, name: Part) -> np.ndarray:
         size = (images.shape[1], images.shape[2])
         if size not in self._plans:
             self._camera_sensor.zoom(size, name)
+            shown = f": {size[1]} x {size[0]} pixels (columns x rows)"
             if self._camera_sensor.camera is None and self._plans:
-                raise InputError(
-                    f"{name}: {size[1]} x {size[0]} pixels (columns x rows), but the first picture had "
-                    f"{next(iter(self._plans))[::-1]}: give pictures of one size"
-                )
+                problem = f"{shown}, but the first picture had {next(iter(self._plans))[::-1]}"
+                raise InputError(name, problem, remedy="give pictures of one size")
             if size[0] < self.grid[0] or size[1] < self.grid[1]:
-                raise InputError(
-                    f"{name}: {size[1]} x {size[0]} pixels (columns x rows) are fewer than the grid's {self.grid[1]} x "
-                    f"{self.grid[0]}: give larger pictures or a smaller grid"
-                )
+                problem = f"{shown} are fewer than the grid's {self.grid[1]} x {self.grid[0]}"
+                raise InputError(name, problem, remedy="give larger pictures or a smaller grid")
             self._plans[size] = resampling(size, self.grid)
         plan = self._plans[size]
         return np.stack([np.rint(plan.average(image)).astype(np.uint8) for image in images])
@@ -386,8 +387,7 @@ def _same_size(source: str | Path) -> np.ndarray:
     return np.stack(images)
 
 
-def _power_of_two(count: int, largest_log2: int, name: str = "pictures") -> None:
+def _power_of_two(count: int, largest_log2: int, name: Argument = PICTURES) -> None:
     if count.bit_count() != 1 or count > 1 << largest_log2:
-        raise InputError(
-            f"{name}: {count} pictures: the hardware averages 1, 2, 4, .. {1 << largest_log2}: give so many"
-        )
+        problem = f": {count} pictures: the hardware averages 1, 2, 4, .. {1 << largest_log2}"
+        raise InputError(name, problem, remedy="give so many")

@@ -15,7 +15,7 @@ from tactile_depth.ball_press import BallPress, Circle
 from tactile_depth.camera_configuration import FORMATS, CameraChoice
 from tactile_depth.circles import find_circle, require_circle_finder
 from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError, Part
 from tactile_depth.frames import read_picture
 from tactile_depth.gradient.flat_field import captured_gains, deviations, flat_codes, require_light
 from tactile_depth.grid_sampler import GridSampler, grid_sampler
@@ -27,6 +27,7 @@ FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves
 NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
 LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
+BACKGROUND = Argument("background")
 TOP_PX = 2  # radius of the top of a cap, in grid pixels
 
 
@@ -211,14 +212,16 @@ def gather(
     else:
         is_sequence: bool = isinstance(presses, Sequence)
         if not is_sequence or not all(isinstance(press, BallPress) for press in presses):
-            raise InputError("presses: accepted are the path of a folder, or a sequence of BallPress")
+            raise InputError(Argument("presses"), accepted=("the path of a folder", "or a sequence of BallPress"))
         if background is None:
-            raise InputError("background is missing: give a picture of the sensor without contact")
+            remedy = "give a picture of the sensor without contact"
+            raise InputError(BACKGROUND, " is missing", remedy=remedy)
         listed, name = [_named(press, number) for number, press in enumerate(presses, 1)], "fitted"
     names = [press.name for press in listed]
     if repeated := next((one for one in names if names.count(one) > 1), None):
-        raise InputError(f"presses: the name {repeated} stands twice: give each press a name of its own")
-    return PressPictures(name, tuple(listed), _picture(background, "background"), tuple(notes))
+        problem = f": the name {repeated} stands twice"
+        raise InputError(Argument("presses"), problem, remedy="give each press a name of its own")
+    return PressPictures(name, tuple(listed), _picture(background, BACKGROUND), tuple(notes))
 
 
 def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
@@ -232,7 +235,8 @@ def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
     if not pictures.pitches:
         if pitch_mm is None:
             raise InputError(
-                "pitch_mm is needed: mm per camera pixel, which presses without ball_radius_px do not give"
+                Argument("pitch_mm"),
+                " is needed: mm per camera pixel, which presses without ball_radius_px do not give",
             )
         return pitch_mm
     by_balls = float(np.median(pictures.pitches))
@@ -240,8 +244,8 @@ def camera_pitch_mm(pictures: PressPictures, pitch_mm: float | None) -> float:
         return float(f"{by_balls:.3g}")  # diameters and radii have no more digits
     if abs(by_balls / pitch_mm - 1) > PITCHES_AGREE:
         raise InputError(
-            f"pitch_mm={pitch_mm:g} contradicts {pictures.name}, whose ball radii give {by_balls:.4g} mm/pixel. Omit "
-            "pitch_mm or correct ball_radius_px."
+            *(Argument("pitch_mm", pitch_mm), f" contradicts {pictures.name}, whose ball radii give {by_balls:.4g} "),
+            *("mm/pixel. Omit ", Argument("pitch_mm"), " or correct ball_radius_px."),
         )
     return pitch_mm
 
@@ -276,14 +280,14 @@ def to_grid(
     least = 1 if choice is None else FORMATS[choice.pixel_format].least_ratio
     size = min(LARGEST_GRID, 1 << ((min(camera) // least).bit_length() - 1))
     if size < SMALLEST_GRID:
-        raise InputError(f"background: {camera[0]} x {camera[1]} pixels: accepted are {SMALLEST_GRID} x or more")
+        raise InputError(BACKGROUND, f": {camera[0]} x {camera[1]} pixels", accepted=f"{SMALLEST_GRID} x or more")
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
     config = Configuration(columns=size)
-    sampler = grid_sampler("background", (camera[0], camera[1]), (size, size), choice)
+    sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), (size, size), choice)
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)
-    require_light(gains, config, "background")
+    require_light(gains, config, BACKGROUND)
     notes, agreement = list(pictures.notes), []
     geometry: list[GridPress] = []
     frames: list[np.ndarray] = []
@@ -347,10 +351,10 @@ def _named(press: BallPress, number: int) -> BallPress:
     return replace(press, name=f"press {number}" if isinstance(press.image, np.ndarray) else str(press.image))
 
 
-def _picture(image: np.ndarray | str | Path, name: str) -> np.ndarray:
+def _picture(image: np.ndarray | str | Path, name: Part) -> np.ndarray:
     """Return the pixels of a picture, from an array or a path."""
     if not isinstance(image, np.ndarray):
         return read_picture(Path(image))
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[-1] != 3 or not image.size:
-        raise InputError(f"{name}: {image.dtype} {image.shape}: accepted is uint8 (rows, columns, 3), RGB")
+        raise InputError(name, f": {image.dtype} {image.shape}", accepted="uint8 (rows, columns, 3), RGB")
     return image

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactile_depth.built_in import synthetic
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, one_of
 from tactile_depth.scenes import BENCH, Press, render, scene_pixel_pitch_mm
 from tactile_depth.sensor import Camera, Sensor
 
@@ -49,8 +49,7 @@ def sample(name: str = "ball", seed: int = 1) -> Sample:
     InputError
         There is no contact of that name.
     """
-    if name not in BENCH:
-        raise InputError(f"name={name} is unknown: accepted are {', '.join(BENCH)}")
+    one_of(Argument("name", name), BENCH)
     size = (CAMERA.rows, CAMERA.columns)
     scene, rest = render(name, *size, seed), render("flat", *size, seed + 1, Press(noise=0))
     pitch = scene_pixel_pitch_mm(min(size))

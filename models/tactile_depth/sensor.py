@@ -15,7 +15,7 @@ import numpy as np
 from tactile_depth import files
 from tactile_depth.camera_configuration import FORMATS
 from tactile_depth.configuration import GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
-from tactile_depth.errors import InputError, InputWarning, is_number
+from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number
 
 MODELS = GRADIENT_MODELS
 FORMAT_VERSION = 2
@@ -139,7 +139,7 @@ class Sensor:
         x, y = x + 2 * xx * x_mm + xy * y_mm, y + 2 * yy * y_mm + xy * x_mm
         return replace(self, coefficients=np.stack((one, x, y, xx, xy, yy), axis=-1))
 
-    def zoom(self, picture_size: tuple[int, int], name: str = "picture") -> float:
+    def zoom(self, picture_size: tuple[int, int], name: Part = "picture") -> float:
         """Return pixels of a picture (rows, columns) per pixel of the calibrated camera; 1 for the synthetic sensor.
 
         Raises
@@ -152,9 +152,10 @@ class Sensor:
         rows, columns = picture_size
         if abs(columns * self.camera.rows / (rows * self.camera.columns) - 1) > ASPECTS_AGREE:
             raise InputError(
-                f"{name}: {columns} x {rows} pixels (columns x rows), but {self.name} is calibrated for pictures of "
-                f"{self.camera.columns} x {self.camera.rows}: give whole pictures of that camera, of the same aspect "
-                "ratio, or calibrate for this one"
+                name,
+                f": {columns} x {rows} pixels (columns x rows), but {self.name} is calibrated for pictures of "
+                f"{self.camera.columns} x {self.camera.rows}",
+                remedy="give whole pictures of that camera, of the same aspect ratio, or calibrate for this one",
             )
         return math.sqrt(rows * columns / (self.camera.rows * self.camera.columns))
 
@@ -162,13 +163,12 @@ class Sensor:
         """Raise InputError if a reference is needed and not given, or given and not accepted."""
         if self.flat_field and not is_given:
             raise InputError(
-                f"{self.name} needs a reference: its colours are relative to a picture without contact. Give "
-                "reference=<picture of the sensor without contact>, taken with the frames"
+                f"{self.name} needs a reference: its colours are relative to a picture without contact. Give ",
+                *(Argument("reference", "<picture of the sensor without contact>"), ", taken with the frames"),
             )
         if self.flat_field is False and is_given:
-            raise InputError(
-                f"{self.name} was fitted to colours as sent: omit the reference, or calibrate again with one"
-            )
+            remedy = ("omit the ", Argument("reference"), ", or calibrate again with one")
+            raise InputError(f"{self.name} was fitted to colours as sent", remedy=remedy)
 
     def lighting_difference(self, reference: np.ndarray) -> float:
         """Return the RMS difference of lighting to a picture without contact; infinite if it is unknown."""
@@ -182,12 +182,12 @@ class Sensor:
             return
         difference = self.lighting_difference(reference)
         if difference > LIGHTING_AGREES:
-            warnings.warn(
+            warning = InputWarning(
                 f"the reference does not look like the sensor of {self.name} (its lighting differs by "
-                f"{100 * difference:.0f} %): give the calibration of the sensor that took it",
-                InputWarning,
-                stacklevel=3,
+                f"{100 * difference:.0f} %)",
+                remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
             )
+            warnings.warn(warning, stacklevel=3)
 
     def configuration(self, model: str = "", **choices: Any) -> Configuration:
         """Return the configuration that fits this sensor on its grid.
@@ -220,10 +220,8 @@ class Sensor:
         """Return a depth range in pixels of this sensor's grid; raise InputError if the formats cannot be that fine."""
         smallest = SMALLEST_DEPTH_RANGE_PX * self.pixel_pitch_mm
         if not (is_number(depth_range_mm) and smallest <= depth_range_mm < math.inf):
-            raise InputError(
-                f"depth_range_mm={depth_range_mm}: accepted is {smallest:.2g} mm, {SMALLEST_DEPTH_RANGE_PX:g} of a "
-                "grid pixel, and more"
-            )
+            accepted = f"{smallest:.2g} mm, {SMALLEST_DEPTH_RANGE_PX:g} of a grid pixel, and more"
+            raise InputError(Argument("depth_range_mm", depth_range_mm), accepted=accepted)
         return depth_range_mm / self.pixel_pitch_mm
 
     def check(self, config: Configuration, gains_given: bool = False) -> None:
@@ -236,38 +234,30 @@ class Sensor:
         """
         self.require_model(config.gradient_model)
         if config.gradient_limit < self.gradient_limit:
-            raise InputError(
-                f"gradient_limit={config.gradient_limit:g} of the configuration is below the slopes of {self.name}, "
-                f"which reach {self.gradient_limit:g}: make it with Sensor.configuration"
-            )
+            problem = f" is below the slopes of {self.name}, which reach {self.gradient_limit:g}"
+            _refuse(Argument("gradient_limit", config.gradient_limit), problem)
         if config.gradient_model == "lut" and config.bits_per_channel != self.bits_per_channel:
-            raise InputError(
-                f"bits_per_channel={config.bits_per_channel} of the configuration, but the table of {self.name} has "
-                f"{self.bits_per_channel}: make it with Sensor.configuration"
-            )
+            problem = f", but the table of {self.name} has {self.bits_per_channel}"
+            _refuse(Argument("bits_per_channel", config.bits_per_channel), problem)
         grid = (config.rows, config.columns)
         if self.reference is not None and self.reference.shape[-3:-1] != grid:
             raise InputError(
                 f"the reference of {self.name} has {self.reference.shape[-3]} rows and {self.reference.shape[-2]} "
-                f"columns, the grid of the configuration has rows={grid[0]}, columns={grid[1]}: use frames.on_grid"
+                "columns, the grid of the configuration has ",
+                *(Argument("rows", grid[0]), ", ", Argument("columns", grid[1])),
+                remedy="use frames.on_grid",
             )
         if self.reference is not None and not config.flat_field:
-            raise InputError(
-                f"flat_field=False of the configuration, but {self.name} has a reference: make it with "
-                "Sensor.configuration"
-            )
+            _refuse(Argument("flat_field", False), f", but {self.name} has a reference")
         if self.flat_field is False and config.flat_field:
-            raise InputError(
-                f"flat_field=True of the configuration, but {self.name} was fitted to colours as sent: make it with "
-                "Sensor.configuration"
-            )
+            _refuse(Argument("flat_field", True), f", but {self.name} was fitted to colours as sent")
         if self.flat_field and not (config.flat_field and (gains_given or self.reference is not None)):
             self.require_reference(False)
 
     def require_model(self, model: str) -> None:
         """Raise InputError unless the sensor has the gradient model."""
         if model not in self.models:
-            raise InputError(f"gradient_model={model}: {self.name} holds only {', '.join(self.models)}")
+            raise InputError(Argument("gradient_model", model), f": {self.name} holds only {', '.join(self.models)}")
 
     @property
     def models(self) -> tuple[str, ...]:
@@ -311,7 +301,7 @@ class Sensor:
             The machine failed, with a full disk for example.
         """
         if not isinstance(path, str | Path):
-            raise InputError(f"path is a {type(path).__name__}: accepted is the path of an .npz file")
+            raise InputError(Argument("path"), f" is a {type(path).__name__}", accepted="the path of an .npz file")
         path = Path(path)
         if self.camera is None:
             raise InputError(f"{self.name}: no camera in it: a calibration file names the camera that it holds for")
@@ -358,3 +348,7 @@ def lighting(picture: np.ndarray) -> np.ndarray:
     whole = picture[: rows * height, : columns * width].astype(np.float64)
     blocks = whole.reshape(rows, height, columns, width, 3).mean(axis=(1, 3))
     return blocks / max(float(blocks.mean()), 1.0)
+
+
+def _refuse(argument: Argument, problem: str) -> None:
+    raise InputError(argument, f" of the configuration{problem}", remedy="make it with Sensor.configuration")

@@ -26,7 +26,7 @@ from tactile_depth.configuration import (
 )
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.depth.zero_offset import no_zero, zero_offset
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError
 from tactile_depth.gradient.flat_field import (
     CODE_WIDTH,
     FLAT_CODE,
@@ -96,7 +96,7 @@ def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray |
     if config.flat_field and gains is None:
         gains = reference_gains(calibration, config)
     if gains is not None:
-        require_nodes("gains", gains, (*config.reference_nodes, 3))
+        require_nodes(Argument("gains"), gains, (*config.reference_nodes, 3))
     if config.gradient_model == "quadratic":
         slopes = coefficient_map(polynomial_words(calibration, config, calibration.pixel_pitch_mm), config)
     else:
@@ -104,10 +104,11 @@ def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray |
     return Tables(None if gains is None else pixel_gains(gains, config), slopes)
 
 
-def require_nodes(name: str, nodes: np.ndarray, shape: tuple[int, ...]) -> None:
+def require_nodes(name: Argument, nodes: np.ndarray, shape: tuple[int, ...]) -> None:
     """Raise InputError unless words of the nodes have the shape of the grid of nodes."""
     if nodes.shape != shape:
-        raise InputError(f"{name} have the shape {nodes.shape}: accepted is {shape}, a node for each block of the grid")
+        accepted = f"{shape}, a node for each block of the grid"
+        raise InputError(name, f" have the shape {nodes.shape}", accepted=accepted)
 
 
 def tactile_depth(
@@ -270,9 +271,9 @@ def write_roms(
     """
     calibration.check(config, gains is not None)
     if gains is not None:
-        require_nodes("gains", gains, (*config.reference_nodes, 3))
+        require_nodes(Argument("gains"), gains, (*config.reference_nodes, 3))
     if zero is not None:
-        require_nodes("zero", zero, config.reference_nodes)
+        require_nodes(Argument("zero"), zero, config.reference_nodes)
     write_solver(folder, config)
     if config.zero_offset:
         side = td_node_map.side(config.lanes, config.reference_block_log2)

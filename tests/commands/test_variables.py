@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from commands.common import variables
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.errors import Argument, InputError, InputWarning
 
 
 def test_given() -> None:
@@ -87,14 +87,15 @@ def test_an_exception_gives_a_line_and_a_status(
 
 def test_errors_and_warnings_of_the_package_name_variables(capsys: pytest.CaptureFixture[str]) -> None:
     def command() -> None:
-        warnings.warn("columns=64: an old file", InputWarning, stacklevel=1)
-        raise InputError("columns=100 with data_width=24: give camera_size=(rows, columns), or another solver=x")
+        warnings.warn(InputWarning(Argument("columns", 64), ": an old file at columns=64"), stacklevel=1)
+        remedy = ("give ", Argument("camera_size", ("<rows>", "<columns>")), ", or another ", Argument("solver"))
+        raise InputError(Argument("window", (8, 0, 4, 4)), " with ", Argument("data_width", 24), remedy=remedy)
 
     with pytest.raises(SystemExit), variables.reported("sim"):
         command()
     assert capsys.readouterr().err.splitlines() == [
-        "make sim: warning: N=64: an old file",
-        "make sim: N=100 with DATA_WIDTH=24: give CAMERA_SIZE=<columns>x<rows>, or another SOLVER=x",
+        "make sim: warning: N=64: an old file at columns=64",
+        "make sim: WINDOW=8,0,4,4 with DATA_WIDTH=24: give CAMERA_SIZE=<columns>x<rows>, or another SOLVER",
     ]
 
 

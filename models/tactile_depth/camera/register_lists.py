@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tactile_depth.camera.camera_setup import Entry, Kind
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, within
 from tactile_depth.rom_files import write_words
 
 FILE = "camera.hex"
@@ -75,7 +75,7 @@ def _power_up(product: Sequence[tuple[int, int]], reset: tuple[int, int]) -> lis
 
 def ov7670(exposure_lines: int = 256) -> Camera:
     """Return the OV7670: VGA, 30 frames/s. Exposure in lines, of 510 in a frame."""
-    _require("exposure_lines", exposure_lines, 510)
+    within(Argument("exposure_lines", exposure_lines), 1, 510)
     registers = [
         write(0x3A, 0x0D),  # TSLB: the window follows the resolution
         write(0x12, 0x01),  # COM7: VGA, raw Bayer
@@ -103,7 +103,7 @@ def ov7670(exposure_lines: int = 256) -> Camera:
 
 def ov7725(exposure_lines: int = 256) -> Camera:
     """Return the OV7725: VGA, 60 frames/s. Exposure in lines, of 510 in a frame."""
-    _require("exposure_lines", exposure_lines, 510)
+    within(Argument("exposure_lines", exposure_lines), 1, 510)
     registers = [
         write(0x0D, 0x41),  # COM4: PLL x 4
         write(0x11, 0x81),  # CLKRC: / (2 (1 + 1)), so 24 MHz from 24 MHz
@@ -132,7 +132,7 @@ OV5640_LINE, OV5640_LINES = 1896, 984  # pixel clocks of a line, lines of a fram
 
 def ov5640(exposure_lines: int = 480) -> Camera:
     """Return the OV5640: 1280 x 960, 2 x 2 pixels of the whole array in one, 30 frames/s. Exposure in lines, of 984."""
-    _require("exposure_lines", exposure_lines, OV5640_LINES - 4)
+    within(Argument("exposure_lines", exposure_lines), 1, OV5640_LINES - 4)
     words = {
         0x3800: 0,  # first column
         0x3802: 4,  # first row
@@ -184,11 +184,6 @@ def ov5640(exposure_lines: int = 480) -> Camera:
 
 
 CAMERAS = {"ov7670": ov7670, "ov7725": ov7725, "ov5640": ov5640}
-
-
-def _require(name: str, value: int, largest: int) -> None:
-    if not 1 <= value <= largest:
-        raise InputError(f"{name}={value} is out of range: accepted are 1 to {largest}")
 
 
 def setup_parameters(camera: Camera) -> dict[str, int]:

@@ -70,7 +70,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
             try:
                 result = pipeline(image)
             except InputError as error:
-                raise InputError(f"{label}: {error}") from error
+                raise InputError(f"{label}: ", *error.parts) from error
             heights.append(result.height_mm.astype(np.float32))
             frames.append((label, image, result))
         digits = len(str(len(frames) - 1))

@@ -7,7 +7,6 @@ Exit status: 0 success, 2 input that cannot be used, 3 a failure on the way, 128
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 import traceback
 import warnings
@@ -18,33 +17,33 @@ from typing import NoReturn
 from tactile_depth import interruption
 from tactile_depth.cli import depth, live
 from tactile_depth.cli.failure import Failure
-from tactile_depth.errors import InputError, InputWarning
+from tactile_depth.errors import Argument, InputError, InputWarning
 from tactile_depth.files import cause
 
 PROGRAM = "tactile-depth"
 BAD_INPUT, FAILED = 2, 3
 DESCRIPTION = "Depth in millimetres from visuotactile fingertips, bit for bit as the hardware computes it."
 
-# Errors of the package name arguments; a user of the command gave options.
+# Arguments of the package, and the options that a user of the command gave; {} is the value.
 OPTIONS = {
-    r"\bcamera_size=\(rows, columns\)": "--camera-size <columns>x<rows>",
-    r"\bcamera_size=\((\d+), (\d+)\)": r"--camera-size \2x\1",
-    r"\bcamera_size\b": "--camera-size",
-    r"\bfolder=": "--out ",
-    r"\bcolumns=(\d+)": r"--grid \1x..",
-    r"\brows=(\d+)": r"--grid ..x\1",
-    r"\bthreshold_mm=": "--threshold-mm ",
-    r"\bgradient_model=": "--model ",
-    r"\breference=": "--reference ",
-    r"\bname the calibration of the sensor that took it": "give the one of its sensor with --calibration",
+    "arithmetic": "--arithmetic {}",
+    "calibration": "--calibration {}",
+    "camera_size": "--camera-size {}",
+    "columns": "--grid {}x..",
+    "folder": "--out {}",
+    "gradient_model": "--model {}",
+    "grid": "--grid {}",
+    "reference": "--reference {}",
+    "rows": "--grid ..x{}",
+    "threshold_mm": "--threshold-mm {}",
 }
 
 
-def named(message: str) -> str:
-    """Name options in a message of the package, which names arguments."""
-    for argument, option in OPTIONS.items():
-        message = re.sub(argument, option, message)
-    return message
+def named(argument: Argument) -> str:
+    """Return an argument of the package as the option that a user of the command typed."""
+    if (option := OPTIONS.get(argument.name)) is None:
+        return str(argument)
+    return option.split()[0] if argument.value is ... else option.format(argument.typed)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -72,10 +71,10 @@ def _warnings_in_lines() -> Iterator[list[str]]:
         show = warnings.showwarning
 
         def line(message: Warning | str, category: type[Warning], *place: object, **more: object) -> None:
-            if not issubclass(category, InputWarning):
+            if not isinstance(message, InputWarning):
                 show(message, category, *place, **more)  # type: ignore[arg-type]
                 return
-            lines.append(named(str(message)))
+            lines.append(message.text(named))
             print(f"{PROGRAM}: warning: {lines[-1]}", file=sys.stderr)
 
         warnings.showwarning = line
@@ -90,7 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with interruption.stoppable(), _warnings_in_lines() as lines:
             parsed.run(parsed, lines)
     except InputError as error:
-        print(f"{PROGRAM}: {named(str(error))}", file=sys.stderr)
+        print(f"{PROGRAM}: {error.text(named)}", file=sys.stderr)
         return BAD_INPUT
     except Failure as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)

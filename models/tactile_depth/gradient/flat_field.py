@@ -29,11 +29,12 @@ import numpy as np
 from tactile_depth.common.td_block_sum import block_sum
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, Configuration
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError, Part
 from tactile_depth.sensor import Sensor
 
 FLAT_CODE = 128
 CODE_WIDTH = 8
+REFERENCE = Argument("reference")
 
 
 def unit_gains(config: Configuration) -> np.ndarray:
@@ -140,14 +141,14 @@ def dark_pixels(
     return np.logical_or((frames < dark_level).all(axis=-1), dead)
 
 
-def require_light(gains: np.ndarray, config: Configuration, name: str = "reference") -> None:
+def require_light(gains: np.ndarray, config: Configuration, name: Part = REFERENCE) -> None:
     """Raise InputError, which names the reference, if it is too dark for more than half of the pixels."""
     dark = dark_pixels(np.full((config.rows, config.columns, 3), 255, np.uint8), gains, config)
     if 2 * np.count_nonzero(dark) > dark.size:
         raise InputError(
-            f"{name}: under {1 << (DARKEST_LOG2 + 1)} grey levels in a colour at "
-            f"{100 * dark.mean():.0f} % of the pixels, from which nothing can be read: take it with the lights on and "
-            "with a longer exposure"
+            *(name, f": under {1 << (DARKEST_LOG2 + 1)} grey levels in a colour at {100 * dark.mean():.0f} % of the "),
+            "pixels, from which nothing can be read",
+            remedy="take it with the lights on and with a longer exposure",
         )
 
 

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors are composed of arguments, what is accepted and a remedy; front ends name each argument of the package."""
+
+import argparse
+import ast
+import pickle
+from typing import Any
+
+import pytest
+
+from commands.common.repository import ROOT
+from commands.common.run_request import ACCEPTED, CAMERA
+from commands.common.variables import VARIABLES
+from commands.run import calibrate
+from tactile_depth.cli.main import OPTIONS, _parser, named
+from tactile_depth.errors import LONGEST, Argument, InputError
+
+GRID = Argument("grid", (24, 32))
+PYTHON = {  # arguments that neither a variable of make nor an option of the command gives
+    *("background", "ball_radius_px", "bits_per_channel", "black_level", "circle", "diameter_mm", "exposure_lines"),
+    *("flat_field", "gains", "gradient_limit", "name", "path", "pictures", "sensor", "zero", "zero_offset"),
+}
+
+
+@pytest.mark.parametrize(
+    ("accepted", "text"),
+    [
+        (None, ""),
+        ("a number", ": accepted is a number"),
+        (range(1, 9), ": accepted are 1 to 8"),
+        ((), ": accepted is none"),
+        ({"lut": 1}, ": accepted is lut"),
+        (("lut", "quadratic"), ": accepted are lut, quadratic"),
+    ],
+)
+def test_a_message_has_arguments_what_is_accepted_and_a_remedy(accepted: Any, text: str) -> None:
+    error = InputError(GRID, " is odd", accepted=accepted, remedy=("omit ", Argument("grid")))
+    assert str(error) == f"grid=(24, 32) is odd{text}: omit grid"
+    assert (error.argument, error.value, error.remedy) == ("grid", (24, 32), "omit grid")
+    outer = pickle.loads(pickle.dumps(InputError("a.png: ", *error.parts)))
+    assert outer.text(named) == f"a.png: --grid 32x24 is odd{text}: omit --grid"
+
+
+def test_a_message_is_one_line_of_bounded_length() -> None:
+    error = InputError("a\nb", "x" * 2 * LONGEST)
+    assert (str(error)[:4], len(str(error)) < LONGEST, error.argument, error.value) == ("a?bx", True, None, None)
+
+
+@pytest.mark.parametrize(
+    ("argument", "text"),
+    [
+        (Argument("columns", 33), "--grid 33x.."),
+        (Argument("rows", 7), "--grid ..x7"),
+        (Argument("camera_size", (240, 320)), "--camera-size 320x240"),
+        (Argument("folder", "a"), "--out a"),
+        (Argument("calibration"), "--calibration"),
+        (Argument("solver", "x"), "solver=x"),
+    ],
+)
+def test_the_command_names_its_options(argument: Argument, text: str) -> None:
+    assert InputError(argument).text(named) == text
+
+
+def test_front_ends_name_every_argument_of_an_error() -> None:
+    used = set()
+    for path in (ROOT / "models").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Argument" and path.name != "errors.py":
+                used |= {name.value for name in node.args[:1] if isinstance(name, ast.Constant)}
+    assert used == (used & {*VARIABLES, *OPTIONS}) | PYTHON
+    assert set(VARIABLES.values()) <= {*ACCEPTED, *CAMERA, *calibrate.VARIABLES}
+    (commands,) = (action for action in _parser()._actions if isinstance(action, argparse._SubParsersAction))
+    options = {word for command in commands.choices.values() for word in command._option_string_actions}
+    assert {option.split()[0] for option in OPTIONS.values()} <= options
