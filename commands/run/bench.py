@@ -129,7 +129,7 @@ def build(
             simulation.build(
                 simulator,
                 BENCH,
-                [*sources, wrapper.write(folder, "bench", parameters)],
+                [*sources, *(wrapper.write(folder, "bench", parameters | {"Camera": each}) for each in (0, 1))],
                 {**wrapper.grid(parameters), "Camera": parameters["Camera"]},
                 folder,
                 fast=not waves,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_axil_registers: the rules of AXI4-Lite, and every register as docs/registers.md has it, at the widths in use.
 //
-// Nothing is assumed of the master, the pipeline, the tables or reset. The registers of the specification change by
+// Nothing is assumed of the master, the pipeline, the tables or reset; the registers of the camera answer at their offsets
+// alone. The registers of the specification change by
 // what was seen on the ports alone.
 
 `default_nettype none
@@ -12,6 +13,7 @@ module fv_axil_registers
   import td_types_pkg::*;
 #(
   parameter int Quadratic        = 0,
+  parameter int Camera           = 0,
   parameter int DepthMantissa    = 24'hABCDEF,
   parameter int DepthExponent    = -41,
   parameter int SlopeMantissa    = 24'h812345,
@@ -53,7 +55,8 @@ module fv_axil_registers
   input table_answer_t           table_answer,
   input logic [Tables-1:0]       table_in_use,
   input capture_status_t         reference_status,
-  input capture_status_t         zero_status
+  input capture_status_t         zero_status,
+  input register_answer_t        register_answer
 );
 
   localparam logic [1:0] Okay = 2'b00;
@@ -67,6 +70,7 @@ module fv_axil_registers
   contact_settings_t contact_settings;
   table_command_t table_command;
   capture_command_t reference_command, zero_command;
+  register_command_t register_command;
   function automatic logic [ConfigBits-1:0] configuration();
     configuration = DefaultConfig;
     configuration[32*TridiagonalField+:32] = 1;
@@ -86,6 +90,7 @@ module fv_axil_registers
     configuration[32*SlopeMantissaField+:32] = SlopeMantissa;
     configuration[32*SlopeExponentField+:32] = SlopeExponent;
     configuration[32*PitchNmField+:32] = PitchNm;
+    configuration[32*CameraField+:32] = Camera;
   endfunction
   axil_registers #(.Config(configuration())) dut (.*);
 
@@ -130,14 +135,14 @@ module fv_axil_registers
   end
 
   // Effect of a write, in the clock before its answer.
-  logic effective, refused;
+  logic effective, refused, camera_writes, camera_reads;
   int offset;
   logic [31:0] mask;
   assign effective = has_address & has_data & ~answered & (since == 3'd0);
   assign offset = 32'(address) / 4 * 4;
   always_comb begin
     for (int bit_number = 0; bit_number < 32; bit_number++) mask[bit_number] = strobes[bit_number/8];
-    refused = !(offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
+    refused = !(camera_writes || offset == ControlOffset || offset == StatusOffset || offset == ThresholdOffset
         || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
         || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
         || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
@@ -265,7 +270,17 @@ module fv_axil_registers
     else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
       word = 32'(record >> 8 * (read_offset - RecordEventOffset));
     end
-    else known = 1'b0;
+    else begin
+      known = camera_reads;
+      word = camera_reads ? register_answer.data : '0;
+    end
+  end
+  assign camera_writes = Camera != 0 && register_answer.writable;
+  assign camera_reads = Camera != 0 && register_answer.readable;
+  always_comb begin
+    if (register_answer.writable) assume (register_command.write_offset >> 6 == 32'd4);
+    if (register_answer.readable) assume (register_command.read_offset >> 6 == 32'd4);
+    else assume (register_answer.data == '0);
   end
 
   logic b_stalled, r_stalled, refused_q, write_due, read_due;
@@ -358,8 +373,8 @@ module fv_axil_registers
         || zero_command.request) && rst));
     if (started) begin
       // The bus.
-      one_write_in_flight: assert (s_axil_awready == !has_address && s_axil_wready == !has_data);
-      one_read_in_flight: assert (s_axil_arready == !asked);
+      one_write_in_flight: assert (s_axil_awready == (!has_address && !rst) && s_axil_wready == (!has_data && !rst));
+      one_read_in_flight: assert (s_axil_arready == (!asked && !rst));
       // Once each, never without a request.
       answered_when_due: assert (s_axil_bvalid == answered && s_axil_rvalid == (asked && since == 3'd0));
       if (write_due) write_response: assert (s_axil_bvalid && s_axil_bresp == (refused_q ? SlaveError : Okay));
@@ -369,6 +384,11 @@ module fv_axil_registers
             && s_axil_rresp == (known_q ? Okay : SlaveError));
       end
       if (r_stalled) read_stable: assert (s_axil_rvalid && s_axil_rdata == rdata_q && s_axil_rresp == rresp_q);
+      // What leaves for the camera.
+      camera_write: assert (register_command.write == (effective && !rst) && (!effective
+          || register_command.write_offset == offset && register_command.write_mask == mask
+          && register_command.write_ones == (data & mask)));
+      camera_read: assert (register_command.read_offset == read_offset);
       // What leaves for the pipeline.
       outputs: assert (contact_settings.threshold == limit && timeout == silence
           && contact_settings.hold_contact == hold);
@@ -399,6 +419,7 @@ module fv_axil_registers
       set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
           && sticky[StatusRowLongBit]);
       refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitZeroBit]);
+      if (Camera != 0) camera_answer: cover (read_due && known_q && word_q == 32'h12345678 && rdata_q == '0 && write_due && !refused_q && offset == 32'h104);
       refused_outside: cover (effective && offset == TableLowOffset && index == size && size == ZeroWords && refused);
       captured: cover (frame_start && requested == 4'b1100 && reference_status.busy && !zero_status.busy);
       reads_centroid: cover (read_due && read_offset == RecordCentroidOffset && word_q == 32'h12345678 && known_q);

@@ -68,8 +68,8 @@ REFUSED = {
 PROOFS = tuple(
     Proof(
         "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
-        f"{FULL_WIDTH}; either gradient model, all options",
-        {"Quadratic": quadratic},
+        f"{FULL_WIDTH}; either gradient model, with a camera or without, all options",
+        {"Quadratic": quadratic, "Camera": quadratic},
         depth=16,
     )
     for quadratic in (0, 1)
