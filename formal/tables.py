@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_depth.camera.camera_setup import Entry, Kind
 from tactile_depth.camera.register_lists import write_list
-from tactile_depth.rom_files import write_gains, write_quadratic, write_words, write_zero
+from tactile_depth.rom_files import write_nodes, write_quadratic, write_words, write_zero
 
 
 def gradient_rom(folder: Path) -> None:
@@ -27,8 +27,7 @@ def quadratic_roms(folder: Path) -> None:
 
 def gain_rom(nodes: int) -> Callable[[Path], None]:
     """Gains of one bit."""
-    gains = np.array([node % 3 & 1 for node in range(nodes)])
-    return lambda folder: write_gains(folder, np.stack((gains, gains, gains), axis=-1), 1)
+    return node_rom("gain", nodes, 3)
 
 
 def zero_rom(folder: Path) -> None:
@@ -36,13 +35,13 @@ def zero_rom(folder: Path) -> None:
     write_zero(folder, np.array([-1, 1]), 2)
 
 
-def zero_lanes_rom(nodes: int, side: int) -> Callable[[Path], None]:
-    """Nodes of one bit, `side` of them in a word of the memory; nodes.hex: all of them in order."""
+def node_rom(name: str, nodes: int, channels: int, side: int = 1) -> Callable[[Path], None]:
+    """Nodes of one bit, `side` of them in a word of the memory, all channels alike; channel.hex: one of them."""
 
     def write(folder: Path) -> None:
-        zero = np.array([(node % 3 & 1) - 1 for node in range(nodes)])
-        write_zero(folder, zero, 1, side)
-        write_words(folder / "nodes.hex", zero + 1, 1)
+        words = np.array([node % 3 & 1 for node in range(nodes)])
+        write_nodes(folder, name, np.stack([words] * channels, axis=-1), 1, side)
+        write_words(folder / "channel.hex", words, 1)
 
     return write
 

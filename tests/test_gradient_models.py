@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tactile_depth import reference
 from tactile_depth.built_in import synthetic
+from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIAL, Configuration
 from tactile_depth.errors import InputError
@@ -18,7 +19,6 @@ from tactile_depth.gradient.flat_field import (
     dark_pixels,
     deviations,
     flat_codes,
-    interpolated_gains,
     pixel_gains,
     unit_gains,
 )
@@ -124,7 +124,7 @@ def test_at_power_up_codes_are_the_pixels(choices: Any) -> None:
 def test_gains_are_those_of_the_reference(choices: Any) -> None:
     config = Configuration(**choices)
     frames = lit(config, 2, 4)
-    result = interpolated_gains(captured_gains(frames, config), config) / 2.0**27
+    result = node_map(captured_gains(frames, config), config) / 2.0**27
     want = reference.gains(frames, config)
     assert np.abs(result / want - 1).max() < 2**-19  # half a unit each of the node and of the sum, at a gain of 1/255
 
@@ -145,7 +145,7 @@ def test_codes_and_deviations_are_the_ratio_rounded(seed: int, choices: Any) -> 
     gains = captured_gains(still, config)
     chance = np.random.default_rng(seed)
     frames = np.clip(still * chance.uniform(0, 4, (2, config.rows, config.columns, 1)), 0, 255).astype(np.uint8)
-    exact = frames * (interpolated_gains(gains, config) / 2.0**27)
+    exact = frames * (node_map(gains, config) / 2.0**27)
     monitor = Monitor()
     code = flat_codes(frames, gains, config, monitor=monitor)
     assert np.abs(code - np.minimum(128 * exact, 255)).max() <= 0.5

@@ -103,7 +103,7 @@ def cone_script(cone: Cone, config: Configuration) -> str:
         f"read_slang --threads 1 --top {cone.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {cone.core}",
         "memory_collect",
-        # td_gain_map delays colours and position in one memory: as registers, each bit is separate.
+        # td_node_map delays colours and position in one memory: as registers, each bit is separate.
         "memory_map t:$mem_v2 */*u_map.u_delay.*words %i",
         "opt_clean",
         "simplemap",

@@ -8,56 +8,68 @@ module protocol_td_node_map #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
-  parameter int Lanes     = 8,
-  localparam int Side = Lanes >> BlockLog2 > 1 ? Lanes >> BlockLog2 : 1,
-  localparam int Nodes = (Rows >> BlockLog2) * (Columns >> BlockLog2),
-  localparam int NodeWidth = $clog2(Nodes),
-  localparam int WordWidth = NodeWidth - $clog2(Side)
+  parameter int Lanes     = 1,
+  parameter int Channels  = 1,
+  parameter int Select    = 0,
+  localparam int Nodes = td_types_pkg::nodes(Rows, Columns, BlockLog2),
+  localparam int Words = Nodes / td_types_pkg::side(Lanes, BlockLog2),
+  localparam int NodeWidth = $clog2(Words)
 ) (
   input  logic                 clk,
   input  logic                 rst,
   input  logic                 en,
+  input  td_types_pkg::table_command_t table_command,
   input  logic                 table_bank,
   input  logic                 table_in_use,
-  input  logic                 table_write,
-  input  logic                 table_read,
-  input  logic [NodeWidth-1:0] table_index,
   input  logic                 capture_write,
-  input  logic [WordWidth-1:0] capture_write_node,
+  input  logic [NodeWidth-1:0] capture_write_node,
+  input  logic                 capture_read,
+  input  logic [NodeWidth-1:0] capture_read_node,
   input  logic                 in_valid,
   input  logic                 in_frame_start,
   input  logic                 out_valid,
   output logic                 given_in_frame_start,
+  output logic [15:0]          row,
+  output logic [15:0]          column,
+  output logic [3:0]           place,
   output logic                 holds,
   output logic                 counts_out_valid,
   output logic                 counts_out_data,
-  output logic                 counts_out_zeros,
+  output logic                 counts_out_words,
   output logic                 counts_active,
   output logic                 counts_table_in_use,
-  output logic                 counts_table_read_zero
+  output logic                 counts_table_answer,
+  output logic                 counts_capture_read_words
 );
 
-  localparam logic [NodeWidth:0] End = Nodes;
-  localparam logic [WordWidth:0] WordEnd = Nodes / Side;
-  logic reset, live = 1'b0, named = 1'b0, bus_idle, read_stands;
-  logic [3:0] place;
+  localparam logic [NodeWidth:0] End = Words;
+  logic reset, live = 1'b0, named = 1'b0, captured = 1'b0, settled, write, read, idle, legal, known;
+  logic [23:0] unused_index;
   assign reset = rst | ~holds;
   always_ff @(posedge clk) begin
     live <= live | reset;
+    captured <= capture_read & holds;
     if (reset || (en && in_valid && &place[1:0])) named <= table_bank;
   end
-  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (.clk, .reset, .en, .in_valid, .place);
-  table_reads u_reads (.clk, .reset, .table_read, .idle(bus_idle), .stands(read_stands));
+  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (
+    .clk, .reset, .en, .in_valid, .place, .row, .column
+  );
+  table_accesses #(.Select(Select), .Entries(Nodes << $clog2(Channels))) u_accesses (
+    .clk, .rst, .holds, .table_command, .write, .read, .index(unused_index), .idle, .legal, .known
+  );
   assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
-  assign holds = (~(table_write | capture_write)
-          | (table_bank == table_in_use & named == table_in_use & ~rst & ~table_read & bus_idle))
-      & (~table_read | (~rst & bus_idle)) & (~table_write | ~capture_write)
-      & {1'b0, table_index} < End & {1'b0, capture_write_node} < WordEnd;
+  assign settled = table_bank == table_in_use & named == table_in_use;
+  assign holds = legal
+      & (rst | ~write | (settled & idle)) & (rst | ~read | idle)
+      & (~(capture_write | capture_read) | (~rst & settled & ~write & ~read & idle))
+      & (~capture_write | ~capture_read | capture_write_node != capture_read_node)
+      & {1'b0, capture_write_node} < End & {1'b0, capture_read_node} < End;
   assign counts_out_valid = live & ~reset & en;
-  assign {counts_out_data, counts_out_zeros} = {2{counts_out_valid & out_valid}};
+  assign {counts_out_data, counts_out_words} = {2{counts_out_valid & out_valid}};
   assign counts_active = live & ~reset;
   assign counts_table_in_use = live;
-  assign counts_table_read_zero = live & read_stands;
+  assign counts_table_answer = live & known;
+  assign counts_capture_read_words = captured;
 
 endmodule
 

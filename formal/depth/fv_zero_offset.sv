@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_zero_offset: whatever td_gain_map, or td_node_map, has for them, the depths of an arbitrary beat leave less those zero offsets,
+// fv_zero_offset: whatever td_node_map has for them, the depths of an arbitrary beat leave less those zero offsets,
 // saturated, with their own marks, Latency enabled clocks after they came; while en is low all of them hold. A clipped
 // depth is counted once, nothing else is. A frame is inside from the clock behind its first beat until its last has
-// left, whatever follows it. The map is told where frames begin; a zero offset that was written, by the bus or the capture,
-// reads back.
+// left, whatever follows it. The map is told where frames begin; a zero offset that was written, by the bus or the
+// capture, reads back.
 //
 // Assumed: frames in raster order, whole but for a reset; nothing is written or read while a change-over is due (what
-// is then read: fv_td_gain_map); bus and capture one at a time.
+// is then read: fv_td_node_map); bus and capture one at a time.
 
 `default_nettype none
 
-module fv_zero_offset #(
+module fv_zero_offset
+  import td_types_pkg::*;
+#(
   parameter int Rows    = 3,
   parameter int Columns = 4,
   parameter int Width   = 2,
@@ -23,10 +25,7 @@ module fv_zero_offset #(
   input logic                    rst,
   input logic                    en,
   input logic                    table_bank,
-  input logic                    table_write,
-  input logic                    table_read,
-  input logic [NodeWidth-1:0]    table_index,
-  input logic signed [Width-1:0] table_zero,
+  input table_command_t          table_command,
   input logic                    capture_write,
   input logic [NodeWidth-1:0]    capture_write_node,
   input logic [Width-1:0]        capture_zero,
@@ -42,14 +41,22 @@ module fv_zero_offset #(
   localparam int Lowest = -Highest - 1;
 
   logic table_in_use, out_valid, active;
+  table_answer_t table_answer, expected_answer;
   logic [$clog2(Lanes):0] saturations;
   logic [2:0] out_position;  // frame_start, row_end, frame_end
-  logic signed [Width-1:0] table_read_zero;
   logic [Lanes*Width-1:0] out_data;
   zero_offset #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .Lanes(Lanes)) dut (
-    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_zero,
-    .table_read_zero, .capture_write, .capture_write_node, .capture_zero,
-    .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturations
+    .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
+    .capture_write, .capture_write_node, .capture_zero, .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturations
+  );
+
+  // The accesses that reach the table, and the answer to them (fv_td_table_port).
+  logic table_write, table_read;
+  logic [NodeWidth-1:0] table_index;
+  logic [Width-1:0] table_word, asked_word;
+  td_table_port #(.Select(3), .IndexWidth(NodeWidth), .Width(Width), .Signed(1)) u_port (
+    .clk, .rst, .table_command, .table_answer(expected_answer), .write(table_write), .read(table_read),
+    .index(table_index), .word(table_word), .free_word(asked_word)
   );
 
   logic [3:0] row, column, position;
@@ -76,14 +83,15 @@ module fv_zero_offset #(
   logic follows, subtracts, counted, moved, held, left;
   logic [$clog2(Lanes):0] clips, clips_q;  // of the beat
   logic [2:0] position_followed;
-  logic [Lanes*Width-1:0] depths, limited, expected;
+  logic [Lanes*Width-1:0] depths, limited, expected, zero_words;
   logic [Lanes*Width+3:0] out_q;
+  assign zero_words = dut.zero_words;
   assign subtracts = en && follows && age == 4'(ToZero);
   always_comb begin
     clips = '0;
     for (int lane = 0; lane < Lanes; lane++) begin
       int difference;
-      difference = 32'($signed(depths[lane*Width+:Width])) - (32'(dut.zero_words[lane*Width+:Width]) + Lowest);
+      difference = 32'($signed(depths[lane*Width+:Width])) - 32'($signed(zero_words[lane*Width+:Width]));
       clips += ($clog2(Lanes) + 1)'(difference < Lowest || difference > Highest);
       limited[lane*Width+:Width] = Width'(difference < Lowest ? Lowest : difference > Highest ? Highest : difference);
     end
@@ -115,16 +123,16 @@ module fv_zero_offset #(
     end
   end
 
-  // The banks as they should be, in offset binary.
+  // The banks as they should be.
   logic [Width-1:0] words_0[Nodes], words_1[Nodes];
   initial begin
     $readmemh("zero_0.hex", words_0);
     $readmemh("zero_0.hex", words_1);
   end
   logic read_known;
-  logic [Width-1:0] written, read_word;
+  logic [Width-1:0] written;
   logic [NodeWidth-1:0] node_written;
-  assign written = Width'(32'(capture_write ? $signed(capture_zero) : table_zero) - Lowest);
+  assign written = capture_write ? capture_zero : table_word;
   assign node_written = capture_write ? capture_write_node : table_index;
   always_ff @(posedge clk) begin
     if (started && (capture_write || table_write)) begin
@@ -134,7 +142,7 @@ module fv_zero_offset #(
     read_left <= table_read ? 2'd1 : read_left - 2'(read_left != 0);
     if (table_read) begin
       read_known <= 1'b1;
-      read_word <= table_in_use ? words_0[table_index] : words_1[table_index];
+      asked_word <= table_in_use ? words_0[table_index] : words_1[table_index];
     end
     if (rst) begin
       read_left <= '0;
@@ -154,31 +162,27 @@ module fv_zero_offset #(
       if (counted) clipped_counted: assert (saturations == clips_q);
       if (!moved) once: assert (saturations == '0);
       frame_inside: assert (active == (row != '0 || column != '0 || valid != '0));
-      if (read_known && read_left == 0) entry: assert (32'(table_read_zero) == 32'(read_word) + Lowest);
+      if (read_known && read_left == 0) entry: assert (table_answer == expected_answer);
 
       clipped_below: cover (counted && saturations != '0 && out_data[Width-1] && out_position[1]);
       clipped_above: cover (counted && saturations != '0 && !out_data[Width-1] && out_position[2]);
       unclipped: cover (follows && age == 4'(ToOut) && held && &depths && 32'(out_data[Width-1:0]) == 1);
       next_inside: cover (out_valid && out_position[0] && valid[ToOut-2:0] == '1 && en);
       empties: cover (left && !active);
-      negative_read: cover (read_known && read_left == 0 && table_read_zero < 0 && table_in_use);
+      negative_read: cover (read_known && read_left == 0 && table_answer.low[31] && table_in_use);
     end
   end
 
   // The map is told where frames begin, as it assumes.
   logic map_start;
+  assign map_start = dut.u_map.in_frame_start;
   always_comb if (started && in_valid) frame_begins: assert (map_start == (row == '0 && column == '0));
-  if (Lanes > 1) begin : g_lanes
-    assign map_start = dut.g_lanes.u_map.in_frame_start;
-  end else begin : g_lane
-    assign map_start = dut.g_one.u_map.in_frame_start;
-    bind fv_zero_offset.dut.g_one.u_map.g_table[0].u_gains.g_bank[0].u_ram ram_check #(
-      .Depth(Depth), .Defined(0)
-    ) u_check_0 (.clk, .write_en, .write_address, .read_en, .read_address);
-    bind fv_zero_offset.dut.g_one.u_map.g_table[0].u_gains.g_bank[1].u_ram ram_check #(
-      .Depth(Depth), .Defined(0)
-    ) u_check_1 (.clk, .write_en, .write_address, .read_en, .read_address);
-  end
+  bind fv_zero_offset.dut.u_map.g_node[0].g_table[0].u_words.g_bank[0].u_ram ram_check #(
+    .Depth(Depth), .Defined(0)
+  ) u_check_0 (.clk, .write_en, .write_address, .read_en, .read_address);
+  bind fv_zero_offset.dut.u_map.g_node[0].g_table[0].u_words.g_bank[1].u_ram ram_check #(
+    .Depth(Depth), .Defined(0)
+  ) u_check_1 (.clk, .write_en, .write_address, .read_en, .read_address);
 
 endmodule
 

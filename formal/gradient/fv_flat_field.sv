@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_flat_field: what leaves for a pixel is round(I gain / 2^Drop) - Offset, saturated, with the gain that td_gain_map has
+// fv_flat_field: what leaves for a pixel is round(I gain / 2^Drop) - Offset, saturated, with the gain that td_node_map has
 // for it; a dark pixel takes over what left before it in its row, the first of a row Flat; dark ones and clipped
 // colours are counted once. Valid and place travel along, 13 enabled clocks; while en is low they hold.
 //
@@ -26,10 +26,7 @@ module fv_flat_field #(
   input logic                   en,
   input logic [7:0]             dark_level,
   input logic                   table_bank,
-  input logic                   table_write,
-  input logic                   table_read,
-  input logic [NodeWidth+1:0]   table_index,
-  input logic [GainWidth-1:0]   table_gain,
+  input td_types_pkg::table_command_t table_command,
   input logic                   in_valid,
   input logic [23:0]            in_pixel,
   input logic [3:0]             in_position,
@@ -37,7 +34,7 @@ module fv_flat_field #(
 );
 
   logic table_in_use, out_valid, dark;
-  logic [GainWidth-1:0] table_read_gain;
+  td_types_pkg::table_answer_t table_answer;
   logic [3*GainWidth-1:0] capture_read_gains;
   logic [3:0] out_position;
   logic [OutWidth-1:0] out_red, out_green, out_blue;
@@ -46,9 +43,9 @@ module fv_flat_field #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(1), .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset),
     .OutWidth(OutWidth), .Flat(Flat)
   ) dut (
-    .clk, .rst, .en, .dark_level, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
-    .table_read_gain, .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0),
-    .capture_read_node('0), .capture_read_gains, .in_valid, .in_pixel, .in_position,
+    .clk, .rst, .en, .dark_level, .table_command, .table_answer, .table_bank, .table_in_use,
+    .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0), .capture_read_node('0),
+    .capture_read_gains, .in_valid, .in_pixel, .in_position,
     .out_valid, .out_position, .out_red, .out_green, .out_blue, .dark, .saturations
   );
 
@@ -77,7 +74,7 @@ module fv_flat_field #(
 
 endmodule
 
-// Inside the core, beside its td_gain_map.
+// Inside the core, beside its td_node_map.
 module flat_field_meets (
   input logic        clk,
   input logic        rst,

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_gradient_lookup: the slopes of a pixel are those that stand at the index of its colour in the bank that its frame
 // began with, from power-up or as last written; valid and place travel with it, 4 enabled clocks; while en is low all
-// outputs hold. An entry asked for stands on the read port 2 clocks later and until the next: that of the bank not in
-// use.
+// outputs hold. An entry asked for stands on the bus 3 clocks later and until the next: that of the bank not in use.
 //
 // Assumed, as axil_registers and frame_guard have it: nothing is written while a change-over is due, or with a read; the
 // first pixels of two frames do not follow each other.
 
 `default_nettype none
 
-module fv_gradient_lookup #(
+module fv_gradient_lookup
+  import td_types_pkg::*;
+#(
   parameter int Width          = 1,
   parameter int BitsPerChannel = 1,
   localparam int IndexWidth = 3 * BitsPerChannel
@@ -18,11 +19,7 @@ module fv_gradient_lookup #(
   input logic                    rst,
   input logic                    en,
   input logic                    table_bank,
-  input logic                    table_write,
-  input logic                    table_read,
-  input logic [IndexWidth-1:0]   table_index,
-  input logic signed [Width-1:0] table_gx,
-  input logic signed [Width-1:0] table_gy,
+  input table_command_t          table_command,
   input logic                    in_valid,
   input logic [23:0]             in_pixel,
   input logic [3:0]              in_position
@@ -30,11 +27,22 @@ module fv_gradient_lookup #(
 
   logic out_valid, table_in_use;
   logic [3:0] out_position;
-  logic signed [Width-1:0] out_gx, out_gy, table_read_gx, table_read_gy;
+  logic signed [Width-1:0] out_gx, out_gy;
+  table_answer_t table_answer;
   gradient_lookup #(.Width(Width), .BitsPerChannel(BitsPerChannel)) dut (.*);
 
+  // The accesses that reach the table, and the answer to them (fv_td_table_port).
+  logic table_write, table_read;
+  logic [IndexWidth-1:0] table_index;
+  logic [2*Width-1:0] table_word, asked_word;
+  table_answer_t expected_answer;
+  td_table_port #(.Select(0), .IndexWidth(IndexWidth), .Width(Width), .Words(2), .Signed(1)) u_port (
+    .clk, .rst, .table_command, .table_answer(expected_answer), .write(table_write), .read(table_read),
+    .index(table_index), .word(table_word), .free_word(asked_word)
+  );
+
   logic started = 1'b0;
-  always_comb if (!started) assume (rst && !table_write && !table_bank);
+  always_comb if (!started) assume (rst && !table_bank);
 
   // The table as the register map describes it: red uppermost, then green, then blue.
   logic [2*Width-1:0] bank_0[1 << IndexWidth];
@@ -63,7 +71,6 @@ module fv_gradient_lookup #(
   logic [4+2*Width:0] out_q;
   logic asked;                 // a read a clock ago
   logic read_known, changed_over;
-  logic [2*Width-1:0] asked_word, read_word;
   always_ff @(posedge clk) begin
     started <= 1'b1;
     held <= ~en & ~rst;
@@ -72,8 +79,8 @@ module fv_gradient_lookup #(
     if (rst || begins) named <= table_bank;
     if (en) starts_q <= begins;
     if (table_write) written[!in_use] <= 1'b1;
-    if (table_write && in_use) bank_0[table_index] <= {table_gy, table_gx};
-    if (table_write && !in_use) bank_1[table_index] <= {table_gy, table_gx};
+    if (table_write && in_use) bank_0[table_index] <= table_word;
+    if (table_write && !in_use) bank_1[table_index] <= table_word;
     if (en) begin
       valid <= {valid[2:0], in_valid};
       begun <= begins;
@@ -82,10 +89,7 @@ module fv_gradient_lookup #(
     end
     asked <= table_read;
     if (table_read) asked_word <= used ? bank_0[table_index] : bank_1[table_index];
-    if (asked) begin
-      read_known <= 1'b1;
-      read_word <= asked_word;
-    end
+    if (asked) read_known <= 1'b1;
     changed_over <= ~rst & (changed_over | (used != in_use));
     if (rst) begin
       valid <= '0;
@@ -95,8 +99,7 @@ module fv_gradient_lookup #(
     end
   end
   always_comb begin
-    if (table_write) assume (table_bank == in_use && !(starts_q && named != in_use) && !rst && !table_read);
-    if (table_read) assume (!rst);
+    if (table_write) assume (table_bank == in_use && !(starts_q && named != in_use) && !table_read);
     if (begun && in_valid) assume (!(&in_position[1:0]));
   end
 
@@ -107,7 +110,7 @@ module fv_gradient_lookup #(
       if (out_valid) place_travels: assert (out_position == place[15:12]);
       if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[6*Width+:2*Width]);
       if (held) holds: assert ({out_valid, out_position, out_gx, out_gy} == out_q);
-      if (read_known) reads_spare: assert ({table_read_gy, table_read_gx} == read_word);
+      if (read_known) reads_spare: assert (table_answer == expected_answer);
       from_power_up: cover (out_valid && written == '0);
       from_write: cover (out_valid && changed_over && in_valid && valid == 4'b1111 && held);
       read_in_change: cover (asked && read_known && used != in_use && written == 2'b11 && changed_over);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_quadratic_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that stood
 // in the bank which the frame began with, from power-up or as last written; valid and place travel with the pixel, 11
-// enabled clocks; while en is low all outputs hold. A word read stands on the read port 2 clocks later and until the
+// enabled clocks; while en is low all outputs hold. A word read stands on the bus 3 clocks later and until the
 // next: that of the bank not in use. A colour's words change over 1, 2 or 3 enabled clocks behind the first pixel.
 //
 // One polynomial is followed: the deviations of the other colours are zero. Assumed, as axil_registers and frame_guard
@@ -9,7 +9,9 @@
 
 `default_nettype none
 
-module fv_quadratic_gradient #(
+module fv_quadratic_gradient
+  import td_types_pkg::*;
+#(
   parameter int Polynomial = 0,
   parameter int Rows       = 2,
   parameter int Columns    = 4,
@@ -21,10 +23,7 @@ module fv_quadratic_gradient #(
   input logic                        rst,
   input logic                        en,
   input logic                        table_bank,
-  input logic                        table_write,
-  input logic                        table_read,
-  input logic [IndexWidth-1:0]       table_index,
-  input logic signed [WordWidth-1:0] table_word,
+  input table_command_t              table_command,
   input logic                        in_valid,
   input logic signed [1:0]           deviation
 );
@@ -42,23 +41,31 @@ module fv_quadratic_gradient #(
   assign begins_row = en && in_valid && row != '0 && column == '0;
 
   logic out_valid, table_in_use;
+  table_answer_t table_answer, expected_answer;
   logic [3:0] out_position;
   logic [1:0] saturations;
   logic signed [Width-1:0] out_gx, out_gy, slope;
-  logic signed [WordWidth-1:0] table_read_word;
   assign slope = Axis != 0 ? out_gy : out_gx;
   quadratic_gradient #(
     .Width(Width), .DeviationWidth(2), .CoeffWidth(WordWidth), .WordWidth(WordWidth), .Drop(0)
   ) dut (
-    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_word,
-    .table_read_word, .in_valid, .in_position,
+    .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use, .in_valid, .in_position,
     .in_red(Colour == 0 ? deviation : 2'd0), .in_green(Colour == 1 ? deviation : 2'd0),
     .in_blue(Colour == 2 ? deviation : 2'd0),
     .out_valid, .out_position, .out_gx, .out_gy, .saturations
   );
 
+  // The accesses that reach the table, and the answer to them (fv_td_table_port).
+  logic table_write, table_read;
+  logic [IndexWidth-1:0] table_index;
+  logic [WordWidth-1:0] table_word, asked_word;
+  td_table_port #(.Select(1), .IndexWidth(IndexWidth), .Width(WordWidth), .Signed(1)) u_port (
+    .clk, .rst, .table_command, .table_answer(expected_answer), .write(table_write), .read(table_read),
+    .index(table_index), .word(table_word), .free_word(asked_word)
+  );
+
   logic started = 1'b0;
-  always_comb if (!started) assume (rst && !table_write && !table_bank);
+  always_comb if (!started) assume (rst && !table_bank);
 
   // The words as the register map describes them.
   logic [WordWidth-1:0] words_0[Terms], words_1[Terms];  // of both banks
@@ -90,7 +97,6 @@ module fv_quadratic_gradient #(
   logic signed [WordWidth+1:0] exact;
   logic signed [1:0] deviation_q;
   logic held, moved, asked, asked_own, read_known, changed_over, overwritten;
-  logic [WordWidth-1:0] asked_word, read_word;
   logic [4+2*Width:0] out_q;
   always_ff @(posedge clk) begin
     started <= 1'b1;
@@ -125,10 +131,7 @@ module fv_quadratic_gradient #(
     asked <= table_read;
     asked_own <= own;
     if (table_read) asked_word <= colour_used ? words_0[term] : words_1[term];
-    if (asked) begin
-      read_known <= asked_own;
-      read_word <= asked_word;
-    end
+    if (asked) read_known <= asked_own;
     changed_over <= ~rst & (changed_over | (begins & table_bank != in_use));
     if (rst) begin
       valid <= '0;
@@ -140,8 +143,7 @@ module fv_quadratic_gradient #(
     end
   end
   always_comb begin
-    if (table_write) assume (table_bank == reported && begun == '0 && !rst && !table_read);
-    if (table_read) assume (!rst);
+    if (table_write) assume (table_bank == reported && begun == '0 && !table_read);
     if (table_write || table_read) assume (32'(table_index) < 6 * Terms);
   end
 
@@ -158,7 +160,7 @@ module fv_quadratic_gradient #(
       if (moved && out_valid) clips_counted: assert (clips ? saturations != '0 : saturations < 2'd2);
       if (!moved || !out_valid) no_clips_counted: assert (saturations == '0);
       if (held) holds: assert ({out_valid, out_position, out_gx, out_gy} == out_q);
-      if (read_known) reads_spare: assert (table_read_word == $signed(read_word));
+      if (read_known) reads_spare: assert (table_answer == expected_answer);
       from_power_up: cover (out_valid && clips && out_position[2] && !changed_over);
       from_write: cover (out_valid && clips && out_position[2] && changed_over && overwritten && held);
     end

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_flat_field: that of td_gain_map, which is inside; here colours go out in place of gains.
+// protocol_flat_field: that of td_node_map, which is inside; here colours go out in place of gains.
 
 `default_nettype none
 
@@ -7,17 +7,14 @@ module protocol_flat_field #(
   parameter int Rows      = 128,
   parameter int Columns   = 128,
   parameter int BlockLog2 = 3,
-  localparam int Nodes = (Rows >> BlockLog2) * (Columns >> BlockLog2),
-  localparam int NodeWidth = $clog2(Nodes)
+  localparam int NodeWidth = $clog2(td_types_pkg::nodes(Rows, Columns, BlockLog2))
 ) (
   input  logic                 clk,
   input  logic                 rst,
   input  logic                 en,
+  input  td_types_pkg::table_command_t table_command,
   input  logic                 table_bank,
   input  logic                 table_in_use,
-  input  logic                 table_write,
-  input  logic                 table_read,
-  input  logic [NodeWidth+1:0] table_index,
   input  logic                 capture_write,
   input  logic [NodeWidth-1:0] capture_write_node,
   input  logic                 capture_read,
@@ -33,7 +30,7 @@ module protocol_flat_field #(
   output logic                 counts_out_green,
   output logic                 counts_out_blue,
   output logic                 counts_table_in_use,
-  output logic                 counts_table_read_gain,
+  output logic                 counts_table_answer,
   output logic                 counts_capture_read_gains,
   output logic                 counts_dark,
   output logic                 counts_saturations
@@ -42,14 +39,14 @@ module protocol_flat_field #(
   logic live = 1'b0, pixel;
   logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst | ~holds;
-  protocol_td_gain_map #(.Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2)) u_gains (
-    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .capture_write,
-    .capture_write_node, .capture_read, .capture_read_node, .in_valid, .in_frame_start(&in_position[1:0]), .out_valid,
-    .given_in_frame_start(), .holds, .counts_out_valid, .counts_out_data(pixel), .counts_out_gains(), .counts_active(),
-    .counts_table_in_use, .counts_table_read_gain, .counts_capture_read_gains
-  );
-  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (
-    .clk, .reset(rst | ~holds), .en, .in_valid, .place
+  protocol_td_node_map #(
+    .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Channels(3),
+    .Select(td_register_map_pkg::TableSelectReference)
+  ) u_gains (
+    .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .capture_write, .capture_write_node, .capture_read,
+    .capture_read_node, .in_valid, .in_frame_start(&in_position[1:0]), .out_valid, .given_in_frame_start(), .row(),
+    .column(), .place, .holds, .counts_out_valid, .counts_out_data(pixel), .counts_out_words(), .counts_active(),
+    .counts_table_in_use, .counts_table_answer, .counts_capture_read_words(counts_capture_read_gains)
   );
   assign given_in_position = in_valid & ~rst ? place : in_position;
   assign {counts_out_position, counts_out_red, counts_out_green, counts_out_blue} = {4{pixel}};

@@ -9,11 +9,9 @@ module protocol_quadratic_gradient (
   input  logic       clk,
   input  logic       rst,
   input  logic       en,
+  input  td_types_pkg::table_command_t table_command,
   input  logic       table_bank,
   input  logic       table_in_use,
-  input  logic       table_write,
-  input  logic       table_read,
-  input  logic [5:0] table_index,
   input  logic       in_valid,
   input  logic [3:0] in_position,
   input  logic       out_valid,
@@ -23,26 +21,27 @@ module protocol_quadratic_gradient (
   output logic       counts_out_gx,
   output logic       counts_out_gy,
   output logic       counts_table_in_use,
-  output logic       counts_table_read_word,
+  output logic       counts_table_answer,
   output logic       counts_saturations
 );
 
-  logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, read = 1'b0, asked = 1'b0, named = 1'b0, still = 1'b0, valid_before, place_legal;
+  logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, named = 1'b0, still = 1'b0, valid_before, place_legal;
+  logic write, legal, known;
   logic [1:0] column = '0;  // pixels of this row so far, up to three
   logic [3:0] place_before;
   assign reset = rst | ~holds;
   assign place_legal = begun ? ~in_position[1] | (column == 2'd3 & (~in_position[0] | second_row)) : &in_position[1:0];
   assign holds = (~in_valid | rst | place_legal)
       & (~still | rst | (in_valid == valid_before & (~in_valid | in_position == place_before)))
-      & (~table_write | (live & ~rst & ~table_read & table_bank == table_in_use & named == table_in_use))
-      & table_index < 6'd36;
+      & (rst | ~write | (table_bank == table_in_use & named == table_in_use)) & legal;
+  table_accesses #(.Select(td_register_map_pkg::TableSelectCoefficients), .Entries(36)) u_accesses (
+    .clk, .rst, .holds, .table_command, .write, .read(), .index(), .idle(), .legal, .known
+  );
   always_ff @(posedge clk) begin
     live <= live | reset;
     still <= ~en & ~reset;
     valid_before <= in_valid;
     place_before <= in_position;
-    asked <= table_read & ~reset;
-    read <= live & ~reset & (read | asked);
     if (reset || (en && in_valid && &in_position[1:0])) named <= table_bank;
     if (en && in_valid) begin
       begun <= 1'b1;
@@ -56,7 +55,7 @@ module protocol_quadratic_gradient (
     end
   end
   assign counts_table_in_use = live;
-  assign counts_table_read_word = read;
+  assign counts_table_answer = live & known;
   assign counts_saturations = live & ~reset;
   assign counts_out_valid = live & ~reset & en;
   assign {counts_out_position, counts_out_gx, counts_out_gy} = {3{counts_out_valid & out_valid}};

@@ -75,28 +75,16 @@ module depth_unit
   // The zero offset. Its bank goes with the frame: while the frame was in the solver others have begun.
 
   if (ZeroOffset != 0) begin : g_zero_offset
-    localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2));
-    logic selected, in_use, zero_active, zero_write, capture_busy, capture_done;
     localparam int Side = side(Lanes, BlockLog2);  // nodes that are captured at once
-    logic [NodeWidth-$clog2(Side)-1:0] zero_write_node;
+    localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2) / Side);
+    logic in_use, zero_active, zero_write;
+    logic [NodeWidth-1:0] zero_write_node;
     logic [Side*DataWidth-1:0] zero_written;
-    logic signed [DataWidth-1:0] zero_word;
-    table_command_t command = '0;  // the bus comes from afar: table_access waits a cycle longer than a table
-    always_ff @(posedge clk) begin
-      command <= table_command;
-      if (rst) {command.write, command.read} <= '0;
-    end
-    logic unused_command;  // a table has fewer words, and narrower ones, than the bus carries
-    assign unused_command = ^command;
-    assign selected = command.select == 2'(TableSelectZero);
     zero_offset #(
       .TableFolder(TableFolder), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(DataWidth),
       .Lanes(Lanes)
     ) u_zero_offset (
-      .clk, .rst, .en, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
-      .table_write(command.write & selected), .table_read(command.read & selected),
-      .table_index(command.index[NodeWidth-1:0]), .table_zero(command.low[DataWidth-1:0]),
-      .table_read_zero(zero_word),
+      .clk, .rst, .en, .table_command, .table_answer, .table_bank(rst ? bank : tag_bank), .table_in_use(in_use),
       .capture_write(zero_write), .capture_write_node(zero_write_node), .capture_zero(zero_written),
       .in_valid(whole_valid), .in_position(whole_position), .in_data(whole_data),
       .out_valid(depth_valid), .out_position(depth_position), .out_data(depth_data), .active(zero_active), .saturations
@@ -106,13 +94,11 @@ module depth_unit
       .Lanes(Lanes)
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
-      .busy(capture_busy), .done(capture_done),
+      .busy(capture_status.busy), .done(capture_status.done),
       .in_valid(whole_valid), .in_frame_start(whole_position.frame_start),
       .in_frame_end(whole_position.frame_end), .in_data(whole_data),
       .map_write(zero_write), .map_write_node(zero_write_node), .map_write_zero(zero_written)
     );
-    assign capture_status = {capture_busy, capture_done};
-    assign table_answer = {32'd0, selected ? 32'(zero_word) : 32'd0};
     assign table_in_use = 4'(in_use) << TableSelectZero;
     assign busy = tags_held | active | zero_active;
     always_ff @(posedge clk) if (en && whole_valid && whole_position.frame_start) depth_time <= tag_time;
@@ -124,11 +110,11 @@ module depth_unit
     assign {capture_status, table_answer, table_in_use, saturations} = '0;
     assign busy = tags_held | active;
     logic unused_capture;
-    assign unused_capture = ^{capture_command, tag_bank};
+    assign unused_capture = ^{capture_command, table_command, tag_bank};
   end
 
-  logic unused_command;  // banks of other tables, bits of wider entries
-  assign unused_command = ^{table_command, table_bank};
+  logic unused_banks;  // of other tables
+  assign unused_banks = ^table_bank;
 
   if (ZeroOffset < 0 || ZeroOffset > 1) begin : g_refused_0
     ZeroOffset_is_0_or_1 u_refused ();

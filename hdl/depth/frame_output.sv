@@ -46,9 +46,9 @@ module frame_output
   assign bad = in_due ? in_bad | ~in_frame_start : bad_q;
   assign out_valid = active & ~bad;
   assign out_data = in_data;
-  assign out_position = ~active ? '0 : {
-    in_due, position[ColumnWidth-1:0] == ColumnWidth'(Columns - 1), position == PositionWidth'(Pixels - 1)
-  };
+  assign out_position.frame_start = active & in_due;
+  assign out_position.row_end = active & position[ColumnWidth-1:0] == ColumnWidth'(Columns - 1);
+  assign out_position.frame_end = active & position == PositionWidth'(Pixels - 1);
 
   always_ff @(posedge clk) if (en) bad_q <= bad;
 

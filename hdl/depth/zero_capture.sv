@@ -43,7 +43,7 @@ module zero_capture
 
   output logic                    map_write,
   output logic [NodeWidth-1:0]    map_write_node,   // of Side nodes
-  output logic [Side*Width-1:0]   map_write_zero   // depth codes, signed
+  output logic [Side*Width-1:0]   map_write_zero    // depth codes, signed
 );
 
   localparam int Drop = 2 * BlockLog2 + MaxLog2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// flat_field: colours relative to the reference frame, by the gains of td_gain_map; dark pixels held from their
+// flat_field: colours relative to the reference frame, by the gains of td_node_map; dark pixels held from their
 // neighbour.
 //
 //   out = sat( round( I gain / 2^Drop ) - Offset )       of red, green and blue
@@ -9,12 +9,13 @@
 // its top bit set. It takes over what left for the pixel before it in its row, the first of a row Flat; `dark` is high
 // one cycle for each. Nothing that a dark pixel would clip counts as saturation.
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0. Stream out: colours relative to the reference.
-// Latency: 13 cycles. Banks, bus and capture: see td_gain_map. Bit-accurate model:
-// models/tactile_depth/gradient/flat_field.py.
+// Latency: 13 cycles. Table port: docs/streams.md; a gain is at index 4 node + channel: red 0, green 1, blue 2.
+// Bit-accurate model: models/tactile_depth/gradient/flat_field.py.
 
 `default_nettype none
 
 module flat_field
+  import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
@@ -33,13 +34,10 @@ module flat_field
   input  wire                    en,
   input  wire  [7:0]             dark_level,
 
+  input  wire table_command_t    table_command,
+  output table_answer_t          table_answer,
   input  wire                    table_bank,
   output logic                   table_in_use,
-  input  wire                    table_write,
-  input  wire                    table_read,
-  input  wire  [NodeWidth+1:0]   table_index,
-  input  wire  [GainWidth-1:0]   table_gain,
-  output logic [GainWidth-1:0]   table_read_gain,
 
   input  wire                    capture_write,
   input  wire  [NodeWidth-1:0]   capture_write_node,
@@ -68,35 +66,36 @@ module flat_field
 
   logic frame_start, dim_in, dim, gain_valid, unused_active;
   logic [7:0] red, green, blue, level, level_q;
-  logic [23:0] colours;
+  logic [2:0][7:0] colours;
   position_t gain_position;
-  logic [3*GainWidth-1:0] gains;
+  logic [2:0][GainWidth-1:0] gains;
   assign {red, blue, green} = in_pixel;
   assign frame_start = in_position.first_row & in_position.first_column;
   assign level = frame_start ? dark_level : level_q;
   assign dim_in = red < level & green < level & blue < level;
-  td_gain_map #(
+  td_node_map #(
     .Name({TableFolder, "gain"}), .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
-    .DataWidth(29)
+    .Channels(3), .DataWidth(29), .Select(TableSelectReference)
   ) u_map (
-    .clk, .rst, .en, .table_bank, .table_in_use, .table_write, .table_read, .table_index, .table_gain,
-    .table_read_gain, .capture_write, .capture_write_node, .capture_gains, .capture_read, .capture_read_node,
-    .capture_read_gains, .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
-    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_gains(gains), .active(unused_active)
+    .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
+    .capture_write, .capture_write_node, .capture_words(capture_gains),
+    .capture_read, .capture_read_node, .capture_read_words(capture_read_gains),
+    .in_valid, .in_frame_start(frame_start), .in_data({in_position, dim_in, blue, green, red}),
+    .out_valid(gain_valid), .out_data({gain_position, dim, colours}), .out_words(gains), .active(unused_active)
   );
 
   logic dead;
   logic [ToOut-1:0] valid_q, dark_q;
   position_t [ToOut-1:0] position_q;
   logic [2:0] clipped;
-  assign dead = gains[GainWidth-1] | gains[2*GainWidth-1] | gains[3*GainWidth-1];
+  assign dead = gains[0][GainWidth-1] | gains[1][GainWidth-1] | gains[2][GainWidth-1];
 
-  logic [3*OutWidth-1:0] out;
+  logic [2:0][OutWidth-1:0] out;
   assign {out_blue, out_green, out_red} = out;
   for (genvar c = 0; c < 3; c++) begin : g_channel
     logic signed [ProductWidth-1:0] product, sum;
     td_multiply #(.AWidth(GainWidth + 1), .BWidth(9)) u_product (
-      .clk, .en, .a({1'b0, gains[c*GainWidth+:GainWidth]}), .b({1'b0, colours[8*c+:8]}), .product
+      .clk, .en, .a({1'b0, gains[c]}), .b({1'b0, colours[c]}), .product
     );
     logic signed [RoundedWidth-1:0] rounded;
     td_round_saturate #(.InWidth(ProductWidth), .Drop(Drop), .OutWidth(RoundedWidth)) u_round (
@@ -109,8 +108,8 @@ module flat_field
     always_ff @(posedge clk) begin
       if (en) begin
         sum <= product - (ProductWidth'(Offset) <<< Drop);
-        if (valid_q[1] & ~dark_q[1]) out[c*OutWidth+:OutWidth] <= rounded[OutWidth-1:0];
-        else if (valid_q[1] & position_q[1].first_column) out[c*OutWidth+:OutWidth] <= OutWidth'(Flat);
+        if (valid_q[1] & ~dark_q[1]) out[c] <= rounded[OutWidth-1:0];
+        else if (valid_q[1] & position_q[1].first_column) out[c] <= OutWidth'(Flat);
       end
     end
   end
@@ -119,8 +118,7 @@ module flat_field
     if (en) begin
       if (in_valid) level_q <= level;
       valid_q <= {valid_q[0], gain_valid};
-      position_q[0] <= gain_position;
-      position_q[1] <= position_q[0];
+      position_q <= {position_q[0], gain_position};
       dark_q <= {dark_q[0], dim | dead};
       out_valid <= valid_q[1];
       out_position <= position_q[1];

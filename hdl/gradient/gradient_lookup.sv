@@ -4,16 +4,14 @@
 //   {gx, gy} = table[ top bits of R | top bits of G | top bits of B ],  BitsPerChannel of each
 //
 // Stream in: pixels R in 23:16, B in 15:8, G in 7:0 (the order of AMD's video cores). Stream out: slopes dz/dx, dz/dy,
-// z positive into the gel. Latency: 4 cycles; a gap in, a gap out.
-// The table is a td_banked_table, both banks with the calibration at power-up. A frame uses the bank that table_bank
-// names when its first pixel is taken, or in reset; table_in_use says which. The other is written by table_write,
-// whenever no change-over is due (table_bank is table_in_use), and read by table_read: the entry stands on table_read_*
-// from 2 cycles later until the next, en or not. In the cycle of a change-over the entry is of the bank that was left.
-// Bit-accurate model: models/tactile_depth/gradient/gradient_lookup.py, which also writes the table.
+// z positive into the gel. Latency: 4 cycles; a gap in, a gap out. Table port: docs/streams.md; both banks hold the
+// calibration at power-up. Bit-accurate model: models/tactile_depth/gradient/gradient_lookup.py, which also writes the
+// table.
 
 `default_nettype none
 
 module gradient_lookup
+  import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
   parameter int Width          = 21,  // of a slope; its fraction bits are those of the table
@@ -24,15 +22,10 @@ module gradient_lookup
   input  wire                     clk,
   input  wire                     rst,
   input  wire                     en,
+  input  wire table_command_t     table_command,  // low: gx, high: gy
+  output table_answer_t           table_answer,
   input  wire                     table_bank,
   output logic                    table_in_use,
-  input  wire                     table_write,
-  input  wire                     table_read,
-  input  wire  [IndexWidth-1:0]   table_index,
-  input  wire  signed [Width-1:0] table_gx,       // slope code
-  input  wire  signed [Width-1:0] table_gy,       // slope code
-  output logic signed [Width-1:0] table_read_gx,  // slope code
-  output logic signed [Width-1:0] table_read_gy,  // slope code
   input  wire                     in_valid,
   input  wire  [23:0]             in_pixel,       // three codes of 8 bits
   input  wire position_t          in_position,
@@ -53,15 +46,25 @@ module gradient_lookup
     };
   end
 
-  logic valid_q, valid_q2, valid_q3, fetched;
-  position_t position_q, position_q2, position_q3;
-  logic [2*Width-1:0] word, word_q, free_word;
+  logic table_write, table_read;
+  logic [IndexWidth-1:0] table_index;
+  logic [2*Width-1:0] table_word, free_word;
+  td_table_port #(
+    .Select(TableSelectGradient), .IndexWidth(IndexWidth), .Width(Width), .Words(2), .Signed(1)
+  ) u_port (
+    .clk, .rst, .table_command, .table_answer, .write(table_write), .read(table_read), .index(table_index),
+    .word(table_word), .free_word
+  );
+
+  logic [2:0] valid_q;
+  position_t [2:0] position_q;
+  logic [2*Width-1:0] word, word_q;
   td_banked_table #(.Width(2 * Width), .Depth(1 << IndexWidth), .File(File)) u_table (
     .clk, .rst, .en, .table_bank, .table_in_use,
     .frame_start(in_valid & in_position.first_row & in_position.first_column),
-    .change(valid_q & position_q.first_row & position_q.first_column),
-    .read(valid_q), .read_address(index_q), .read_word(word),
-    .free_write(table_write), .free_write_address(table_index), .free_write_word({table_gy, table_gx}),
+    .change(valid_q[0] & position_q[0].first_row & position_q[0].first_column),
+    .read(valid_q[0]), .read_address(index_q), .read_word(word),
+    .free_write(table_write), .free_write_address(table_index), .free_write_word(table_word),
     .free_read(table_read), .free_read_address(table_index), .free_word
   );
 
@@ -70,12 +73,10 @@ module gradient_lookup
       index_q <= index;
       word_q <= word;
       {out_gy, out_gx} <= word_q;
-      {out_valid, valid_q3, valid_q2, valid_q} <= {valid_q3, valid_q2, valid_q, in_valid};
-      {out_position, position_q3, position_q2, position_q} <= {position_q3, position_q2, position_q, in_position};
+      {out_valid, valid_q} <= {valid_q, in_valid};
+      {out_position, position_q} <= {position_q, in_position};
     end
-    fetched <= table_read;
-    if (fetched) {table_read_gy, table_read_gx} <= free_word;
-    if (rst) {out_valid, valid_q3, valid_q2, valid_q} <= '0;
+    if (rst) {out_valid, valid_q} <= '0;
   end
 
   if (BitsPerChannel < 1 || BitsPerChannel > 8) begin : g_refused

@@ -55,23 +55,13 @@ module gradient_unit
   output logic signed [GradientWidth-1:0] slope_gy   // slope code
 );
 
-  // The bus of the tables comes from afar, so it has a register here: table_access waits a cycle longer than a table.
-  table_command_t command = '0;
-  always_ff @(posedge clk) begin
-    command <= table_command;
-    if (rst) {command.write, command.read} <= '0;
-  end
-
-  // Constants of a package stand in no port connection: there Icarus 11 takes their names for new, undriven nets.
   localparam int SlopeTable = Quadratic != 0 ? TableSelectCoefficients : TableSelectGradient;
-  logic slope_selected, slope_bank, slope_in_use, reference_in_use;
-  logic [31:0] slope_high, slope_low, reference_low;
-  assign slope_selected = command.select == 2'(SlopeTable);
-  assign slope_bank = table_bank[SlopeTable];
-  assign table_answer = {
-    slope_selected ? slope_high : 32'd0, (slope_selected ? slope_low : 32'd0) | reference_low
-  };
+  logic slope_in_use, reference_in_use;
+  table_answer_t slope_answer, reference_answer;
+  assign table_answer = slope_answer | reference_answer;
   assign table_in_use = (4'(slope_in_use) << SlopeTable) | (4'(reference_in_use) << TableSelectReference);
+  logic unused_banks;  // of other tables
+  assign unused_banks = ^table_bank;
 
   // Colours, relative to the reference if there is one.
 
@@ -83,22 +73,18 @@ module gradient_unit
   assign saturations = 3'(colour_saturations) + 3'(slope_saturations);
   if (FlatField != 0) begin : g_flat_field
     localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2));
-    logic selected, bank, capture_write, capture_read, capture_busy, capture_done;
+    logic capture_write, capture_read;
     logic [NodeWidth-1:0] capture_write_node, capture_read_node;
     logic [3*GainWidth-1:0] capture_gains, capture_read_gains;
-    logic [GainWidth-1:0] gain;
-    assign selected = command.select == 2'(TableSelectReference);
-    assign bank = table_bank[TableSelectReference];
     flat_field #(
       .TableFolder(TableFolder),
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
       .Offset(Quadratic != 0 ? 1 << DeviationFraction : 0), .OutWidth(ColourWidth),
       .Flat(Quadratic != 0 ? 0 : FlatCode)
     ) u_flat_field (
-      .clk, .rst, .en, .dark_level, .table_bank(bank), .table_in_use(reference_in_use),
-      .table_write(command.write & selected), .table_read(command.read & selected),
-      .table_index(command.index[NodeWidth+1:0]), .table_gain(command.low[GainWidth-1:0]),
-      .table_read_gain(gain), .capture_write, .capture_write_node, .capture_gains,
+      .clk, .rst, .en, .dark_level,
+      .table_command, .table_answer(reference_answer), .table_bank(table_bank[TableSelectReference]),
+      .table_in_use(reference_in_use), .capture_write, .capture_write_node, .capture_gains,
       .capture_read, .capture_read_node, .capture_read_gains,
       .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position),
       .out_valid(colour_valid), .out_position(colour_position), .out_red(red), .out_green(green), .out_blue(blue),
@@ -109,18 +95,16 @@ module gradient_unit
       .GainFraction(GainWidth + DarkestLog2), .MaxLog2(CaptureLog2)
     ) u_capture (
       .clk, .rst, .en, .request(capture_command.request), .log2_frames(capture_command.log2_frames),
-      .busy(capture_busy), .done(capture_done),
+      .busy(capture_status.busy), .done(capture_status.done),
       .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position), .in_bad(pixel_bad),
       .map_write(capture_write), .map_write_node(capture_write_node), .map_write_gains(capture_gains),
       .map_read(capture_read), .map_read_node(capture_read_node), .map_read_gains(capture_read_gains)
     );
-    assign capture_status = {capture_busy, capture_done};
-    assign reference_low = selected ? 32'(gain) : 32'd0;
   end else begin : g_as_sent
     assign {red, blue, green} = pixel_data;
     assign colour_valid = pixel_valid;
     assign colour_position = pixel_position;
-    assign {dark, colour_saturations, capture_status, reference_in_use, reference_low} = '0;
+    assign {dark, colour_saturations, capture_status, reference_in_use, reference_answer} = '0;
     logic unused_reference;
     assign unused_reference = ^{dark_level, capture_command, pixel_bad};
   end
@@ -128,41 +112,27 @@ module gradient_unit
   // Their slopes.
 
   if (Quadratic != 0) begin : g_quadratic
-    logic signed [PolynomialWidth-1:0] word;
     quadratic_gradient #(
       .TableFolder(TableFolder), .Width(GradientWidth), .DeviationWidth(ColourWidth), .CoeffWidth(ColourCoeffWidth),
       .WordWidth(PolynomialWidth), .Drop(SlopeDrop)
     ) u_quadratic (
-      .clk, .rst, .en, .table_bank(slope_bank), .table_in_use(slope_in_use),
-      .table_write(command.write & slope_selected), .table_read(command.read & slope_selected),
-      .table_index(command.index[$clog2(PolynomialWords)-1:0]),
-      .table_word(command.low[PolynomialWidth-1:0]), .table_read_word(word),
+      .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank(table_bank[SlopeTable]),
+      .table_in_use(slope_in_use),
       .in_valid(colour_valid), .in_position(colour_position), .in_red(red), .in_green(green), .in_blue(blue),
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy),
       .saturations(slope_saturations)
     );
-    assign slope_high = '0;
-    assign slope_low = 32'(word);
   end else begin : g_lookup
-    logic signed [GradientWidth-1:0] table_gx, table_gy;
     gradient_lookup #(
       .File({TableFolder, "gradient.hex"}), .Width(GradientWidth), .BitsPerChannel(BitsPerChannel)
     ) u_lookup (
-      .clk, .rst, .en, .table_bank(slope_bank), .table_in_use(slope_in_use),
-      .table_write(command.write & slope_selected), .table_read(command.read & slope_selected),
-      .table_index(command.index[3*BitsPerChannel-1:0]),
-      .table_gx(command.low[GradientWidth-1:0]), .table_gy(command.high[GradientWidth-1:0]),
-      .table_read_gx(table_gx), .table_read_gy(table_gy),
+      .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank(table_bank[SlopeTable]),
+      .table_in_use(slope_in_use),
       .in_valid(colour_valid), .in_pixel({red, blue, green}), .in_position(colour_position),
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy)
     );
-    assign slope_high = 32'(table_gy);
-    assign slope_low = 32'(table_gx);
     assign slope_saturations = '0;
   end
-
-  logic unused_command;  // banks of other tables, bits of wider entries
-  assign unused_command = ^{command, table_bank};
 
   if (Quadratic != 0 && FlatField == 0) begin : g_refused_0
     Quadratic_needs_FlatField u_refused ();

@@ -7,16 +7,14 @@
 // Stream in: I / reference - 1 of each colour, raster order, gaps anywhere. Stream out: slopes dz/dx, dz/dy, z positive
 // into the gel. Latency: 11 cycles. A frame has two rows or more, of four pixels or more; it begins afresh.
 //
-// The 36 words, at (3 axis + colour) 6 + term, terms A, B, D, E, F, H, modulo 2^WordWidth, are held in banked tables,
-// both banks with the calibration at power-up. A frame uses the bank that table_bank names when its first pixel is
-// taken, or in reset; table_in_use says which, 4 cycles later. The other is written by table_write, whenever no
-// change-over is due (table_bank is table_in_use), and read by table_read: the word stands on table_read_word from 2
-// cycles later until the next, en or not. Never both in one cycle. Bit-accurate model:
-// models/tactile_depth/gradient/quadratic_gradient.py; models/tactile_depth/rom_files.py writes the words.
+// Table port: docs/streams.md; the 36 words, at (3 axis + colour) 6 + term, terms A, B, D, E, F, H, modulo 2^WordWidth.
+// table_in_use follows a frame's first pixel after 4 cycles. Both banks hold the calibration at power-up. Bit-accurate
+// model: models/tactile_depth/gradient/quadratic_gradient.py; models/tactile_depth/rom_files.py writes the words.
 
 `default_nettype none
 
 module quadratic_gradient
+  import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
@@ -32,13 +30,10 @@ module quadratic_gradient
   input  wire                              clk,
   input  wire                              rst,
   input  wire                              en,
+  input  wire table_command_t              table_command,  // low: C has G fraction bits
+  output table_answer_t                    table_answer,
   input  wire                              table_bank,
   output logic                             table_in_use,
-  input  wire                              table_write,
-  input  wire                              table_read,
-  input  wire  [IndexWidth-1:0]            table_index,
-  input  wire  signed [WordWidth-1:0]      table_word,  // C has G fraction bits
-  output logic signed [WordWidth-1:0]      table_read_word,
   input  wire                              in_valid,
   input  wire position_t                   in_position,
   input  wire  signed [DeviationWidth-1:0] in_red,      // deviation, F fraction bits
@@ -63,40 +58,43 @@ module quadratic_gradient
   // A pixel and its position, by the cycles with en since it was taken.
 
   logic frame_start;
-  logic [ToSum:1] valid_q;
-  position_t [ToSum-1:0] position_q;  // the oldest on top
-  logic [LastLoad:1] first;   // it is the first of a frame
-  logic [LastUpdate:1] row;   // it is the first of another row
+  logic [ToSum-1:0] valid_q;
+  position_t [ToSum-1:0] position_q;
+  logic [LastLoad-1:0] first_q;  // it is the first of a frame
+  logic [LastUpdate-1:0] row_q;  // it is the first of another row
   always_ff @(posedge clk) begin
     if (en) begin
-      first <= {first[LastLoad-1:1], frame_start};
-      row <= {row[LastUpdate-1:1], in_valid & ~in_position.first_row & in_position.first_column};
+      first_q <= {first_q[LastLoad-2:0], frame_start};
+      row_q <= {row_q[LastUpdate-2:0], in_valid & ~in_position.first_row & in_position.first_column};
     end
-    if (rst) {first, row} <= '0;
+    if (rst) {first_q, row_q} <= '0;
   end
 
   // The tables of a colour change over with its first read; those of the last colour are the last.
 
-  logic table_fetched;
+  logic table_write, table_read;
+  logic [IndexWidth-1:0] table_index;
+  logic [WordWidth-1:0] table_word, fetched_word;
   logic [2*Colours-1:0] in_use;
   logic [2*Colours-1:0][WordWidth-1:0] fetched_words;
-  logic [WordWidth-1:0] fetched_word;
+  td_table_port #(
+    .Select(TableSelectCoefficients), .IndexWidth(IndexWidth), .Width(WordWidth), .Signed(1)
+  ) u_port (
+    .clk, .rst, .table_command, .table_answer, .write(table_write), .read(table_read), .index(table_index),
+    .word(table_word), .free_word(fetched_word)
+  );
   assign frame_start = in_valid & in_position.first_row & in_position.first_column;
   assign table_in_use = in_use[2*Colours-1];
   always_comb begin
     fetched_word = '0;
     for (int i = 0; i < 2 * Colours; i++) fetched_word = fetched_word | fetched_words[i];
   end
-  always_ff @(posedge clk) begin
-    table_fetched <= table_read;
-    if (table_fetched) table_read_word <= fetched_word;
-  end
 
   logic [Colours-1:0][DeviationWidth-1:0] deviation;
   assign deviation = {in_blue, in_green, in_red};
 
-  logic [2*Colours*SumWidth-1:0] sums;  // of the products up to each colour
-  logic [2*Width-1:0] slopes;
+  logic [2*Colours-1:0][SumWidth-1:0] sums;  // of the products up to each colour
+  logic [1:0][Width-1:0] slopes;
   logic [1:0] clipped;
 
   for (genvar axis = 0; axis < 2; axis++) begin : g_axis
@@ -111,15 +109,15 @@ module quadratic_gradient
       logic [TermWidth-1:0] term;
       assign offset = table_index - IndexWidth'(Terms * Polynomial);
       assign own_entry = 32'(offset) < $unsigned(Terms);
-      assign term = first[1+colour] ? TermWidth'(0)
-          : first[2+colour] ? TermWidth'(1)
-          : first[3+colour] ? TermWidth'(2)
-          : first[4+colour] ? TermWidth'(3)
-          : row[1+colour] ? TermWidth'(4) : TermWidth'(5);
+      assign term = first_q[colour] ? TermWidth'(0)
+          : first_q[1+colour] ? TermWidth'(1)
+          : first_q[2+colour] ? TermWidth'(2)
+          : first_q[3+colour] ? TermWidth'(3)
+          : row_q[colour] ? TermWidth'(4) : TermWidth'(5);
       td_banked_table #(
-        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "quadratic_", 8'(48 + Polynomial), ".hex"})
+        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "quadratic_", "0" + 8'(Polynomial), ".hex"})
       ) u_words (
-        .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first[1+colour]),
+        .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first_q[colour]),
         .read(1'b1), .read_address(term), .read_word(word),
         .free_write(table_write & own_entry), .free_write_address(offset[TermWidth-1:0]), .free_write_word(table_word),
         .free_read(table_read & own_entry), .free_read_address(offset[TermWidth-1:0]), .free_word
@@ -134,14 +132,14 @@ module quadratic_gradient
       logic [WordWidth-1:0] row_value, row_step, row_rise, value, step, second_difference;
       always_ff @(posedge clk) begin
         if (en) begin
-          if (first[2+colour]) row_value <= word;
-          if (row[2+colour]) row_value <= row_value + row_rise;
-          if (first[2+colour]) row_step <= '0;
-          else if (first[3+colour] | row[3+colour]) row_step <= word + row_step;
-          if (first[4+colour]) second_difference <= word;
-          if (first[4+colour]) row_rise <= '0;
-          else if (first[5+colour] | row[2+colour]) row_rise <= word + row_rise;
-          if (valid_q[ToCoefficient-1+colour]) begin
+          if (first_q[1+colour]) row_value <= word;
+          if (row_q[1+colour]) row_value <= row_value + row_rise;
+          if (first_q[1+colour]) row_step <= '0;
+          else if (first_q[2+colour] | row_q[2+colour]) row_step <= word + row_step;
+          if (first_q[3+colour]) second_difference <= word;
+          if (first_q[3+colour]) row_rise <= '0;
+          else if (first_q[4+colour] | row_q[1+colour]) row_rise <= word + row_rise;
+          if (valid_q[ToCoefficient-2+colour]) begin
             value <= begins_row ? row_value : value + step;
             step <= begins_row ? row_step : step + second_difference;
           end
@@ -150,7 +148,7 @@ module quadratic_gradient
 
       // The product.
       localparam int Delay = ToCoefficient + colour;
-      logic [Delay*DeviationWidth-1:0] waiting;  // the oldest on top
+      logic [Delay-1:0][DeviationWidth-1:0] waiting;
       logic signed [DeviationWidth-1:0] deviation_q;
       logic signed [CoeffWidth-1:0] coefficient_q;
       logic signed [ProductWidth-1:0] product;
@@ -159,33 +157,28 @@ module quadratic_gradient
       );
       always_ff @(posedge clk) begin
         if (en) begin
-          waiting <= {waiting[(Delay-1)*DeviationWidth-1:0], deviation[colour]};
-          deviation_q <= $signed(waiting[Delay*DeviationWidth-1-:DeviationWidth]);
+          waiting <= {waiting[Delay-2:0], deviation[colour]};
+          deviation_q <= $signed(waiting[Delay-1]);
           coefficient_q <= $signed(value[WordWidth-1-:CoeffWidth]);
         end
       end
       logic signed [SumWidth-1:0] sum_before;
-      assign sum_before = colour == 0 ? '0 : $signed(sums[SumWidth*Before+:SumWidth]);
-      always_ff @(posedge clk) if (en) sums[SumWidth*Polynomial+:SumWidth] <= sum_before + SumWidth'(product);
+      assign sum_before = colour == 0 ? '0 : $signed(sums[Before]);
+      always_ff @(posedge clk) if (en) sums[Polynomial] <= sum_before + SumWidth'(product);
     end
 
     td_round_saturate #(.InWidth(SumWidth), .Drop(Drop), .OutWidth(Width)) u_round (
-      .in($signed(sums[SumWidth*Colours*(axis+1)-1-:SumWidth])),
-      .out(slopes[Width*axis+:Width]),
-      .clipped(clipped[axis])
+      .in($signed(sums[Colours*axis+Colours-1])), .out(slopes[axis]), .clipped(clipped[axis])
     );
   end
 
   always_ff @(posedge clk) begin
     if (en) begin
-      valid_q <= {valid_q[ToSum-1:1], in_valid};
-      position_q[0] <= in_position;
-      for (int stage = 1; stage < ToSum; stage++) position_q[stage] <= position_q[stage-1];
-      out_valid <= valid_q[ToSum];
-      out_position <= position_q[ToSum-1];
+      {out_valid, valid_q} <= {valid_q, in_valid};
+      {out_position, position_q} <= {position_q, in_position};
       {out_gy, out_gx} <= slopes;
     end
-    saturations <= (en && valid_q[ToSum]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
+    saturations <= (en && valid_q[ToSum-1]) ? 2'(clipped[0]) + 2'(clipped[1]) : '0;
     if (rst) begin
       valid_q <= '0;
       out_valid <= 1'b0;

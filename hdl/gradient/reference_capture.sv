@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// reference_capture: the gains of td_gain_map from frames without contact.
+// reference_capture: the gains of flat_field from frames without contact.
 //
 //   gain = min(((2^(GainFraction + 1) n / S) + 1) >> 1, 2^Width - 1),  S the sum of n pixels: a block, in 2^k frames
 //
 // `request` starts a capture at any time, afresh if it is busy. From the next start of frame on it sums each block and
 // channel over 2^k whole frames, k = log2_frames at that start, at most MaxLog2; in_bad with a frame's last pixel
 // starts it afresh. Then one sequential divider turns each sum into its gain, channel by channel: 5 + 3 (Width + 3)
-// cycles a node. All this in the bank of td_gain_map that is not in use; `done` is high for one cycle after the last
+// cycles a node. All this in the bank of flat_field that is not in use; `done` is high for one cycle after the last
 // gain is written, and asks for the change-over. While busy nobody else writes that bank, nor asks for a change-over.
-// Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that td_gain_map takes; gaps and en low change no gain.
+// Stream in: pixels R in 23:16, B in 15:8, G in 7:0, the same that flat_field takes; gaps and en low change no gain.
 // Latency: from the last pixel to done the cycles of all nodes and 2 more, en or not. Bit-accurate model:
 // models/tactile_depth/gradient/reference_capture.py.
 

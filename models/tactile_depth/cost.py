@@ -15,7 +15,7 @@ from functools import cached_property
 from tactile_depth.common import td_node_map
 from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, GUARD_BITS, POLYNOMIAL, Configuration
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
-from tactile_depth.latency import GAIN_MAP, first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
+from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.poisson.transform.sdf_fft import stages
 from tactile_depth.sensor import COEFFICIENTS
 from tactile_depth.tactile_depth import top_parameters
@@ -27,7 +27,7 @@ CORES = (  # that have multipliers or memories, in the order of the data
     *("corner_turn", "zero_offset", "zero_capture"),
 )
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
-PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_gain_map
+PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_node_map
 DEPTH_MARKS = 3  # the position: it travels with a depth
 
 # A DSP48E2 multiplies 27 by 18 bits, signed. The low parts of a wider operand are unsigned and hold one bit less.
@@ -145,10 +145,10 @@ def _colours(p: dict[str, int]) -> Parts:
     multipliers, memories = [], []
     if p["FlatField"]:
         gain, log2, core = p["GainWidth"], p["BlockLog2"], "flat_field"
-        # A node times its row weight, and a colour times its gain. Both are unsigned, so each needs one more bit.
-        multipliers += [Multiplier(gain + 1, log2 + 3, core), Multiplier(gain + 1, 9, core)] * 3
+        # The difference of two nodes times its row weight, and a colour times its gain: one bit more than a gain has.
+        multipliers += [Multiplier(gain + 1, log2 + 2, core), Multiplier(gain + 1, 9, core)] * 3
         memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
-        memories += [Memory("delay lines", 3 * 8 + PIXEL_MARKS, GAIN_MAP, core)]
+        memories += [Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core)]
     if p["Quadratic"]:
         core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
         multipliers += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
@@ -165,16 +165,12 @@ def _zero(p: dict[str, int]) -> Parts:
     log2, data, lanes = p["BlockLog2"], p["DataWidth"], p["Lanes"]
     side = td_node_map.side(lanes, log2)  # nodes that are written at once
     words = (p["Rows"] >> log2) * (p["Columns"] >> log2) // side
-    if lanes == 1:
-        weight, tables, delay = log2 + 3, 2, GAIN_MAP
-    else:  # each bank is held twice, for the nodes above and for those below
-        weight, tables, delay = log2 + 2, 4, td_node_map.latency(lanes, log2)
     memories = [
-        *[Memory("tables", data, words, "zero_offset")] * (tables * side),
-        Memory("delay lines", lanes * data + DEPTH_MARKS, delay, "zero_offset"),
+        *[Memory("tables", data, words, "zero_offset")] * (2 * side * td_node_map.tables(lanes, log2)),
+        Memory("delay lines", lanes * data + DEPTH_MARKS, td_node_map.latency(lanes, log2), "zero_offset"),
         Memory("tables", side * (data + 2 * log2 + LARGEST_LOG2), words, "zero_capture"),
     ]
-    return [Multiplier(data + 1, weight, "zero_offset")] * side, memories
+    return [Multiplier(data + 1, log2 + 2, "zero_offset")] * side, memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:

@@ -20,8 +20,7 @@ CORNER_TURN = 3  # from the last word of a row
 TRANSPOSE = 2  # from the first word of the last row
 DIVERGENCE = 2
 GRADIENT_LOOKUP = 4
-GAIN_MAP = 10
-FLAT_FIELD = GAIN_MAP + 3
+FLAT_FIELD = td_node_map.latency(1, 1) + 3
 QUADRATIC_GRADIENT = 11
 FRAME_GUARD = 1
 AXIS_SKID = 1
@@ -77,8 +76,8 @@ def tridiagonal_solver_latency(size: int, lanes: int = 1) -> int:
 
 
 def zero_offset_latency(lanes: int, block_log2: int) -> int:
-    """Return the latency of zero_offset: td_gain_map, or td_node_map with several lanes, and the subtraction."""
-    return (GAIN_MAP if lanes == 1 else td_node_map.latency(lanes, block_log2)) + 1
+    """Return the latency of zero_offset: td_node_map and the subtraction."""
+    return td_node_map.latency(lanes, block_log2) + 1
 
 
 def pixel_format_latency(camera: CameraConfiguration) -> int:

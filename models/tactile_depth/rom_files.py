@@ -78,18 +78,22 @@ def write_gradient(path: Path, codes: np.ndarray, width: int) -> None:
 
 
 def write_gains(folder: Path, gains: np.ndarray, width: int) -> None:
-    """Write gains (.., 3) as the memories of td_gain_map.sv read them: one file per channel, one word per node."""
-    for channel, words in enumerate(np.moveaxis(gains, -1, 0)):
-        write_words(folder / f"gain_{channel}.hex", words.ravel(), width)
+    """Write gains (node rows, node columns, 3) as flat_field.sv reads them."""
+    write_nodes(folder, "gain", gains, width)
 
 
 def write_zero(folder: Path, zero: np.ndarray, width: int, side: int = 1) -> None:
-    """Write depth codes (node rows, node columns) as zero_offset.sv reads them: offset binary, one word per node.
+    """Write depth codes (node rows, node columns) as zero_offset.sv reads them."""
+    write_nodes(folder, "zero", unsigned(zero, width)[..., None], width, side)
 
-    With `side` neighbouring nodes in a word of the memory there are as many files, each with every side-th node.
+
+def write_nodes(folder: Path, name: str, nodes: np.ndarray, width: int, side: int = 1) -> None:
+    """Write words (node rows, node columns, channels) as td_node_map.sv reads them.
+
+    Each channel has `side` files, and each of these the words of every side-th node.
     """
-    for file in range(side):
-        write_words(folder / f"zero_{file}.hex", zero.ravel()[file::side] + (1 << width - 1), width)
+    for file, words in enumerate(np.asarray(nodes).reshape(-1, side * np.shape(nodes)[-1]).T):
+        write_words(folder / f"{name}_{file}.hex", words, width)
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:

@@ -1,41 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """td_node_map against its model: random and extreme words, rewritten and changed over while frames stream."""
 
-import random
 from typing import Any
 
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_node_map import latency, side
-from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import interpolated_zero
+from tactile_depth.common.td_node_map import latency, node_map, side
 from tb.depth_frames import packed
-from tb.gains import Gains, Grid, first_gains, random_gains, reads_as_a_pause_ends, watch_active
-from tb.stream import Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
+from tb.nodes import Grid, Nodes, reads_as_a_pause_ends, watch_active
+from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
 
 BEATS = 1024  # that a test sends, at least
-
-
-class Nodes(Gains):
-    """Node memory: one channel, one entry per node."""
-
-    name = "zero"
-    capture_pin = "capture_zeros"
-    per_node = 1
-
-    def __init__(self, dut: Any, config: Configuration, lanes: int) -> None:
-        self.side = side(lanes, config.reference_block_log2)
-        super().__init__(dut, config)
-
-    def at_power_up(self) -> Any:
-        return first_gains(*self.config.reference_nodes, 1, self.width)
-
-    def random(self, chance: random.Random) -> Any:
-        return random_gains(self.config, chance, 1, self.width)
-
-    def entries(self, words: Any) -> dict[Any, Any]:
-        return dict(enumerate(words.reshape(-1).tolist()))
 
 
 class Map:
@@ -44,33 +20,37 @@ class Map:
     def __init__(self, dut: Any, gap: float, pause: float) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut)
-        self.lanes, data_width = parameters(dut, "Lanes", "DataWidth")
+        names = ("Lanes", "Channels", "Signed", "Select", "DataWidth")
+        self.lanes, channels, self.signed, select, data_width = parameters(dut, *names)
         self.latency = latency(self.lanes, self.config.reference_block_log2)
         self.row = self.config.columns // self.lanes
         self.beats = [(word,) for word in places(self.config.rows * self.row, data_width).tolist()]
         self.frames = max(2, BEATS // len(self.beats))
         self.bench = Bench(dut, pause)
-        self.gains = Nodes(dut, self.config, self.lanes)
+        side_by_side = side(self.lanes, self.config.reference_block_log2)
+        self.nodes = Nodes(dut, self.config, select, channels, side_by_side, bool(self.signed))
         self.driver = StreamDriver(dut, "in", "valid", ["data"])
         self.source = StreamMonitor(dut, "in", "valid", ["data"])
-        self.sink = StreamMonitor(dut, "out", "valid", ["zeros", "data"], unsigned=["zeros"])
+        self.sink = StreamMonitor(dut, "out", "valid", ["words", "data"], unsigned=["words"])
         self.expected: list[Any] = []
 
     async def start(self, written: bool = True) -> None:
         await self.bench.start()
         cocotb.start_soon(watch_active(self.dut, self.latency))
-        await self.gains.settle(written)
+        await self.nodes.settle(written)
 
     def expect(self, nodes: Any) -> None:
         """Expect a frame with the words of these nodes."""
-        self.expected.append(interpolated_zero(nodes[..., 0], self.config))
+        if self.signed:
+            nodes = nodes - (nodes >> self.nodes.width - 1 << self.nodes.width)
+        self.expected.append(node_map(nodes, self.config))
 
     async def send(self, frames: int = 1) -> None:
         """Send frames back to back, each with the bank at its beginning."""
         for _ in range(frames):
             while self.bench.random.random() < self.gap:
                 await self.bench.clocks(1)
-            self.expect(self.gains.begin_frame())
+            self.expect(self.nodes.begin_frame())
             await self.beats_of_frame(0, 1)
             await self.beats_of_frame(1, None, self.gap)
 
@@ -81,8 +61,8 @@ class Map:
         await self.bench.clocks(self.latency + 2)
         sent = [beat for _ in self.expected for beat in self.beats]
         assert self.source.words == sent, "the driver sent other words than the test gave it"
-        words = packed(np.concatenate([words.reshape(-1, self.lanes) for words in self.expected]), self.gains.width)
-        want = [(word, beat) for word, (beat,) in zip(words, sent, strict=True)]
+        words = np.concatenate([words.reshape(-1, self.lanes * self.nodes.channels) for words in self.expected])
+        want = [(word, beat) for word, (beat,) in zip(packed(words, self.nodes.width), sent, strict=True)]
         rows, columns = self.expected[0].shape[:2]
         check_words(np.array(self.sink.words), np.array(want), columns // self.lanes, rows)  # columns are beats
         assert self.sink.starts == [clock + self.latency for clock in self.source.starts]
@@ -94,7 +74,7 @@ async def at_power_up(dut: Any) -> None:
     device = Map(dut, 0.0, 0.0)
     await device.start(written=False)
     await device.send()
-    device.gains.change()
+    device.nodes.change()
     await device.send()
     await device.check()
 
@@ -106,10 +86,10 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     new."""
     device = Map(dut, gap, pause)
     await device.start()
-    await device.gains.write(device.gains.random(device.bench.random))
-    device.gains.due = True
+    await device.nodes.write(device.nodes.random(device.bench.random))
+    device.nodes.due = True
     going_on = [True]
-    rewriter = cocotb.start_soon(device.gains.rewrite(device.bench.random, lambda: going_on[0]))
+    rewriter = cocotb.start_soon(device.nodes.rewrite(device.bench.random, lambda: going_on[0]))
     await device.send(device.frames)
     going_on[0] = False
     await rewriter
@@ -121,7 +101,7 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
 async def read_as_a_pause_ends(dut: Any) -> None:
     device = Map(dut, 0.0, 0.0)
     await device.start()
-    await reads_as_a_pause_ends(device)
+    await reads_as_a_pause_ends(device, device.nodes)
     await device.check()
 
 
@@ -131,11 +111,12 @@ async def named_inside_a_frame(dut: Any, pause: float) -> None:
     """Select the other bank at any beat of a frame: the next frame uses it."""
     device = Map(dut, 0.0, pause)
     await device.start()
-    for count in range(4, len(device.beats), max(device.row + 1, len(device.beats) // 8)):
-        await device.gains.write(device.gains.random(device.bench.random))
-        device.expect(device.gains.begin_frame())
+    stride = device.row + 1 if REGRESS or len(device.beats) < 500 else len(device.beats) // 8
+    for count in range(4, len(device.beats), stride):
+        await device.nodes.write(device.nodes.random(device.bench.random))
+        device.expect(device.nodes.begin_frame())
         await device.beats_of_frame(0, count)
-        device.gains.change()
+        device.nodes.change()
         await device.beats_of_frame(count, None)
         await device.send()
     await device.check()
@@ -143,14 +124,14 @@ async def named_inside_a_frame(dut: Any, pause: float) -> None:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def captured(dut: Any) -> None:
-    """Capture all nodes, several at once, into both banks; the bus reads the same values."""
+    """Capture all nodes, several at once, into both banks; the bus reads the same values, and 0 at unused entries."""
     device = Map(dut, 0.0, 0.0)
     await device.start()
     for _ in range(2):
-        await device.gains.capture(device.gains.random(device.bench.random))
-        for index in range(device.gains.banks[0].size):
-            await device.gains.read(index)
-        device.gains.due = True
+        await device.nodes.capture(device.nodes.random(device.bench.random))
+        for index in range(device.nodes.per_node * device.nodes.banks[0][..., 0].size):
+            await device.nodes.read(index)
+        device.nodes.due = True
         await device.send()
     await device.check()
 
@@ -161,10 +142,10 @@ async def resets(dut: Any) -> None:
     device = Map(dut, 0.0, 0.0)
     await device.start()
     for count in (1, 2, 3, 4, 6, device.row, 2 * device.row + 3, 5 * device.row // 2):
-        await device.gains.write(device.gains.random(device.bench.random))
+        await device.nodes.write(device.nodes.random(device.bench.random))
         await device.beats_of_frame(0, count)
         if count % 2:
-            device.gains.change()
+            device.nodes.change()
         await device.bench.reset(en=count % 4 > 1)
         device.expected.clear()
         device.source.forget()

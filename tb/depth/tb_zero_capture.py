@@ -13,7 +13,7 @@ from tactile_depth.common.td_node_map import side
 from tactile_depth.depth.zero_capture import captured_zero, cycles, levels
 from tb.common.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
-from tb.gains import Grid
+from tb.nodes import Grid
 from tb.stream import REGRESS, Bench, parameters, sample
 
 WORDS = 2048  # that a test sends, about

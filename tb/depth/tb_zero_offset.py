@@ -10,12 +10,14 @@ import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
 from tactile_depth.common import td_node_map
+from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import interpolated_zero, zero_offset
+from tactile_depth.depth.zero_offset import zero_offset
 from tactile_depth.latency import zero_offset_latency
+from tactile_depth.registers.register_map import TABLES
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
-from tb.gains import Gains, Grid
+from tb.nodes import Grid, Nodes
 from tb.stream import Bench, depth_position, parameters, places, sample
 
 WORDS = 2048  # that a test sends, at least
@@ -27,26 +29,16 @@ def first_zero(config: Configuration) -> Any:
     return places(rows * columns, config.depth.width).reshape(rows, columns)
 
 
-class Zeros(Gains):
-    """Zero memory: one channel, one entry per node."""
+class Zeros(Nodes):
+    """Memory of the zero offset."""
 
-    name = "zero"
     capture_pin = "capture_zero"
-    per_node = 1
-
-    def __init__(self, dut: Any, config: Configuration) -> None:
-        (lanes,) = parameters(dut, "Lanes")
-        self.side = td_node_map.side(lanes, config.reference_block_log2)
-        super().__init__(dut, config)
 
     def at_power_up(self) -> Any:
         return first_zero(self.config)[..., None]
 
     def random(self, chance: random.Random) -> Any:
         return random_depths((*self.config.reference_nodes, 1), self.width, chance)
-
-    def entries(self, words: Any) -> dict[Any, Any]:
-        return dict(enumerate(words.reshape(-1).tolist()))
 
 
 class Zero:
@@ -63,7 +55,8 @@ class Zero:
         self.chance = self.bench.random
         (self.lanes,) = parameters(dut, "Lanes")
         self.latency = zero_offset_latency(self.lanes, self.config.reference_block_log2)
-        self.zeros = Zeros(dut, self.config)
+        side = td_node_map.side(self.lanes, self.config.reference_block_log2)
+        self.zeros = Zeros(dut, self.config, TABLES["zero"], side=side, signed=True)
         self.driver = DepthDriver(dut, self.bench, gap)
         self.monitor = Monitor()
         self.counted = 0  # of `saturations`
@@ -122,7 +115,7 @@ class Zero:
         low, high = -(1 << self.width - 1), (1 << self.width - 1) - 1
         generator = np.random.default_rng(self.chance.getrandbits(32))
         target = generator.choice([low - 1, low, low + 1, -1, 0, 1, high - 1, high, high + 1], self.shape)
-        return np.clip(interpolated_zero(zero, self.config) + target, low, high)
+        return np.clip(node_map(zero, self.config) + target, low, high)
 
     async def send(self, frames: int = 1, depths: np.ndarray | None = None, count: int | None = None) -> None:
         """Send frames back to back, or the first words of one. Each uses the bank that table_bank then selects."""
@@ -133,7 +126,7 @@ class Zero:
             self.sent += words
             self.used.append(zero.tobytes())
             zeroed = zero_offset(frame, zero, self.config, self.monitor)
-            clipped = (frame - interpolated_zero(zero, self.config) != zeroed).reshape(-1, self.lanes).sum(axis=1)
+            clipped = (frame - node_map(zero, self.config) != zeroed).reshape(-1, self.lanes).sum(axis=1)
             self.expected += zip(packed(zeroed.reshape(-1, self.lanes), self.width), clipped.tolist(), strict=True)
             await self.driver.words(words)
 

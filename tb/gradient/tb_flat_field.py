@@ -8,10 +8,12 @@ import cocotb
 import numpy as np
 from cocotb.triggers import RisingEdge
 
+from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.gradient.flat_field import dark_pixels, deviations, flat_codes, interpolated_gains
+from tactile_depth.gradient.flat_field import dark_pixels, deviations, flat_codes, unit_gains
 from tactile_depth.latency import FLAT_FIELD
-from tb.gains import Gains, Grid, reads_as_a_pause_ends
+from tactile_depth.registers.register_map import TABLES
+from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
 from tb.pixels import pack
 from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, check_words, parameters, raster, sample, send_apart
 
@@ -37,6 +39,15 @@ def picture(rows: int, columns: int, chance: random.Random, level: int) -> Any:
     return np.where((nearly[..., None] & one), level, pixels).astype(np.uint8)
 
 
+class Gains(Nodes):
+    """Memory of the gains."""
+
+    capture_pin, read_pin = "capture_gains", "capture_read_gains"
+
+    def at_power_up(self) -> Any:
+        return unit_gains(self.config)
+
+
 class Field:
     """Device, and the words that the model expects for every frame sent."""
 
@@ -49,7 +60,7 @@ class Field:
         self.frames = max(2, PIXELS // len(self.places))
         self.large = len(self.places) > PIXELS  # so that a large grid gets a few frames only
         self.bench = Bench(dut, pause)
-        self.gains = Gains(dut, self.config)
+        self.gains = Gains(dut, self.config, TABLES["reference"], channels=3)
         self.driver = StreamDriver(dut, "in", "valid", PIXEL)
         self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
         unsigned = ["position"] if self.quadratic else COLOURS
@@ -148,7 +159,7 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
 async def read_as_a_pause_ends(dut: Any) -> None:
     device = Field(dut, 0.0, 0.0)
     await device.start()
-    await reads_as_a_pause_ends(device)
+    await reads_as_a_pause_ends(device, device.gains)
     await device.check()
 
 
@@ -202,7 +213,7 @@ async def products_beside_ties(dut: Any) -> None:
         gains = device.gains.random(device.bench.random)
         await device.gains.write(gains)
         device.gains.due = True
-        await device.send(level=0, pixels=beside_ties(interpolated_gains(gains, device.config), drop))
+        await device.send(level=0, pixels=beside_ties(node_map(gains, device.config), drop))
         await device.gains.changed()
     await device.check()
 

@@ -14,13 +14,14 @@ from tactile_depth.built_in import synthetic
 from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.latency import GRADIENT_LOOKUP
+from tactile_depth.registers.register_map import TABLES
 from tb.pixels import pack, unpack
 from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
+from tb.table_bus import READ_CLOCKS, TableBus, signed
 
 PIXEL = ["pixel", "position"]
 SLOPES = ["gx", "gy", "position"]
 FIRST = 0b0011  # position of the first pixel: in the first row and the first column
-READ_CLOCKS = 2  # cycles from table_read to the words
 
 
 def every_colour(bits: int, random: Any) -> Any:
@@ -49,7 +50,8 @@ class Lookup:
         # slopes of the pixels taken; banks that frames used
         self.expected: list[Any] = []
         self.tables: set[Any] = set()
-        dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
+        self.bus = TableBus(dut, TABLES["gradient"], self.width, words=2, signed=True)
+        dut.table_bank.value = 0
         dut.in_position.value = 0
 
     async def start(self) -> None:
@@ -78,14 +80,14 @@ class Lookup:
         while True:
             await RisingEdge(dut.clk)
             assert int(dut.table_in_use.value) == self.banks.in_use
+            access = self.bus.step()
             if changes and dut.en.value and not dut.rst.value:
                 self.banks.in_use, changes = named, False
-            if dut.table_read.value:  # in the cycle of a change-over: of the previous bank
-                self.to_read = self.banks.free[int(dut.table_index.value)].tolist()
+            if access and access["read"]:  # in the cycle of a change-over: of the previous bank
+                self.to_read = self.banks.free[access["index"]].tolist()
             self.banks.wanted = int(dut.table_bank.value)
-            if dut.table_write.value:
-                word = (dut.table_gx.value.to_signed(), dut.table_gy.value.to_signed())
-                self.banks.write(int(dut.table_index.value), word)
+            if access and access["write"]:
+                self.banks.write(access["index"], tuple(signed(access[word], self.width) for word in ("low", "high")))
             if dut.rst.value:
                 table, changes = self.banks.begin_frame(), False
                 self.expected.clear()
@@ -101,12 +103,7 @@ class Lookup:
 
     async def write(self, index: Any, gx: Any, gy: Any) -> None:
         """Write one entry of the free bank in one cycle, with en high or low."""
-        for pin, value in (("write", 1), ("index", index), ("gx", gx), ("gy", gy)):
-            getattr(self.dut, f"table_{pin}").value = int(value)
-        await RisingEdge(self.dut.clk)
-        self.dut.table_write.value = 0
-        for pin in ("index", "gx", "gy"):
-            getattr(self.dut, f"table_{pin}").value = self.bench.random.getrandbits(1)
+        await self.bus.write(index, gx, gy)
 
     async def rewrite(self, codes: np.ndarray, order: Any = None) -> None:
         for index in order or range(self.bins):
@@ -115,17 +112,16 @@ class Lookup:
     async def read(self, index: int) -> None:
         """Read the slopes of an entry of the free bank."""
         dut = self.dut
-        dut.table_read.value, dut.table_index.value = 1, index
-        await RisingEdge(dut.clk)
-        dut.table_read.value, dut.table_index.value = 0, self.bench.random.randrange(self.bins)
+        await self.bus.ask(index, self.bench.random.randrange(self.bins))
         await ClockCycles(dut.clk, READ_CLOCKS)
         for _ in range(self.bench.random.choice((1, 1, 4))):
-            got = [dut.table_read_gx.value.to_signed(), dut.table_read_gy.value.to_signed()]
-            assert got == self.to_read, f"entry {index} reads {got}, not {self.to_read}"
+            self.bus.check(index, *self.to_read)
             await RisingEdge(dut.clk)
+        self.bus.idle()
 
     async def commit(self) -> None:
-        """Commit the free bank: frames that begin from now on use it."""
+        """Commit the free bank, when the last access has reached it: frames that begin from now on use it."""
+        await RisingEdge(self.dut.clk)
         self.dut.table_bank.value = 1 - self.banks.in_use
         await RisingEdge(self.dut.clk)
 
@@ -226,8 +222,6 @@ async def reset_keeps_the_table_and_takes_the_bank_over(dut: Any) -> None:
         lookup.sink.forget()
         await lookup.frame()
     assert (lookup.banks.words[lookup.banks.in_use][0] == (1, -2)).all()
-    lookup.dut.table_read.value = 1  # a read that a reset ends early
-    await RisingEdge(dut.clk)
-    lookup.dut.table_read.value = 0
+    await lookup.bus.ask(0)  # a read that a reset ends early
     await lookup.bench.reset()
     await lookup.read(0)

@@ -15,14 +15,15 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.gradient.quadratic_gradient import coefficients, slope_codes
 from tactile_depth.latency import QUADRATIC_GRADIENT
+from tactile_depth.registers.register_map import TABLES
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
+from tb.table_bus import READ_CLOCKS, TableBus, signed
 
 COLOURS = ["red", "green", "blue"]
 DEVIATIONS = [*COLOURS, "position"]
 SLOPES = ["gx", "gy", "position"]
 WORDS = (2, 3, 6)  # axes, colours, terms
 COUNT = 36
-READ_CLOCKS = 3  # cycles from table_read to the word
 SMALLEST = [(2, 4), (3, 4), (2, 7)]  # rows and columns
 
 
@@ -48,7 +49,8 @@ class Gradient:
         # words and pixels (row, column, colours) taken; banks that frames used
         self.frames: list[Any] = []
         self.used: set[Any] = set()
-        dut.table_write.value, dut.table_read.value, dut.table_bank.value = 0, 0, 0
+        self.bus = TableBus(dut, TABLES["coefficients"], self.word_width, signed=True)
+        dut.table_bank.value = 0
         dut.in_position.value = 0
 
     async def start(self) -> None:
@@ -82,9 +84,10 @@ class Gradient:
             await RisingEdge(dut.clk)
             assert int(dut.table_in_use.value) == self.in_use[-1]
             wanted = int(dut.table_bank.value)
-            if dut.table_write.value:
+            access = self.bus.step()
+            if access and access["write"]:
                 assert [wanted] * len(COLOURS) == self.in_use, "written while a change-over is due"
-                self.banks[1 - wanted][int(dut.table_index.value)] = dut.table_word.value.to_signed()
+                self.banks[1 - wanted][access["index"]] = signed(access["low"], self.word_width)
             if dut.rst.value:
                 named, begun, Gradient.in_use = wanted, [], [wanted] * len(COLOURS)
                 self.frames.clear()
@@ -106,8 +109,8 @@ class Gradient:
                     column += 1
                 colours = [getattr(dut, f"in_{colour}").value.to_signed() for colour in COLOURS]
                 self.frames[-1][1].append((row, column, colours))
-            if dut.table_read.value:  # in the cycle of a change-over: of the previous bank
-                index = int(dut.table_index.value)
+            if access and access["read"]:  # in the cycle of a change-over: of the previous bank
+                index = access["index"]
                 self.to_read = int(self.banks[1 - self.in_use[index // 6 % len(COLOURS)]][index])
 
     # Software.
@@ -116,12 +119,7 @@ class Gradient:
         """Write one word of the free bank in one cycle, as soon as no change-over is due, with en high or low."""
         while len({*self.in_use, int(self.dut.table_bank.value)}) > 1:
             await RisingEdge(self.dut.clk)
-        for pin, value in (("write", 1), ("index", index), ("word", word)):
-            getattr(self.dut, f"table_{pin}").value = int(value)
-        await RisingEdge(self.dut.clk)
-        self.dut.table_write.value = 0
-        for pin in ("index", "word"):
-            getattr(self.dut, f"table_{pin}").value = self.random.getrandbits(1)
+        await self.bus.write(index, word)
 
     async def rewrite(self, words: Any) -> None:
         for index in self.random.sample(range(COUNT), COUNT):
@@ -129,17 +127,16 @@ class Gradient:
 
     async def read(self, index: int) -> None:
         dut = self.dut
-        dut.table_read.value, dut.table_index.value = 1, index
-        await RisingEdge(dut.clk)
-        dut.table_read.value, dut.table_index.value = 0, self.random.randrange(COUNT)
+        await self.bus.ask(index, self.random.randrange(COUNT))
         await ClockCycles(dut.clk, READ_CLOCKS)
         for _ in range(self.random.choice((1, 1, 4))):
-            got = dut.table_read_word.value.to_signed()
-            assert got == self.to_read, f"word {index} reads {got}, not {self.to_read}"
+            self.bus.check(index, self.to_read)
             await RisingEdge(dut.clk)
+        self.bus.idle()
 
     async def commit(self) -> None:
-        """Commit the free bank: frames that begin from now on use it."""
+        """Commit the free bank, when the last access has reached it: frames that begin from now on use it."""
+        await RisingEdge(self.dut.clk)
         self.dut.table_bank.value = 1 - int(self.dut.table_bank.value)
         await RisingEdge(self.dut.clk)
 

@@ -8,11 +8,11 @@ import pytest
 
 from formal.entries import ROUNDING, Proof
 from formal.tables import zero_rom
-from tactile_depth.common.td_node_map import side
+from tactile_depth.common.td_node_map import node_map, side
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
-from tactile_depth.depth.zero_offset import exact_zero, interpolated_zero, no_zero, zero_offset
+from tactile_depth.depth.zero_offset import exact_zero, no_zero, zero_offset
 from tactile_depth.latency import zero_offset_latency
 from tactile_depth.rom_files import write_zero
 from tb.stream import places
@@ -45,19 +45,20 @@ STRUCTURES = (
     built(128, 21, 3, 24, 32),
     built(64, 19, 5, 16, 4),
 )
-REFUSED = {
-    "BlockLog2=0": "BlockLog2_must_be_at_least_1_a_node_is_read_in_a_clock_and_two_are_needed",
-    "Columns=96": "Columns_must_be_a_power_of_two",
-    "Columns=8": "two_blocks_a_row_and_one_a_column_are_needed",
-    "Rows=7": "two_blocks_a_row_and_one_a_column_are_needed",
-    "Lanes=128": "Lanes_must_be_at_least_2_and_at_most_half_of_Columns",
-    "Lanes=3": "Columns_and_Lanes_must_be_powers_of_two",
+REFUSED = {  # by td_node_map
+    **dict.fromkeys(
+        ("BlockLog2=0", "Columns=8", "Rows=7", "Lanes=128"),
+        "blocks_of_2_pixels_or_more_two_beats_and_two_blocks_a_row_and_one_block_a_column_are_needed",
+    ),
+    **dict.fromkeys(
+        ("Columns=96", "Lanes=3"), "Columns_and_Lanes_must_be_powers_of_two_with_Lanes_of_two_blocks_Channels_too"
+    ),
 }
 PROOFS = tuple(
     Proof(
-        "the depths of an arbitrary beat less whatever td_gain_map or td_node_map holds, saturated, counted "
+        "the depths of an arbitrary beat less whatever td_node_map holds, saturated, counted "
         "if clipped, with their marks; its latency; active while a frame is inside; zero offsets read back",
-        f"subtraction is exact at any width; {ROUNDING}; td_gain_map and td_node_map are proven by themselves",
+        f"subtraction is exact at any width; {ROUNDING}; td_node_map is proven by itself",
         {"Rows": 2, "Lanes": lanes, "Latency": zero_offset_latency(lanes, 1)},
         depth=45,
         roms=zero_rom,
@@ -84,7 +85,7 @@ def test_no_zero_changes_nothing() -> None:
 @pytest.mark.parametrize("level", [-1000, -1, 1, 77777])
 def test_a_flat_zero_is_subtracted_everywhere(level: int) -> None:
     zero = np.full(CONFIG.reference_nodes, level)
-    assert np.all(interpolated_zero(zero, CONFIG) == level)
+    assert np.all(node_map(zero, CONFIG) == level)
     low = codes(limit=HIGHEST // 2)
     np.testing.assert_array_equal(zero_offset(low, zero, CONFIG), low - level)
 

@@ -8,17 +8,17 @@ import pytest
 
 from formal.entries import ROUNDING, WORD_FREE, Proof
 from formal.tables import gain_rom
+from tactile_depth.common.td_node_map import node_map
 from tactile_depth.configuration import DEVIATION, Configuration, Format
 from tactile_depth.gradient.flat_field import (
     captured_gains,
     deviations,
     flat_codes,
     flat_field_parameters,
-    interpolated_gains,
     unit_gains,
 )
 from tactile_depth.rom_files import write_gains
-from tb.gains import Grid
+from tb.nodes import Grid
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 
@@ -76,7 +76,7 @@ def test_a_frame_like_the_reference_is_flat(level: int) -> None:
     """Send the reference as a frame, at every level. Below 16 grey levels pixels are dark, and flat as well."""
     frames = np.full((1, 21, 32, 3), level, np.uint8)
     gains = captured_gains(frames, CONFIG)
-    assert np.all(np.abs(interpolated_gains(gains, CONFIG) * level - (1 << CONFIG.gain_fraction)) <= level)
+    assert np.all(np.abs(node_map(gains, CONFIG) * level - (1 << CONFIG.gain_fraction)) <= level)
     assert np.all(flat_codes(frames, gains, CONFIG) == 128)
     assert not np.any(deviations(frames, gains, CONFIG))
 
@@ -98,7 +98,7 @@ def test_interpolation_is_linear_between_the_centres_of_blocks() -> None:
     row = np.clip(np.arange(21), centre[0], centre[rows - 1])
     column = np.clip(np.arange(32), centre[0], centre[columns - 1])
     want = 2**16 * (row[:, None] * 3 + column[None] * 5) + 2**20
-    assert np.abs(interpolated_gains(gains, CONFIG)[..., 1] - want).max() <= 0.5
+    assert np.abs(node_map(gains, CONFIG)[..., 1] - want).max() <= 0.5
 
 
 def test_a_dark_pixel_takes_over_its_neighbour_and_is_not_counted_as_clipped() -> None:

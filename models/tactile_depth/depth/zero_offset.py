@@ -3,7 +3,7 @@
 
 The zero offset is the depth that a pixel reads without contact. Lights and gel drift, and the remaining slope errors
 add up to a zero offset that is not flat. It is smooth, so a coarse grid of block means holds it: the grid of the
-reference frame (flat_field.py). The means are interpolated between the centres of the blocks. Codes are
+reference frame (flat_field.py). The means are interpolated between the centres of the blocks (td_node_map). Codes are
 depth codes. Rows are in the order of the stream, and nodes run row by row in the same order.
 """
 
@@ -12,9 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.common.td_block_sum import block_sum
-from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
+from tactile_depth.common.td_node_map import interpolated, node_map
+from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.flat_field import interpolate_nodes
 
 
 def zero_offset_parameters(config: Configuration) -> dict[str, int]:
@@ -33,16 +33,11 @@ def no_zero(config: Configuration) -> np.ndarray:
     return np.zeros(config.reference_nodes, np.int64)
 
 
-def interpolated_zero(zero: np.ndarray, config: Configuration) -> np.ndarray:
-    """Return the zero offset at every pixel, int64 (rows, columns), from codes at nodes (node rows, node columns)."""
-    return round_half_even(interpolate_nodes(zero[..., None], config)[..., 0], 2 * config.reference_block_log2 + 2)
-
-
 def zero_offset(
     codes: np.ndarray, zero: np.ndarray, config: Configuration, monitor: Monitor | None = None
 ) -> np.ndarray:
     """Subtract the zero offset (node rows, node columns) from depth codes int64 (..., rows, columns), and saturate."""
-    return round_saturate(codes - interpolated_zero(zero, config), 0, config.depth.width, monitor, "zero_offset")
+    return round_saturate(codes - node_map(zero, config), 0, config.depth.width, monitor, "zero_offset")
 
 
 def exact_zero(depth: np.ndarray, untouched: np.ndarray, config: Configuration) -> np.ndarray:
@@ -56,4 +51,4 @@ def exact_zero(depth: np.ndarray, untouched: np.ndarray, config: Configuration) 
     """
     log2 = config.reference_block_log2
     sums = block_sum(untouched.reshape(-1, *untouched.shape[-2:]), log2).mean(axis=0)
-    return depth - interpolate_nodes(sums[..., None], config)[..., 0] / (1 << 4 * log2 + 2)
+    return depth - interpolated(sums, config) / (1 << 4 * log2 + 2)

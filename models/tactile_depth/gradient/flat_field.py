@@ -2,18 +2,13 @@
 """Bit-accurate model of hdl/gradient/flat_field.sv: colours relative to the reference frame.
 
 The reference (the frame without contact) is kept as gains, 1 / reference, on a coarse grid of block means. The gains
-are interpolated between the centres of the blocks. Lighting is smooth, so the interpolation causes no visible error.
-A pixel takes one multiplication for each colour and no division. All words are integers:
+are interpolated between the centres of the blocks (td_node_map). Lighting is smooth, so the interpolation causes no
+visible error. A pixel takes one multiplication for each colour and no division. All words are integers:
 
     pixel       8 bits unsigned
     gain        unsigned, 2**(W + 3) / reference in a word of W bits, by default 24; at the nodes, and at the pixels
     code        8 bits unsigned, 128 I / ref, for the table: 128 equals the reference, saturated at 255
     deviation   14 bits signed, 12 fraction bits, I / ref - 1, for the quadratic model, saturated at 2
-
-Interpolation, along rows and columns alike: with blocks of b = 2**L pixels, pixel i lies at pos = 2 i + 1 - b half
-pixels from the first block's centre, clamped to the first and the last centre (constant beyond them);
-node = pos >> (L + 1), w = pos mod 2 b, and 2 b times the gain is (2 b - w) g[node] + w g[node + 1]. Both directions
-are exact; one rounding to even, of 2 L + 2 bits, makes the word. Where w is 0 the next node has no effect.
 
 A pixel is dark where all its colours are below `dark_level` (0: no pixel is), or where the reference of any colour is
 below 16 grey levels, which sets the top bit of its gain. The output of a dark pixel repeats the output of the pixel
@@ -27,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.common.td_block_sum import block_sum
+from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, Configuration
 from tactile_depth.errors import Argument, InputError, Part
@@ -91,32 +87,13 @@ def captured_gains(frames: np.ndarray, config: Configuration) -> np.ndarray:
     return np.minimum(quotient, (1 << config.gain_width) - 1)
 
 
-def interpolated_gains(gains: np.ndarray, config: Configuration) -> np.ndarray:
-    """Return the gain of every pixel, int64 (rows, columns, 3), from the gains of the nodes."""
-    return round_half_even(interpolate_nodes(gains, config), 2 * config.reference_block_log2 + 2)
-
-
-def interpolate_nodes(nodes: np.ndarray, config: Configuration) -> np.ndarray:
-    """Interpolate words at the nodes (node rows, node columns, n) to the pixels (rows, columns, n), times 4 b**2."""
-    log2 = config.reference_block_log2
-    along_rows = _interpolate(nodes, config.rows, log2)
-    return _interpolate(along_rows.swapaxes(0, 1), config.columns, log2).swapaxes(0, 1)
-
-
-def _interpolate(nodes: np.ndarray, pixels: int, log2: int) -> np.ndarray:
-    """Interpolate between nodes along axis 0; the result is scaled by twice the block size."""
-    at = np.clip(2 * np.arange(pixels) + 1 - (1 << log2), 0, (len(nodes) - 1) << (log2 + 1))
-    node, share = at >> (log2 + 1), (at & ((2 << log2) - 1))[:, None, None]
-    return nodes[node] * ((2 << log2) - share) + nodes[np.minimum(node + 1, len(nodes) - 1)] * share
-
-
 @dataclass(frozen=True)
 class PixelGains:
     """Gains of every pixel, computed once by `pixel_gains` for all frames that use the same nodes.
 
     Attributes
     ----------
-    gains : int64 array (rows, columns, 3), of `interpolated_gains`
+    gains : int64 array (rows, columns, 3)
     dead : bool array (rows, columns)
         True where the reference of any colour is too dark, so that the pixel is dark in every frame.
     """
@@ -127,7 +104,7 @@ class PixelGains:
 
 def pixel_gains(gains: np.ndarray, config: Configuration) -> PixelGains:
     """Interpolate the gains of the nodes (node rows, node columns, 3), and find the dead pixels."""
-    interpolated = interpolated_gains(gains, config)
+    interpolated = node_map(gains, config)
     return PixelGains(interpolated, np.bitwise_or.reduce(interpolated, axis=-1) >> (config.gain_width - 1) != 0)
 
 

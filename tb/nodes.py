@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bus and capture of td_gain_map and of the cores that contain it: expected content of both banks, change-overs."""
+"""Bus and capture of td_node_map and of the cores that contain it: expected content of both banks, change-overs."""
 
 import random
 from dataclasses import dataclass
@@ -9,22 +9,21 @@ import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge, RisingEdge
 
-from tactile_depth.common.td_gain_map import ENTRIES_PER_NODE, table_entries
+from tactile_depth.common.td_node_map import entries_per_node, table_entries
 from tactile_depth.configuration import Configuration, Format, gain_fraction
-from tactile_depth.gradient.flat_field import unit_gains
 from tb.stream import parameters, places
+from tb.table_bus import READ_CLOCKS, TO_TABLE, TableBus
 
-READ_CLOCKS = 2  # from table_read to the gain
 PAUSED = 4  # cycles of a pause before its last one
 
 
-def first_gains(rows: int, columns: int, channels: int, width: int) -> Any:
-    """Return the gains at power-up, (node rows, node columns, channels); every word differs."""
+def first_words(rows: int, columns: int, channels: int, width: int) -> Any:
+    """Return the words at power-up, (node rows, node columns, channels); every word differs."""
     return places(rows * columns * channels, width).reshape(rows, columns, channels) & (1 << width) - 1
 
 
-def random_gains(config: Configuration, chance: random.Random, channels: int, width: int) -> Any:
-    """Return random gains of the nodes: full range, the limits, or like those of a sensor."""
+def random_words(config: Configuration, chance: random.Random, channels: int, width: int) -> Any:
+    """Return random words of the nodes: full range, the limits, or like the gains of a sensor."""
     generator = np.random.default_rng(chance.getrandbits(32))
     shape = (*config.reference_nodes, channels)
     largest = (1 << width) - 1
@@ -65,40 +64,37 @@ class Grid:
         return gain_fraction(self.gain_width)
 
 
-class Gains:
+class Nodes:
     """Pins of the bus and of the capture; `banks` holds the expected words, (node rows, node columns, channels), of
     each bank."""
 
-    name = "gain"  # name of a word in the pins of the bus
-    capture_pin = "capture_gains"
-    per_node = ENTRIES_PER_NODE
-    side = 1  # nodes that the capture writes at once
+    capture_pin, read_pin = "capture_words", "capture_read_words"
 
-    def __init__(self, dut: Any, config: Configuration) -> None:
+    def __init__(
+        self, dut: Any, config: Configuration, select: int, channels: int = 1, side: int = 1, signed: bool = False
+    ) -> None:
         self.dut, self.config = dut, config
         self.width = config.depth.width
+        self.channels, self.side = channels, side  # side: nodes that the capture writes at once
+        self.per_node = entries_per_node(channels)
+        self.bus = TableBus(dut, select, self.width, signed=signed)
         self.banks = [self.at_power_up(), self.at_power_up()]
-        self.channels = self.banks[0].shape[-1]
         self.bank = 0  # value of table_bank
         self.due = False  # True: the next frame changes the bank
         self.reads_captured = hasattr(dut, "capture_read")
-        for pin in ("table_bank", "table_write", "table_read", "table_index", "capture_write"):
+        for pin in ("table_bank", "capture_write"):
             getattr(dut, pin).value = 0
         if self.reads_captured:
             dut.capture_read.value = 0
 
     def at_power_up(self) -> Any:
-        return unit_gains(self.config)
+        return first_words(*self.config.reference_nodes, self.channels, self.width)
 
     def random(self, chance: random.Random) -> Any:
-        return random_gains(self.config, chance, self.channels, self.width)
-
-    def entries(self, words: Any) -> Any:
-        """Return the words that the bus writes, by index."""
-        return table_entries(words)
+        return random_words(self.config, chance, self.channels, self.width)
 
     async def settle(self, written: bool) -> None:
-        """Write the gains of power-up into both banks if an earlier test has `written` others, and always on Verilator.
+        """Write the words of power-up into both banks if an earlier test has `written` others, and always on Verilator.
 
         Verilator starts with random pins, so its first edge may write a word. Icarus, which starts with X, and the top
         test the content at power-up.
@@ -113,7 +109,7 @@ class Gains:
                 await RisingEdge(self.dut.clk)
 
     def begin_frame(self) -> Any:
-        """Change the bank if it is due, as the head of the pipeline does at the first pixel; return the gains of that
+        """Change the bank if it is due, as the head of the pipeline does at the first pixel; return the words of that
         frame."""
         if self.due:
             self.change()
@@ -129,34 +125,36 @@ class Gains:
         while self.dut.table_in_use.value != self.bank:
             await RisingEdge(self.dut.clk)
 
-    async def capture(self, gains: np.ndarray) -> None:
+    async def capture(self, words: np.ndarray) -> None:
         """Write all nodes of the free bank as reference_capture writes them, and read each a few cycles later."""
         await self.changed()
         mask = (1 << self.width) - 1
-        nodes = gains.reshape(-1, self.side * self.channels).tolist()
-        words = [sum((word & mask) << self.width * c for c, word in enumerate(node)) for node in nodes]
-        for clock in range(len(words) + 3):
-            writes, reads = clock < len(words), 0 <= clock - 2 < len(words)
+        nodes = words.reshape(-1, self.side * self.channels).tolist()
+        written = [sum((word & mask) << self.width * c for c, word in enumerate(node)) for node in nodes]
+        for clock in range(len(written) + 3):
+            writes, reads = clock < len(written), 0 <= clock - 2 < len(written)
             self.dut.capture_write.value = int(writes)
             self.dut.capture_write_node.value = clock if writes else 0
-            getattr(self.dut, self.capture_pin).value = words[clock] if writes else 0
+            getattr(self.dut, self.capture_pin).value = written[clock] if writes else 0
             if self.reads_captured:
                 self.dut.capture_read.value = int(reads)
                 self.dut.capture_read_node.value = clock - 2 if reads else 0
             await RisingEdge(self.dut.clk)
             if self.reads_captured and clock >= 3:
-                assert int(self.dut.capture_read_gains.value) == words[clock - 3], f"node {clock - 3} as it is read"
-        self.banks[self.bank ^ 1] = gains.copy()
+                got = int(getattr(self.dut, self.read_pin).value)
+                assert got == written[clock - 3], f"node {clock - 3} as it is read"
+        self.banks[self.bank ^ 1] = words.copy()
 
-    async def write(self, gains: Any) -> None:
+    async def write(self, words: Any) -> None:
         """Write all entries of the free bank in order, one per cycle, the unused ones too."""
         await self.changed()
-        for index, word in self.entries(gains).items():
+        for index, word in table_entries(words).items():
             await self.write_entry(index, word)
             if index % self.per_node == self.channels - 1:
                 for unused in range(index + 1, index + 1 + self.per_node - self.channels):
                     await self.write_entry(unused, (1 << self.width) - 1)
-        assert np.array_equal(self.banks[self.bank ^ 1], gains)
+        await RisingEdge(self.dut.clk)  # the last one reaches the table
+        assert np.array_equal(self.banks[self.bank ^ 1], words)
 
     async def rewrite(self, chance: Any, going_on: Any) -> None:
         """Rewrite the free bank repeatedly, commit it when it is complete, and read entries meanwhile."""
@@ -171,52 +169,46 @@ class Gains:
             self.due = True
 
     async def write_entry(self, index: int, word: Any) -> None:
-        for pin, value in (("write", 1), ("index", index), (self.name, word)):
-            getattr(self.dut, f"table_{pin}").value = value
         node, channel = divmod(index, self.per_node)
         if channel < self.channels:
             self.banks[self.bank ^ 1].reshape(-1, self.channels)[node, channel] = word
-        await RisingEdge(self.dut.clk)
-        self.dut.table_write.value = 0
+        await self.bus.write(index, word)
 
     async def read(self, index: int) -> None:
         """Read and compare an entry of the free bank; a change-over may come in the same cycle."""
-        self.dut.table_read.value, self.dut.table_index.value = 1, index
-        await RisingEdge(self.dut.clk)
-        self.dut.table_read.value = 0
-        self.dut.table_index.value = (index ^ 5) & (1 << len(self.dut.table_index)) - 1
-        await RisingEdge(self.dut.clk)
+        await self.bus.ask(index, (index ^ 5) % (self.per_node * self.banks[0][..., 0].size))
+        for _ in range(TO_TABLE + 1):
+            await RisingEdge(self.dut.clk)
         free = 1 - int(self.dut.table_in_use.value)  # as it was after the edge of the read
-        for _ in range(READ_CLOCKS - 1):
+        for _ in range(READ_CLOCKS - TO_TABLE - 1):
             await RisingEdge(self.dut.clk)
         node, channel = divmod(index, self.per_node)
         want = self.banks[free].reshape(-1, self.channels)[node, channel] if channel < self.channels else 0
-        want &= (1 << self.width) - 1
-        got = int(getattr(self.dut, f"table_read_{self.name}").value)
-        assert got == want, f"entry {index} of bank {free}: {got:#x}, not {want:#x}"
+        self.bus.check(index, want)
+        self.bus.idle()
 
 
-async def reads_as_a_pause_ends(device: Any) -> None:
+async def reads_as_a_pause_ends(device: Any, nodes: Nodes) -> None:
     """Pause as the first pixel of a frame waits for its new bank, and read the last node in the pause or as it ends.
 
-    `device` is that of a testbench, with its `gains` and `bench`."""
-    gains, bench, clk = device.gains, device.bench, device.dut.clk
-    rows, columns, channels = gains.banks[0].shape
+    `device` is that of a testbench, with its `bench`."""
+    bench, clk = device.bench, device.dut.clk
+    rows, columns, channels = nodes.banks[0].shape
     for early in range(PAUSED + 1):
-        await gains.write(np.roll(first_gains(rows, columns, channels, gains.width), early))
-        gains.due = True
+        await nodes.write(np.roll(first_words(rows, columns, channels, nodes.width), early))
+        nodes.due = True
         sending = cocotb.start_soon(device.send())
         await FallingEdge(clk)
         bench.pause = 1.0  # from the next edge on, at which the pixel is taken
-        for _ in range(early + 1):
+        for _ in range(early):
             await RisingEdge(clk)
-        reading = cocotb.start_soon(gains.read(gains.per_node * (rows * columns - 1)))
-        for _ in range(PAUSED - early):
+        reading = cocotb.start_soon(nodes.read(nodes.per_node * (rows * columns - 1)))
+        for _ in range(PAUSED + 1 - early):
             await RisingEdge(clk)
         bench.pause = 0.0
         await reading
         await sending
-        await gains.changed()
+        await nodes.changed()
 
 
 async def watch_active(dut: Any, latency: int) -> None:

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// td_table_port: the place of one table on the bus of the tables.
+//
+// The bus comes from afar, so it has a register here: what it says to the table `Select` stands on write, read, index
+// and word 1 cycle later. The table answers a read with free_word 1 cycle after it. That entry stands on table_answer
+// from 3 cycles after the read on the bus until the next read of this table, in each cycle behind one in which the bus
+// names the table; otherwise table_answer is 0, so that answers are combined by OR. A reset withdraws an access that
+// has not reached the table. Cycle-accurate model: models/tactile_depth/common/td_table_port.py.
+
+`default_nettype none
+
+module td_table_port
+  import td_types_pkg::*;
+#(
+  parameter int Select     = 0,   // number of the table in TABLE_SELECT
+  parameter int IndexWidth = 12,
+  parameter int Width      = 24,  // of a word
+  parameter int Words      = 1,   // of an entry; 2: the upper one is in TABLE_HIGH
+  parameter int Signed     = 0    // words are signed
+) (
+  input  wire                    clk,
+  input  wire                    rst,
+  input  wire table_command_t    table_command,
+  output table_answer_t          table_answer,
+  output logic                   write,
+  output logic                   read,
+  output logic [IndexWidth-1:0]  index,
+  output logic [Words*Width-1:0] word,
+  input  wire  [Words*Width-1:0] free_word
+);
+
+  logic names, selected, read_q;
+  logic write_now = 1'b0;  // a cycle before the first reset writes nothing
+  logic [Words*Width-1:0] answer;
+  assign names = table_command.select == 2'(Select);
+  assign write = write_now & ~rst;
+
+  always_ff @(posedge clk) begin
+    selected <= names;
+    write_now <= table_command.write & names;
+    read <= table_command.read & names;
+    index <= table_command.index[IndexWidth-1:0];
+    word <= (Words * Width)'({table_command.high[Width-1:0], table_command.low[Width-1:0]});
+    read_q <= read;
+    if (read_q) answer <= free_word;
+    if (rst) {write_now, read} <= '0;
+  end
+
+  logic [Words-1:0][31:0] answers;
+  for (genvar w = 0; w < Words; w++) begin : g_word
+    logic [31:0] signs;
+    assign signs = {32{Signed != 0 & answer[(w+1)*Width-1]}};
+    assign answers[w] = selected ? 32'({signs, answer[w*Width+:Width]}) : '0;
+  end
+  assign table_answer.low = answers[0];
+  assign table_answer.high = Words > 1 ? answers[Words-1] : '0;
+
+  logic unused_command;  // bits of wider entries
+  assign unused_command = ^table_command;
+
+  if (Words < 1 || Words > 2 || Width > 32) begin : g_refused
+    an_entry_is_1_or_2_words_of_at_most_32_bits u_refused ();
+  end
+
+endmodule
+
+`default_nettype wire
