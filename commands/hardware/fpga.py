@@ -34,7 +34,7 @@ from tactile_depth import files
 from tactile_depth.camera.register_lists import CAMERAS, Camera, setup_parameters, write_list
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import Configuration
-from tactile_depth.errors import InputError
+from tactile_depth.errors import Argument, InputError, one_of
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import top_parameters
 
@@ -94,8 +94,7 @@ def parse(arguments: list[str]) -> Request:
     """Return KEY=VALUE arguments as a Request. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "SEEDS", "CLOCK_MHZ", "SENSOR", *CHOICES, *run_request.CAMERA))
     target = values.pop("TARGET", "")
-    if target not in BOARDS:
-        raise InputError(f"TARGET={target} is unknown: accepted is {', '.join(BOARDS)}")
+    one_of(Argument("TARGET", target), BOARDS)
     numbers = variables.whole_numbers(values, "SEEDS", (1, 2, 3))
     seeds = values.pop("SEEDS", "")
     if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):

@@ -84,8 +84,7 @@ def identify(reference: np.ndarray) -> Sensor:
             nearest = difference, sensor
     if nearest is None:
         raise InputError(
-            *("the ", Argument("reference")),
-            f" looks like no sensor with a built-in calibration ({'; '.join(reasons)})",
+            f"the reference looks like no sensor with a built-in calibration ({'; '.join(reasons)})",
             remedy=("give the ", Argument("calibration"), " of the sensor that took it"),
         )
     return nearest[1]

@@ -38,14 +38,8 @@ Part = str | Argument
 class _Message(Exception):
     """Message of one line, of at most LONGEST characters: what was given, what is accepted, how to correct it.
 
-    Parameters
-    ----------
-    parts : str or Argument
-        Say what was given. The first Argument gives `argument` and `value`; both are None without one.
-    accepted : str, range or iterable of str, optional
-        One thing, whole numbers, or names.
-    remedy : str, or sequence of str and Argument
-        Says how to correct it.
+    The first Argument gives `argument` and `value`; both are None without one. `accepted` is one thing, a range of
+    whole numbers, or names.
     """
 
     def __init__(
@@ -57,16 +51,13 @@ class _Message(Exception):
         self.accepted = accepted if isinstance(accepted, str | range | None) else tuple(accepted)
         mend: tuple[Part, ...] = (remedy,) if isinstance(remedy, str) else tuple(remedy)
         self.remedy = "".join(map(str, mend))
-        self.parts = (*parts, self._accepted(), *((": ", *mend) if mend else ()))
-        super().__init__(self.text())
-
-    def _accepted(self) -> str:
-        if self.accepted is None:
-            return ""
         if isinstance(self.accepted, range):
-            return f": accepted are {self.accepted[0]} to {self.accepted[-1]}"
-        words = (self.accepted,) if isinstance(self.accepted, str) else self.accepted
-        return f": accepted {'are' if len(words) > 1 else 'is'} {', '.join(map(str, words)) or 'none'}"
+            parts += (f": accepted are {self.accepted[0]} to {self.accepted[-1]}",)
+        elif self.accepted is not None:
+            words = (self.accepted,) if isinstance(self.accepted, str) else self.accepted
+            parts += (f": accepted {'are' if len(words) > 1 else 'is'} {', '.join(words) or 'none'}",)
+        self.parts = (*parts, ": ", *mend) if mend else parts
+        super().__init__(self.text())
 
     def text(self, naming: Callable[[Argument], str] = str) -> str:
         """Return the message with each argument as `naming` writes it; by default as Python does."""
