@@ -27,21 +27,8 @@ SEED = int(os.environ.get("SEED", "1"))
 STATES_OF_A_BOARD = 8
 QUICK_CLOCKS = 1000
 SIMULATORS = os.environ.get("SIM", ",".join(simulation.SIMULATORS)).split(",")
-MARKERS = {
-    "structures(list)": "builds of a test that takes `structure`, by default STRUCTURES of its file (tb/structures.py)",
-    "seeds": "`make regress` runs it with another seed too, like every RTL test on Icarus",
-    "power_ups": "`make regress` runs it from many random states; set for each core's first structure on Verilator",
-    "long": "begins before all others, so that it does not end after them",
-    **dict.fromkeys(simulation.SIMULATORS, "runs in this simulator; set for each test of RTL"),
-}
-
 settings.register_profile("no deadline", deadline=None)  # a test of a model must not fail on a busy machine
 settings.load_profile("no deadline")
-
-
-def pytest_configure(config: Any) -> None:
-    for name, meaning in MARKERS.items():
-        config.addinivalue_line("markers", f"{name}: {meaning}")
 
 
 def pytest_generate_tests(metafunc: Any) -> None:
