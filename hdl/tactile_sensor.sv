@@ -16,7 +16,7 @@ module tactile_sensor
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter logic [ConfigBits-1:0] Config = DefaultConfig | (ConfigBits'(1) << 32 * CameraField),
+  parameter logic [ConfigBits-1:0] Config = DefaultConfig | (ConfigBits'(1'b1) << 32 * CameraField),
   localparam int DepthBytes = value(Config, LanesField) * ((value(Config, DataWidthField) + 7) / 8)  // of a beat
 ) (
   input  wire                     clk,

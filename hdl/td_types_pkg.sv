@@ -24,8 +24,8 @@ package td_types_pkg;
     logic row_short;
   } faults_t;
 
-  // Settings of hdl/camera/camera_front_end.sv, for the next picture: its size, the first pixel of the window, black level
-  // and gains of the colours; a gain has 12 fraction bits.
+  // Settings of hdl/camera/camera_front_end.sv, for the next picture: its size, the first pixel of the window, black
+  // level and gains of the colours; a gain has 12 fraction bits.
   typedef struct packed {
     logic [12:0] columns;
     logic [12:0] rows;
@@ -90,7 +90,8 @@ package td_types_pkg;
     logic [31:0] low;
   } table_answer_t;
 
-  // From the AXI4-Lite port to registers beside those of tactile_depth, which is all that they need to know of an access.
+  // From the AXI4-Lite port to registers beside those of tactile_depth, which is all that they need to know of an
+  // access.
   typedef struct packed {
     logic        write;
     logic [31:0] write_offset;  // of the register, in bytes

@@ -82,7 +82,8 @@ module frame_bench
       .m_event_tdata, .m_event_tvalid, .m_event_tready(1'b1), .m_event_tlast,
       .s_axil_awaddr, .s_axil_awprot('0), .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb,
       .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
-      .s_axil_arprot('0), .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
+      .s_axil_arprot('0), .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid,
+      .s_axil_rready,
       .frames_lost('0), .setup_restart(unused_restart), .setup_done('0), .setup_failed('0), .setup_entry('0),
       .setup_found('0)
     );

@@ -265,7 +265,7 @@ def test_an_interruption_still_says_where_the_frames_went(
         (["none.mp4"], "none.mp4: no such source"),
         (["presses", "--headless"], "--headless shows nothing: give --save FILE.rrd"),
         (["presses", "--frames", "0"], "--frames 0: accepted are 1 and more"),
-        (["presses"], "the reference looks like no sensor"),
+        (["presses"], "reference looks like no sensor"),
         (["few"], "few: 1 frames, the reference takes 8: give --reference BACKGROUND"),
     ],
 )

@@ -83,9 +83,10 @@ def wrapper(name: str, parameters: Mapping[str, int], tables: str = "./") -> str
         f"    configuration[32*{field}Field+:32] = {literal(number)};\n" for field, number in parameters.items()
     )
     connected = ", ".join(f".{port}" for port in names)
-    without = "" if parameters["Camera"] else "  register_command_t unused_command;\n"
-    if without:
-        connected += ", .register_command(unused_command), .register_answer('0)"
+    without = ""
+    if not parameters["Camera"]:
+        without = "  register_command_t unused_command;\n  register_answer_t no_answer;\n  assign no_answer = '0;\n"
+        connected += ", .register_command(unused_command), .register_answer(no_answer)"
     connected = "\n    ".join(textwrap.wrap(connected, 116))
     instance = "u_sensor" if parameters["Camera"] else "u_pipeline"
     depth_bytes = parameters["Lanes"] * -(-parameters["DataWidth"] // 8)

@@ -6,14 +6,14 @@
 //   row_sums -> block_totals -> times the gain -> round_divide, one for each colour
 //
 // w is the area of a camera pixel in the block. RGB (Bayer 0): s has the three colours of a pixel. Bayer 1: s is one
-// colour, which in_colour names, and the sums run over the pixels of that colour. The gains of a frame stand on in_gains
-// with its first pixel and in the 5 cycles behind it.
+// colour, which in_colour names, and the sums run over the pixels of that colour. The gains of a frame stand on
+// in_gains with its first pixel and in the 5 cycles behind it.
 // Stream in: the pixels of a window in raster order, in_row_start with the first of a row, in_frame_start with the
 // first of all; gaps anywhere. Stream out: the grid in raster order, R in 23:16, B in 15:8, G in 7:0; out_user with the
 // first of a frame, out_last with the last of a row. in_abort, in a cycle without a pixel, ends a frame that is not
-// whole: one more word leaves, the first of a frame if none did, and its out_last is inverted, so that frame_guard drops
-// the frame. Latency: 18 cycles with en, from the pixel that completes a block, and from in_abort. en low: nothing moves.
-// Bit-accurate model: models/tactile_depth/camera/area_average.py.
+// whole: one more word leaves, the first of a frame if none did, and its out_last is inverted, so that frame_guard
+// drops the frame. Latency: 18 cycles with en, from the pixel that completes a block, and from in_abort. en low:
+// nothing moves. Bit-accurate model: models/tactile_depth/camera/area_average.py.
 
 `default_nettype none
 

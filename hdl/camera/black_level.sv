@@ -3,10 +3,10 @@
 //
 //   out = sample - black_level
 //
-// The black level and the gains of a frame are those that stand here with its first pixel. A sample of pixel_format lies
-// so far within Bits + 2 bits that no difference leaves them, and nothing is clipped before the average.
-// Stream in, stream out: the pixels of the window with their marks. out_gains belong to the pixel on out_samples.
-// Latency: 1 cycle with en, in_abort too; en low: nothing moves.
+// The black level and the gains of a frame are those that stand here with its first pixel. A sample of pixel_format
+// lies so far within Bits + 2 bits that no difference leaves them, and nothing is clipped before the average. Stream
+// in, stream out: the pixels of the window with their marks. out_gains belong to the pixel on out_samples. Latency: 1
+// cycle with en, in_abort too; en low: nothing moves.
 // Bit-accurate model: models/tactile_depth/camera/black_level.py.
 
 `default_nettype none
@@ -51,7 +51,8 @@ module black_level #(
       out_colour <= in_colour;
       out_row_start <= in_row_start;
       out_frame_start <= in_frame_start;
-      for (int c = 0; c < Channels; c++) out_samples[c*Width+:Width] <= in_samples[c*Width+:Width] - Width'(frame_level);
+      for (int c = 0; c < Channels; c++)
+        out_samples[c*Width+:Width] <= in_samples[c*Width+:Width] - Width'(frame_level);
     end
     if (rst) begin
       out_valid <= 1'b0;
