@@ -86,6 +86,7 @@ async def resets(dut: Any) -> None:
         bench.frame(age)
         if age % 2:
             bench.stimuli.append(bench.slots.idle(in_abort=1))
-        bench.stimuli.append(bench.slots.idle(rst=1))
+        for offered in ({}, {"in_valid": 1}, {"in_abort": 1}):  # nothing leaves of what comes in a reset
+            bench.stimuli.append(bench.slots.idle(rst=1, **offered))
     bench.frame(9)
     await bench.check()
