@@ -271,8 +271,10 @@ def prove(proofs: Sequence[Proof | Cone]) -> int:
     print("\n" + table(proofs, outcomes))
     failed = [proof.name for proof in proofs if combined(outcomes[proof.name]) != "PASS"]
     for core in dict.fromkeys(proof.core for proof in proofs):
-        wrong = sum(proof.core == core for proof in proofs if proof.name in failed)
-        sign_off.record(core, "proof", {"failed": wrong})
+        ended = [run for proof in proofs if proof.core == core for run in outcomes[proof.name].values()]
+        refuted = sum(run.status == "FAIL" for run in ended)
+        without_result = sum(run.status not in ("PASS", "FAIL") for run in ended)
+        sign_off.record(core, "proof", {"failed": refuted, "not ended": without_result})
     print(f"\nformal: {len(proofs) - len(failed)} of {len(proofs)} proven in {time.monotonic() - begun:.0f} s")
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")

@@ -71,8 +71,8 @@ def row(core: str, results: Mapping[str, Any]) -> tuple[str, ...]:
     proof, mutants = results.get("proof"), results.get("mutants")
     cells, proven, covered = [core], False, False
     if proof:
-        proven = not proof["failed"] and unchanged(core, proof)
-        verdict = "FAILED" if proof["failed"] else "hold"
+        verdict = "FAILED" if proof["failed"] else "not all ended" if proof.get("not ended") else "hold"
+        proven = verdict == "hold" and unchanged(core, proof)
         cells += [verdict, proof["commit"], "same" if unchanged(core, proof) else "changed"]
     else:
         cells += ["-"] * 3

@@ -35,5 +35,8 @@ def test_a_result_is_kept_unless_there_is_one_of_more_mutants(tmp_path: Path, mo
     assert (kept["killed"], kept["commit"]) == (200, "1234567")
     assert sign_off.row("td_ram", {"mutants": kept})[4:8] == ("200 killed, of 200", "100.0 %", "1234567", "same")
     assert sign_off.row("td_ram", {"mutants": kept | {"rtl": "other"}})[7] == "changed"
-    sign_off.record("td_ram", "proof", {"failed": 0})
-    assert sign_off.row("td_ram", json.loads(results.read_text())["td_ram"])[8] == "V3"
+    sign_off.record("td_ram", "proof", {"failed": 0, "not ended": 0})
+    both = json.loads(results.read_text())["td_ram"]
+    assert (sign_off.row("td_ram", both)[1], sign_off.row("td_ram", both)[8]) == ("hold", "V3")
+    for figures, verdict in (({"not ended": 1}, "not all ended"), ({"not ended": 1, "failed": 1}, "FAILED")):
+        assert sign_off.row("td_ram", {"proof": both["proof"] | figures})[1] == verdict
