@@ -15,7 +15,7 @@ from tactile_depth.camera.register_lists import setup_parameters, write_list
 from tactile_depth.configuration import Configuration
 from tactile_depth.tactile_depth import top_parameters, write_roms
 from tb.boards.tb_ulx3s_camera_bench import camera_of, sensor
-from tb.structures import ICARUS, VERILATOR, Structure
+from tb.structures import VERILATOR, Structure
 
 CLOCK_MHZ = 100
 CLOCKS_A_BIT = 4
@@ -59,8 +59,7 @@ def built_camera() -> Structure:
 
     return Structure(
         board_values(config) | setup_parameters(device),
-        on=ICARUS,
-        late=VERILATOR,
+        on=VERILATOR,
         device={"configuration": BEHIND_A_CAMERA},
         roms=roms,
         name="camera",

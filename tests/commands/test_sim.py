@@ -207,7 +207,8 @@ def test_flat_gel_reads_nothing(tmp_path: Path) -> None:
     assert report["contact_latency_cycles"] == [None]
 
 
-@pytest.mark.structures("", icarus=[()], regress_verilator=[()])  # Verilator compiles its whole runtime for it
+# Verilator compiles its whole runtime for it.
+@pytest.mark.parametrize("simulator", ["icarus", pytest.param("verilator", marks=pytest.mark.regress)])
 def test_waves(tmp_path: Path, simulator: str) -> None:
     out = tmp_path / "out"
     assert sim.run(run_request.parse(["N=16", f"SIM={simulator}", "WAVES=1", f"OUT={out}"])) == 0
