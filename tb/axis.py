@@ -15,6 +15,7 @@ from cocotb_bus.drivers import BusDriver
 from cocotb_bus.monitors import BusMonitor
 
 from tactile_depth.video.frame_guard import Word
+from tb.stream import at_every_edge
 
 VIDEO = ("data", "last", "user")
 
@@ -64,9 +65,11 @@ class AxisSource(BusDriver):  # type: ignore[misc]
     async def _driver_send(self, transaction: Iterable[Sequence[int] | None], sync: bool = True) -> None:
         valid, ready, edge = self.bus.valid, self.bus.ready, RisingEdge(self.clock)
         self.aborted = False
+        offered = None  # a pin is written where it changes: each write costs as much as a read
         for word in transaction:
             while word is None or not next(self.offers):
-                valid.value = 0
+                if offered != 0:
+                    valid.value = offered = 0
                 await edge
                 if self.aborted:
                     return
@@ -76,7 +79,8 @@ class AxisSource(BusDriver):  # type: ignore[misc]
                 continue
             for pin, value in zip(self.pins, word, strict=True):
                 pin.value = int(value)
-            valid.value = 1
+            if offered != 1:
+                valid.value = offered = 1
             await edge
             while not ready.value and not self.aborted:
                 await edge
@@ -98,9 +102,15 @@ class AxisSink(BusDriver):  # type: ignore[misc]
         self.accepts = iter(accepts)
 
     async def _driver_send(self, transaction: None, sync: bool = True) -> None:
+        at_every_edge(self.clock, self._drive())
+
+    def _drive(self) -> Iterator[None]:
+        before = None
         while True:
-            self.bus.ready.value = int(next(self.accepts))
-            await RisingEdge(self.clock)
+            ready = int(next(self.accepts))
+            if ready != before:
+                self.bus.ready.value = before = ready
+            yield
 
 
 class AxisMonitor(BusMonitor):  # type: ignore[misc]
@@ -135,12 +145,15 @@ class AxisMonitor(BusMonitor):  # type: ignore[misc]
         self.offered: list[int] = []
 
     async def _monitor_recv(self) -> None:
-        valid, ready, edge = self.bus.valid, self.bus.ready, RisingEdge(self.clock)
+        at_every_edge(self.clock, self._watch())
+
+    def _watch(self) -> Iterator[None]:
+        valid, ready = self.bus.valid, self.bus.ready
         reset, was_reset = self.entity.rst, True  # so that nothing is read before the first edge
         enable = getattr(self.entity, self.silence) if isinstance(self.silence, str) else None
         held, since = None, 0
         while True:
-            await edge
+            yield
             clock = self.clock_count = self.clock_count + 1
             if reset.value:
                 assert clock == 1 or not was_reset or not valid.value, f"{self}: valid in reset"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of registers that software writes, followed at the AXI4-Lite pins."""
 
+from types import SimpleNamespace
 from typing import Any
 
 from tactile_depth.registers.axil_port import Response, strobed_bits
@@ -17,8 +18,9 @@ class RegisterMirror:
     """
 
     def __init__(self, dut: Any, *names: str) -> None:
-        self.dut = dut
         self.names = names
+        pins = ["bvalid", "bresp", "awvalid", "awready", "awaddr", "wvalid", "wready", "wdata", "wstrb"]
+        self.pins = SimpleNamespace(**{pin: getattr(dut, f"s_axil_{pin}") for pin in pins})
         self.address = self.data = self.strobe = 0  # address and data of the latest write
         self.reset()
 
@@ -31,14 +33,14 @@ class RegisterMirror:
 
     def clock(self) -> None:
         """Take one clock edge out of reset."""
-        dut = self.dut
-        answers = bool(dut.s_axil_bvalid.value)
+        pins = self.pins
+        answers = bool(pins.bvalid.value)
         name = OFFSETS.get(self.address & ~3) if answers and not self.answered else None
-        if name in self.words and int(dut.s_axil_bresp.value) == Response.OKAY:
+        if name in self.words and int(pins.bresp.value) == Response.OKAY:
             mask = strobed_bits(self.strobe)
             self.words[name] = (self.data & mask | self.words[name] & ~mask) & REGISTERS[name].mask("rw")
         self.answered = answers
-        if dut.s_axil_awvalid.value and dut.s_axil_awready.value:
-            self.address = int(dut.s_axil_awaddr.value)
-        if dut.s_axil_wvalid.value and dut.s_axil_wready.value:
-            self.data, self.strobe = int(dut.s_axil_wdata.value), int(dut.s_axil_wstrb.value)
+        if pins.awvalid.value and pins.awready.value:
+            self.address = int(pins.awaddr.value)
+        if pins.wvalid.value and pins.wready.value:
+            self.data, self.strobe = int(pins.wdata.value), int(pins.wstrb.value)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drivers and monitors of the streams between cores, and the loop that most testbenches share."""
 
+import gc
 import random
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, ClassVar
 
 import cocotb
 import numpy as np
@@ -14,6 +16,9 @@ from cocotb_bus.monitors import BusMonitor
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tb.settings import RUN
+
+gc.freeze()  # what was imported stays; a collection costs more than what a short simulation leaves
+gc.set_threshold(200_000, 50, 100)
 
 CLOCK_NS = 6
 REGRESS = RUN.full  # play the full product instead of a selection
@@ -87,6 +92,33 @@ def depth_position(frame_start: Any, row_end: Any, frame_end: Any) -> int:
     return int(frame_start) << 2 | int(row_end) << 1 | int(frame_end)
 
 
+class EveryEdge:
+    """Generators that advance at each rising edge of a clock, in one task: a task for each takes as long as most do."""
+
+    of: ClassVar[dict[Any, "EveryEdge"]] = {}
+
+    def __init__(self, clock: Any) -> None:
+        self.clock = clock
+        self.generators: list[Iterator[None]] = []
+        self.task = cocotb.start_soon(self._advance())
+
+    async def _advance(self) -> None:
+        edge = RisingEdge(self.clock)
+        while True:
+            await edge
+            for generator in self.generators:
+                next(generator)
+
+
+def at_every_edge(clock: Any, generator: Iterator[None]) -> None:
+    """Advance a generator that does not end to its first `yield`, and from then on at each rising edge of the clock."""
+    every = EveryEdge.of.get(clock)
+    if every is None or every.task.done():  # a task ends with its test
+        every = EveryEdge.of[clock] = EveryEdge(clock)
+    next(generator)
+    every.generators.append(generator)
+
+
 class StreamDriver(BusDriver):
     """Driver of words with a qualifier: `start` (at the first word of a burst) or `valid` (at each word).
 
@@ -109,16 +141,18 @@ class StreamDriver(BusDriver):
             self.frame_pin.value = 0
 
     async def _driver_send(self, transaction: Any, sync: bool = True) -> None:
-        qualifier = getattr(self.bus, self.qualifier)
+        qualifier, en, edge = getattr(self.bus, self.qualifier), self.entity.en, RisingEdge(self.clock)
+        pins = [getattr(self.bus, field) for field in self.fields]
         for index, word in enumerate(transaction):
-            qualifier.value = int(index == 0 or self.qualifier == "valid")
-            if self.frame_pin is not None:
-                self.frame_pin.value = int(index == 0 and self.frame_start)
-            for field, value in zip(self.fields, word, strict=True):
-                getattr(self.bus, field).value = int(value)
-            await RisingEdge(self.clock)
-            while not self.entity.en.value:
-                await RisingEdge(self.clock)
+            if index < 2:  # later ones are as the second
+                qualifier.value = int(index == 0 or self.qualifier == "valid")
+                if self.frame_pin is not None:
+                    self.frame_pin.value = int(index == 0 and self.frame_start)
+            for pin, value in zip(pins, word, strict=True):
+                pin.value = int(value)
+            await edge
+            while not en.value:
+                await edge
         self.idle()
 
 
@@ -139,14 +173,18 @@ class StreamMonitor(BusMonitor):
         super().__init__(dut, name, dut.clk)
 
     async def _monitor_recv(self) -> None:
+        at_every_edge(self.clock, self._watch())
+
+    def _watch(self) -> Iterator[None]:
         left, clock = 0, 0  # `clock` counts clocks with en
         qualifier, frame_pin, handles = self.pins()
+        en = self.entity.en
         while True:
-            await RisingEdge(self.clock)
+            yield
             if self.in_reset:
                 left = 0
                 continue
-            if not self.entity.en.value:
+            if not en.value:
                 continue
             clock += 1
             frame_start = frame_pin is not None and bool(int(frame_pin.value))
@@ -209,17 +247,17 @@ class Bench:
             await RisingEdge(self.dut.clk)
         self.dut.rst.value = 0
         await RisingEdge(self.dut.clk)
-        cocotb.start_soon(self._run())
+        at_every_edge(self.dut.clk, self._run())
 
-    async def _run(self) -> None:
-        counts = hasattr(self.dut, "saturations")
+    def _run(self) -> Iterator[None]:
+        en, rst, saturations = self.dut.en, self.dut.rst, getattr(self.dut, "saturations", None)
         while True:
             moves = int(self.random.random() >= self.pause)
-            self.dut.en.value = moves if self.in_reset is None else self.in_reset
-            await RisingEdge(self.dut.clk)
-            self.clock += int(self.dut.en.value)
-            if counts and not self.dut.rst.value:
-                self.saturations += int(self.dut.saturations.value)
+            en.value = moves if self.in_reset is None else self.in_reset
+            yield
+            self.clock += int(en.value)
+            if saturations is not None and not rst.value:
+                self.saturations += int(saturations.value)
 
     async def reset(self, en: Any = False) -> None:
         """Reset for one cycle, in which the words inside move only with `en`."""

@@ -6,6 +6,7 @@ frame.
 """
 
 import random
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -22,7 +23,7 @@ from tactile_depth.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, MANY, sample
+from tb.stream import CLOCK_NS, MANY, at_every_edge, sample
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
 SETTLE = 60
@@ -44,18 +45,19 @@ class Bench:
     async def start(self) -> None:
         self.use(self.camera)
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        cocotb.start_soon(self.watch())
+        at_every_edge(self.dut.clk, self.watch())
         await self.reset(3)
 
     def use(self, camera: CameraConfiguration) -> None:
         self.camera = camera
         self.dut.settings.value = pack_settings(camera_settings(camera))
 
-    async def watch(self) -> None:
+    def watch(self) -> Iterator[None]:
+        rst, faults = self.dut.rst, self.dut.faults
         while True:
-            await RisingEdge(self.dut.clk)
-            if not self.dut.rst.value:
-                bits = int(self.dut.faults.value)
+            yield
+            if not rst.value:
+                bits = int(faults.value)
                 self.faults += [name for place, name in enumerate(FAULTS) if bits >> place & 1]
 
     async def reset(self, clocks: int) -> None:

@@ -26,7 +26,7 @@ from tb.axis import AxisMonitor, AxisSink, AxisSource, BeatMonitor, positions, p
 from tb.pixels import pack
 from tb.second_client import SecondMaster, SecondSink, SecondSource
 from tb.settings import RUN
-from tb.stream import CLOCK_NS, configuration
+from tb.stream import CLOCK_NS, at_every_edge, configuration
 from tb.tactile_depth import device_tables
 from tb.tactile_depth.contact_watch import RECORD, ContactWatch
 from tb.tactile_depth.device_tables import Content, DeviceTables
@@ -76,7 +76,7 @@ class Pipeline:
     async def start(self) -> None:
         """Start clock and monitors, reset, and restore the tables that earlier tests have changed."""
         Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-        cocotb.start_soon(self.contact.watch_contact())
+        at_every_edge(self.dut.clk, self.contact.watch_contact())
         cocotb.start_soon(self.contact.watch_events())
         functional_coverage.start(self.dut, self.config, *self.profiles)
         await self.reset(RESET_CLOCKS)

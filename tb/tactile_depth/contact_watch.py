@@ -69,16 +69,17 @@ class ContactWatch:
         beat, mask = int(data), (1 << self.depth_bits) - 1
         return [self.signed(beat >> lane * self.depth_bits & mask) for lane in range(self.config.lanes)]
 
-    async def watch_contact(self) -> None:
+    def watch_contact(self) -> Iterator[None]:
         """Compare `contact` with the model, which takes the beats and the registers of the previous cycle."""
-        dut, model, edge = self.dut, self.comparator, RisingEdge(self.dut.clk)
-        await edge
+        dut, model = self.dut, self.comparator
+        contact_pin, rst, valid, ready = dut.contact, dut.rst, dut.m_axis_tvalid, dut.m_axis_tready
+        yield
         clock, was = 1, False
         while True:
-            await edge
+            yield
             clock += 1
-            contact = bool(dut.contact.value)
-            if dut.rst.value:
+            contact = bool(contact_pin.value)
+            if rst.value:
                 model.reset()
                 self.registers.reset()
                 was = False
@@ -93,10 +94,10 @@ class ContactWatch:
             if contact and not was:
                 self.raised.append(clock)
             was = contact
-            leaves, user = dut.m_axis_tvalid.value and dut.m_axis_tready.value, dut.m_axis_tuser.value
-            if not leaves:
+            if not (valid.value and ready.value):
                 model.idle(hold)
                 continue
+            user = dut.m_axis_tuser.value
             if user:
                 self.settings.append(Settings(*map(self.setting, SETTINGS)))
             for lane, depth in enumerate(self.depths(dut.m_axis_tdata.value)):
