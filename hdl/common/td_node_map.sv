@@ -3,15 +3,15 @@
 //
 //   2b f = (2b - w) F[node] + w F[node + 1],  2 i + 1 - b = 2b node + w, clamped to the first and the last node,
 //
-// along rows and columns alike for blocks of b = 2^BlockLog2 pixels; exact, then one rounding half to even. Down a
-// column: one multiplication for each node as it is read. Along a row: a ramp from pixel to pixel, for each half of a
-// block. Stream in: data of beats of Lanes pixels, whole frames in raster order. Stream out: the same, with the words
-// of the pixels, the first in the lowest bits, Channels of each. Latency: 10 cycles + log2(min(Lanes, b / 2)); a gap
-// in, a gap out. Table port: docs/streams.md; a word is at index 2^ceil(log2(Channels)) node + channel, and one of a
-// channel that is not there reads 0. The capture writes all words of Side = max(1, Lanes / b) neighbouring nodes at
-// once and reads them 1 cycle later; what the bus reads meanwhile is left open. File <Name>_f.hex, f = Channels (column
-// modulo Side) + channel, gives both banks at power-up; a memory without contents must be written before the first
-// frame. Bit-accurate model: models/tactile_depth/common/td_node_map.py.
+// along rows and columns alike for blocks of b = 2^BlockLog2 pixels; exact, then one rounding half to even. Along a
+// row: a ramp from pixel to pixel, for each half of a block. Stream in: data of beats of Lanes pixels, whole frames in
+// raster order. Stream out: the same, with the words of the pixels, the first in the lowest bits, Channels of each.
+// Latency: 10 cycles + log2(min(Lanes, b / 2)); a gap in, a gap out. Table port: docs/streams.md; a word is at index
+// 2^ceil(log2(Channels)) node + channel, and one of a channel that is not there reads 0. The capture writes all words
+// of Side = max(1, Lanes / b) neighbouring nodes at once and reads them 1 cycle later; what the bus reads meanwhile is
+// left open. File <Name>_f.hex, f = Channels (column modulo Side) + channel, gives both banks at power-up; a memory
+// without contents must be written before the first frame. Bit-accurate model:
+// models/tactile_depth/common/td_node_map.py.
 
 `default_nettype none
 
@@ -77,7 +77,7 @@ module td_node_map
   logic [BeatWidth-1:0] beat, beat_shifted;
   logic [RowWidth-1:0] above, below, above_q, below_q;
   logic [BlockLog2-1:0] row_phase;
-  logic [2:0][WeightBits-1:0] weight_q;  // of the node below
+  logic [2:0][WeightBits-1:0] weight_q;  // of the node below; the last one of the operand
   assign active = |valid_q;
   assign out_valid = valid_q[Latency-1];
 
@@ -105,7 +105,6 @@ module td_node_map
   assign address = (Tables * NodeWidth)'(Tables == 1 & reads_below ? {above_at, below_at} : {below_at, above_at});
 
   // Bus and capture share the free bank.
-
   localparam int EntryLog2 = $clog2(Side * Channels);  // entries in a word of the memory
   logic table_write, table_read;
   logic [NodeWidth+EntryLog2-1:0] table_index;
@@ -120,8 +119,10 @@ module td_node_map
     .word(table_word), .free_word(Width'(capture_read_words >> (32'(entry_q) * 32'($unsigned(Width)))))
   );
 
-  // Down the column: 2b times the word above, and the weight of the difference.
+  // Down the column. One table gives a word after the other: their products with 2b - w and w are added. Two give both
+  // at once: w times their difference is added to 2b times the one above.
 
+  logic [2:0] second_q;  // a word of the node below, or two words, behind the memory, the register, the multiplier
   logic [Channels-1:0][Side-1:0][SumWidth-1:0] sums;
   for (genvar n = 0; n < Side * Channels; n++) begin : g_node
     logic [Tables-1:0][Width-1:0] read_words, free_words;
@@ -137,21 +138,22 @@ module td_node_map
       );
     end
     assign capture_read_words[n*Width+:Width] = free_words[0];
-    logic [2:0][Width-1:0] above_word_q;  // from when the word below is read on
-    logic [1:0][Width-1:0] pair;            // below, above
-    logic signed [Width:0] fall;
-    assign pair = {read_words[Tables-1], Tables == 1 ? above_word_q[0] : read_words[0]};
+    logic [1:0][Width-1:0] above_word_q;
+    logic signed [Width:0] last, operand;
+    logic [SumWidth-1:0] base;  // what the product is added to
     logic signed [Width+WeightBits+1:0] product;
+    assign last = {Signed != 0 & read_words[Tables-1][Width-1], read_words[Tables-1]};
+    assign base = Tables > 1 ? {above_word_q[1], {WeightBits{1'b0}}} : second_q[2] ? sums[n%Channels][n/Channels] : '0;
     td_multiply #(.AWidth(Width + 1), .BWidth(WeightBits + 1)) u_product (
-      .clk, .en, .a(fall), .b({1'b0, weight_q[2]}), .product
+      .clk, .en, .a(operand), .b({1'b0, weight_q[2]}), .product
     );
     logic unused_bits;
     assign unused_bits = ^{free_words, product[SumWidth+1:SumWidth]};
     always_ff @(posedge clk) begin
       if (en) begin
-        above_word_q <= {above_word_q[1], pair[0], read_words[0]};
-        fall <= $signed({Signed != 0 & pair[1][Width-1], pair[1]}) - $signed({Signed != 0 & pair[0][Width-1], pair[0]});
-        sums[n%Channels][n/Channels] <= {above_word_q[2], {WeightBits{1'b0}}} + product[SumWidth-1:0];
+        above_word_q <= {above_word_q[0], read_words[0]};
+        operand <= last - (Tables > 1 ? $signed({Signed != 0 & read_words[0][Width-1], read_words[0]}) : '0);
+        sums[n%Channels][n/Channels] <= base + product[SumWidth-1:0];  // base last: Yosys 0.70 inverts its choice
       end
     end
   end
@@ -160,9 +162,7 @@ module td_node_map
   // block, the only run goes on from beat to beat.
 
   logic new_runs, new_runs_q;
-  logic [Lanes*Channels-1:0][Width-1:0] words;
   assign new_runs = Runs > 1 | begins_q[ToRun-1];
-  assign out_words = words;
   for (genvar c = 0; c < Channels; c++) begin : g_channel
     logic [Side-1:0][SumWidth-1:0] right;  // the sums that were done last
     logic [SumWidth-1:0] left;             // the last node of those before them
@@ -176,10 +176,9 @@ module td_node_map
     end
     for (genvar r = 0; r < Runs; r++) begin : g_run
       localparam int First = Runs > 1 ? (r + 1) / 2 : 1;
-      localparam int AtCentre = Runs == 1 || r % 2 != 0 ? 1 : 0;  // the run begins at a node, not half way
       logic signed [SumWidth:0] first, last, step;
       logic signed [SumWidth+1:0] apart;      // from pixel to pixel
-      logic [ScaledWidth-1:0] from, scaled;   // before the step; of the first pixel
+      logic [ScaledWidth-1:0] from, scaled;   // before the step, at a node or half way; of the first pixel
       logic [Run-1:0][ScaledWidth-1:0] ramp;
       assign first = {Signed != 0 & ends[First][SumWidth-1], ends[First]};
       assign last = {Signed != 0 & ends[First+1][SumWidth-1], ends[First+1]};
@@ -187,7 +186,7 @@ module td_node_map
         if (en) begin
           if (new_runs) begin
             step <= last - first;
-            from <= (ScaledWidth'(first) + ScaledWidth'(AtCentre != 0 ? first : last)) << BlockLog2;
+            from <= (ScaledWidth'(first) + ScaledWidth'(Runs == 1 || r % 2 != 0 ? first : last)) << BlockLog2;
           end
           if (valid_q[ToRun+1]) begin
             scaled <= new_runs_q ? from + $unsigned(ScaledWidth'(step))
@@ -206,7 +205,7 @@ module td_node_map
           .in({Signed != 0 & ramp[n][ScaledWidth-1], ramp[n]}), .out(rounded), .clipped(unused_clipped)
         );
         assign unused_sign = rounded[Width];
-        always_ff @(posedge clk) if (en) words[(r*Run+n)*Channels+c] <= rounded[Width-1:0];
+        always_ff @(posedge clk) if (en) out_words[((r*Run+n)*Channels+c)*Width+:Width] <= rounded[Width-1:0];
       end
     end
   end
@@ -226,7 +225,8 @@ module td_node_map
       valid_q <= {valid_q[Latency-2:0], in_valid};
       frame_start_q <= {frame_start_q[0], in_valid & in_frame_start};
       {above_q, below_q} <= {above, below};
-      weight_q <= {weight_q[1:0], row_phase, 1'b1};
+      weight_q <= {Tables == 1 & ~second_q[0] ? -weight_q[0] : weight_q[1], weight_q[0], row_phase, 1'b1};
+      second_q <= {second_q[1:0], reads_below};
       next_q <= {next_q[0], next};
       start_q <= {start_q[ToRun-2:0], row_starts};
       segment_q <= {segment_q[ToRun-2:0], segment};
