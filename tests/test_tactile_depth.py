@@ -45,7 +45,7 @@ STRUCTURES = (
     built("tridiagonal-8x16-quadratic", TRIDIAGONAL | FLAT_QUADRATIC | {"gain_width": 17}, FORMATS, on=VERILATOR),
     SMALLEST,
     built("16-24", {"columns": 16, "bits_per_channel": 2}, WHOLE, on=VERILATOR),
-    built("tridiagonal-9x32-4-lanes-sensor", SENSOR | {"columns": 32}, FORMATS, on=BOTH),
+    built("tridiagonal-9x16-4-lanes-sensor", SENSOR, FORMATS, on=BOTH),
     built(
         "tridiagonal-8x16-zero",
         TRIDIAGONAL | {"bits_per_channel": 2, "neumann": True, "zero_offset": True},
@@ -83,7 +83,7 @@ STRUCTURES = (
         TRIDIAGONAL | {"rows": 21, "lanes": 2, "bits_per_channel": 2, "zero_offset": True},
         FORMATS,
     ),
-    built("tridiagonal-9x16-4-lanes-sensor", SENSOR, FORMATS),
+    built("tridiagonal-9x32-4-lanes-sensor", SENSOR | {"columns": 32}, FORMATS, late=BOTH),
 )
 MUTANTS = Mutants(simulators=VERILATOR, flat=False)
 REFUSED = {
