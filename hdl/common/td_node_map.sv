@@ -189,8 +189,8 @@ module td_node_map
             from <= (ScaledWidth'(first) + ScaledWidth'(Runs == 1 || r % 2 != 0 ? first : last)) << BlockLog2;
           end
           if (valid_q[ToRun+1]) begin
-            scaled <= new_runs_q ? from + $unsigned(ScaledWidth'(step))
-                : scaled + $unsigned(ScaledWidth'(step) <<< (LanesLog2 + 1));
+            scaled <= (new_runs_q ? from : scaled)
+                + $unsigned(new_runs_q ? ScaledWidth'(step) : ScaledWidth'(step) <<< (LanesLog2 + 1));
           end
           apart <= {step, 1'b0};
         end
