@@ -53,7 +53,7 @@ module ulx3s_camera #(
   logic clk, locked, rst;
   ulx3s_clock #(.ClockMhz(ClockMhz)) u_clock (.clk_25mhz, .clk, .locked);
 
-  logic set_up, failed, restart, sio_d_low;
+  logic set_up, failed, restart, restart_q, sio_d_low;
   logic [$clog2(Entries)-1:0] entry;
   logic [7:0] found;
   assign camera_sio_d = sio_d_low ? 1'b0 : 1'bz;
@@ -61,7 +61,7 @@ module ulx3s_camera #(
     .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
     .MillisecondClocks(MillisecondClocks), .XclkHalfClocks(XclkHalfClocks)
   ) u_setup (
-    .clk, .rst, .restart, .xclk(camera_xclk), .power_down(camera_power_down), .reset_n(camera_reset_n),
+    .clk, .rst, .restart(restart_q), .xclk(camera_xclk), .power_down(camera_power_down), .reset_n(camera_reset_n),
     .sio_c(camera_sio_c), .sio_d_low, .sio_d(camera_sio_d), .done(set_up), .failed, .entry, .found
   );
 
@@ -85,6 +85,7 @@ module ulx3s_camera #(
     .setup_failed(failed), .setup_entry(8'(entry)), .setup_found(found), .contact, .recorded, .irq
   );
   always_ff @(posedge clk) begin
+    restart_q <= restart;  // which comes in the cycle of the write, at the end of a long path
     if (frames_lost != '0) lost <= ~lost;
     if (rst) lost <= 1'b0;
   end
