@@ -9,7 +9,7 @@ module ulx3s_camera_bench #(
   parameter int Baud              = 25000000,
   parameter int Threshold         = 65536,
   parameter int Rows              = 128,
-  parameter int Size              = 128,
+  parameter int Columns           = 128,
   parameter int DataWidth         = 24,
   parameter int Lanes             = 1,
   parameter int Entries           = 16,
@@ -40,7 +40,7 @@ module ulx3s_camera_bench #(
   assign sio_d = camera_pulls ? 1'b0 : 1'bz;
   assign camera_sio_d = sio_d;
   ulx3s_camera #(
-    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Size(Size), .DataWidth(DataWidth),
+    .ClockMhz(ClockMhz), .Baud(Baud), .Threshold(Threshold), .Rows(Rows), .Columns(Columns), .DataWidth(DataWidth),
     .Lanes(Lanes), .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
     .MillisecondClocks(MillisecondClocks)
   ) u_board (
