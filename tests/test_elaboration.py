@@ -7,6 +7,7 @@ REFUSED of each core's test states the rules.
 import subprocess
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 
@@ -71,6 +72,15 @@ def test_invalid_parameters_are_refused(core: str, tool: str) -> None:
 @pytest.mark.parametrize("tool", TOOLS)
 def test_a_core_that_does_not_exist_is_not_taken_as_refused(tool: str) -> None:
     assert not refused(tool, "no_such_core", "Size=12", "Size_must_be_a_power_of_two")
+
+
+@pytest.mark.parametrize("name", simulator.SIMULATORS)
+def test_a_parameter_that_the_core_does_not_have_is_an_error(name: str, tmp_path: Path) -> None:
+    """Icarus would only warn, and build with the default of the one that was meant."""
+    sources, log = repository.sources("td_delay_line"), tmp_path / "build.log"
+    with pytest.raises(RuntimeError):
+        simulator.build(name, "td_delay_line", sources, {"Lag": 3}, tmp_path, log=log)
+    assert "Lag" in log.read_text()
 
 
 def test_every_field_of_the_configuration_has_a_value_that_is_refused() -> None:

@@ -5,6 +5,7 @@ import contextlib
 import importlib.metadata
 import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -49,6 +50,7 @@ VERILATOR_MAKEFLAGS = (
     f"VM_PARALLEL_BUILDS=0 PYTHON3={sys.executable}"  # a system may have no `python`
 )
 
+UNKNOWN_PARAMETER = re.compile(r"parameter \S+ not found in \S+")
 RUNTIME = "runtime.h"
 RUNTIME_HEADERS = ("verilated.h", "verilated_dpi.h", "verilated_vpi.h")
 
@@ -130,6 +132,8 @@ def build(
     )
     if simulator == "verilator" and not runtime.exists():
         _keep_runtime(folder, runtime)
+    if simulator == "icarus" and log and (unknown := UNKNOWN_PARAMETER.search(log.read_text())):
+        raise RuntimeError(f"{unknown.group()}: Icarus builds with its default")
 
 
 def _take_runtime(folder: Path, runtime: Path) -> list[str]:
