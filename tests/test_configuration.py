@@ -3,6 +3,7 @@
 unchanged."""
 
 import re
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_depth.bounds import bounds
+from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import DEPTH_HEADROOM, Configuration, Format
 from tactile_depth.errors import InputError
@@ -24,6 +26,19 @@ from tactile_depth.poisson.transform.transpose import transpose
 
 # Inputs that attain the bounds. Everything is linear, so a node's value is the sum of its responses to single
 # words, and the input of the largest value has the signs of those responses.
+
+
+@pytest.mark.parametrize(
+    ("made", "old", "new"),
+    [
+        (Configuration, "auto_zero", "zero_offset"),
+        (partial(CameraConfiguration, (480, 640), (96, 128)), "byte_serial", "'yuyv_bytes'"),
+        (partial(CameraConfiguration, (480, 640), (96, 128)), "msb_aligned", "'raw10_lsb'"),
+    ],
+)
+def test_an_argument_with_its_former_name_is_refused_with_the_new_one(made: Any, old: str, new: str) -> None:
+    with pytest.raises(InputError, match=rf"{old}=True: it has another name now: give .*{new}"):
+        made(**{old: True})
 
 
 class Nodes(Monitor):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from tactile_depth.camera.block_weights import pixels_of
-from tactile_depth.errors import Argument, InputError, one_of
+from tactile_depth.errors import Argument, InputError, former_names, one_of
 from tactile_depth.resampling import crop_origin, ratio
 
 LARGEST_PICTURE = 4096  # rows and columns
@@ -107,6 +107,9 @@ class CameraChoice:
         return CameraConfiguration(picture, grid, self.pixel_format, self.phase, self.window)
 
 
+@former_names(
+    byte_serial="pixel_format='rgb565_bytes' or 'yuyv_bytes'", msb_aligned="pixel_format='raw10_lsb' or 'raw12_lsb'"
+)
 @dataclass(frozen=True)
 class CameraConfiguration:
     """The choices that define a camera block, and the numbers that follow from them.

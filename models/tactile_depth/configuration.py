@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from tactile_depth.bounds import Bounds, bounds, difference_bounds
-from tactile_depth.errors import Argument, InputError, one_of, within
+from tactile_depth.errors import Argument, InputError, former_names, one_of, within
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 
@@ -88,6 +88,7 @@ COLOUR_COEFFICIENT = Format(18, 14)
 """Format of the upper bits of a coefficient, which are multiplied, as wide as the narrow port of a DSP48E2."""
 
 
+@former_names(auto_zero="zero_offset")
 @dataclass(frozen=True)
 class Configuration:
     """The choices that define a pipeline, and the numbers that follow from them.

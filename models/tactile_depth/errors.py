@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The only error that a user's input raises, and the only warning; both hold the arguments that they name as data."""
 
+import functools
 from collections.abc import Callable, Iterable
 from numbers import Real
 from typing import Any, NamedTuple
@@ -84,3 +85,21 @@ def within(argument: Argument, low: int, high: int) -> None:
     """Raise InputError unless the value is from `low` to `high`."""
     if not low <= argument.value <= high:
         raise InputError(argument, " is out of range", accepted=range(low, high + 1))
+
+
+def former_names(**names: str) -> Callable[[type], type]:
+    """Return a decorator that makes a class refuse arguments of these former names, and name the present ones."""
+
+    def decorate(cls: Any) -> Any:
+        made = cls.__init__
+
+        @functools.wraps(made)
+        def init(self: Any, *arguments: Any, **named: Any) -> None:
+            for old in named.keys() & names.keys():
+                raise InputError(Argument(old, named[old]), ": it has another name now", remedy=f"give {names[old]}")
+            made(self, *arguments, **named)
+
+        cls.__init__ = init
+        return cls
+
+    return decorate
