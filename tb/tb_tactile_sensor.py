@@ -20,6 +20,7 @@ from tactile_depth.tactile_depth import tactile_depth
 from tb import axil
 from tb.axis import AxisMonitor, AxisSource
 from tb.camera.slots import camera_words
+from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import CLOCK_NS, MANY, configuration
 
@@ -92,11 +93,9 @@ class Bench:
         return [int(code) for code in codes]
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
-async def settings_change_between_pictures(dut: Any) -> None:
+@on_bench(Bench, milliseconds=5)
+async def settings_change_between_pictures(bench: Bench) -> None:
     """Write window, black level and gains between pictures: depth is that of the models, at its cycle."""
-    bench = Bench(dut)
-    await bench.start()
     built = bench.camera
     rows, columns = built.picture
     _, _, width, height = built.crop
@@ -129,11 +128,9 @@ async def settings_change_between_pictures(dut: Any) -> None:
     assert await bench.camera_word("CAMERA_STATUS") == 0
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
-async def broken_pictures_are_counted(dut: Any) -> None:
+@on_bench(Bench, milliseconds=5)
+async def broken_pictures_are_counted(bench: Bench) -> None:
     """A window outside the picture, a row too short: the fault has its bit and counts; the next picture is right."""
-    bench = Bench(dut)
-    await bench.start()
     offset = CAMERA_REGISTERS["CAMERA_WINDOW"].offset
     built = await bench.camera_word("CAMERA_WINDOW")
     await bench.master.write(offset, bench.camera.picture[1])
@@ -147,15 +144,13 @@ async def broken_pictures_are_counted(dut: Any) -> None:
     assert await bench.camera_word("CAMERA_DROPPED") == 2
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def pins_beside_the_stream(dut: Any) -> None:
+@on_bench(Bench)
+async def pins_beside_the_stream(bench: Bench) -> None:
     """Frames that dvp_receive lost count; the state of camera_setup is read; a written bit restarts it."""
-    bench = Bench(dut)
-    await bench.start()
-    dut.frames_lost.value = 3
-    await RisingEdge(dut.clk)
-    dut.frames_lost.value = 0
-    dut.setup_failed.value, dut.setup_entry.value, dut.setup_found.value = 1, 0x12, 0x34
+    bench.dut.frames_lost.value = 3
+    await RisingEdge(bench.dut.clk)
+    bench.dut.frames_lost.value = 0
+    bench.dut.setup_failed.value, bench.dut.setup_entry.value, bench.dut.setup_found.value = 1, 0x12, 0x34
     assert await bench.camera_word("CAMERA_LOST") == 3
     assert await bench.camera_word("CAMERA_SETUP") == 0x3412
     assert await bench.camera_word("CAMERA_STATUS") == STATUS.pack(lost=1, setup_failed=1)
@@ -164,20 +159,18 @@ async def pins_beside_the_stream(dut: Any) -> None:
 
     async def watch() -> None:
         while True:
-            await RisingEdge(dut.clk)
-            restarts.append(int(dut.setup_restart.value))
+            await RisingEdge(bench.dut.clk)
+            restarts.append(int(bench.dut.setup_restart.value))
 
     cocotb.start_soon(watch())
     await bench.master.write(control.offset, control.pack(restart_setup=1))
     assert sum(restarts) == 1
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def one_port(dut: Any) -> None:
+@on_bench(Bench)
+async def one_port(bench: Bench) -> None:
     """Registers of pipeline and camera are on one port; every other offset is refused, as a write to what is read
     only."""
-    bench = Bench(dut)
-    await bench.start()
     registers: Mapping[int, Any] = {register.offset: register for register in (*MAP, *CAMERA_MAP)}
     for offset in range(0, 0x200, 4):
         register = registers.get(offset)

@@ -22,6 +22,7 @@ from tactile_depth.latency import camera_front_end_latency
 from tactile_depth.video.frame_guard import Word, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSink, AxisSource, broken, positions, profile
 from tb.camera.slots import camera_words, pack_settings
+from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import CLOCK_NS, MANY, at_every_edge, sample
 
@@ -101,21 +102,19 @@ class Bench:
         ]
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize(
     (("offers", "stalls"), [("none", "none"), ("random", "none"), ("none", "random"), ("long", "long")])
 )
-async def pictures(dut: Any, offers: str, stalls: str) -> None:
+async def pictures(bench: Bench, stalls: str) -> None:
     """Send pictures: every frame equals the model, and without stalls all have the same latency to their last pixel."""
-    bench = Bench(dut, offers, stalls)
-    await bench.start()
     want, last = [], []
     for index in range(MANY + 1):
         words, frame = bench.picture()
         want.append(frame)
         last.append(index * len(words) + bench.camera.last_word)
         await bench.source.send(bench.blanked(words))
-        await ClockCycles(dut.clk, bench.random.choice((0, 1, 2)))
+        await ClockCycles(bench.dut.clk, bench.random.choice((0, 1, 2)))
     got = await bench.frames()
     np.testing.assert_array_equal(got, want)
     assert not bench.faults
@@ -145,11 +144,9 @@ async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
         bench.forget()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def settings_change_between_pictures(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20)
+async def settings_change_between_pictures(bench: Bench) -> None:
     """Change window, gains and black level between pictures; a window beyond the picture is a fault."""
-    bench = Bench(dut)
-    await bench.start()
     built = bench.camera
     rows, columns = built.picture
     _, _, width, height = built.crop
@@ -160,36 +157,34 @@ async def settings_change_between_pictures(dut: Any) -> None:
         window = (x, y, width, height)
         black = bench.random.choice((0, black))
         bench.use(replace(built, window=window, gains=(red, green, blue), black_level=black))
-        await ClockCycles(dut.clk, 2)
+        await ClockCycles(bench.dut.clk, 2)
         words, frame = bench.picture()
         await bench.source.send(words)
         np.testing.assert_array_equal(await bench.frames(), [frame])
         bench.forget()
-    dut.settings.value = pack_settings({**camera_settings(built), "window_x": columns - width + 1})
-    await ClockCycles(dut.clk, 2)
+    bench.dut.settings.value = pack_settings({**camera_settings(built), "window_x": columns - width + 1})
+    await ClockCycles(bench.dut.clk, 2)
     await bench.source.send(bench.picture()[0])
     assert await bench.frames() == []
     assert bench.faults == ["window_outside"]
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize(name=["columns", "rows", "window_x", "window_y"])
-async def settings_in_every_bit(dut: Any, name: str) -> None:
+async def settings_in_every_bit(bench: Bench, name: str) -> None:
     """Set size and place of the window with one bit wrong, for each bit: the faults are the model's, and with the right
     settings the next picture is right."""
-    bench = Bench(dut)
-    await bench.start()
     built, right = bench.camera, camera_settings(bench.camera)
     crop, pairs = built.crop[2:], built.format.is_yuyv
     names = ("columns", "rows", "window_x", "window_y")
     for bit in range(SETTINGS[name]):
         taken: list[tuple[Word, Settings]] = []
         for settings in (right | {name: right[name] ^ 1 << bit}, right):
-            dut.settings.value = pack_settings(settings)
-            await ClockCycles(dut.clk, 2)
+            bench.dut.settings.value = pack_settings(settings)
+            await ClockCycles(bench.dut.clk, 2)
             words, frame = bench.picture()
             await bench.source.send(words)
-            await ClockCycles(dut.clk, SETTLE)
+            await ClockCycles(bench.dut.clk, SETTLE)
             taken += [(word, Settings(*(settings[each] for each in names))) for word in words]
         np.testing.assert_array_equal((await bench.frames())[-1], frame, f"{name}, bit {bit}")
         want = camera_window(taken, crop, built.words_per_pixel, pairs)
@@ -197,14 +192,12 @@ async def settings_in_every_bit(dut: Any, name: str) -> None:
         bench.forget()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20)
+async def resets(bench: Bench) -> None:
     """Reset anywhere in a picture and after it; the next picture is right."""
-    bench = Bench(dut)
-    await bench.start()
     for clocks in (1, 7, 60, 200, *(bench.random.randrange(500) for _ in range(4))):
         cocotb.start_soon(bench.source.send(bench.picture()[0]))
-        await ClockCycles(dut.clk, clocks)
+        await ClockCycles(bench.dut.clk, clocks)
         await bench.reset(1)
         words, frame = bench.picture()
         await bench.source.send(words)

@@ -12,6 +12,7 @@ from tactile_depth.camera.camera_registers import CONTROL, COUNTERS, STATUS, Cam
 from tactile_depth.camera.camera_window import FAULTS
 from tactile_depth.registers.register_map import CAMERA_MAP, CAMERA_REGISTERS, WORD
 from tb import structs
+from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 from tb.stream import parameters
 
@@ -77,11 +78,9 @@ def fault(name: str) -> int:
     return structs.pack("camera_faults_t", {name: 1})
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_values(dut: Any) -> None:
+@on_bench(Bench)
+async def reset_values(bench: Bench) -> None:
     """Settings have the values of the build; every other field has that of the map."""
-    bench = Bench(dut)
-    await bench.start()
     for register in CAMERA_MAP:
         values = register.unpack(await bench.clock(read_at=register.name))
         for field in register.fields:
@@ -103,19 +102,15 @@ async def access(dut: Any, name: str) -> None:
             assert await bench.clock(read_at=name) == word & mask | before & ~mask
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def other_offsets(dut: Any) -> None:
+@on_bench(Bench)
+async def other_offsets(bench: Bench) -> None:
     """Access offsets that differ in one bit from that of a register: they are not taken for it."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.other_offsets(EVERY)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def events(dut: Any) -> None:
+@on_bench(Bench)
+async def events(bench: Bench) -> None:
     """Each fault has its bit and counts once; lost frames count as many as there are; a 1 clears its bit alone."""
-    bench = Bench(dut)
-    await bench.start()
     for number, name in enumerate(FAULTS, 1):
         await bench.clock(faults=fault(name))
         await bench.clock()
@@ -132,11 +127,9 @@ async def events(dut: Any) -> None:
     assert await bench.clock(read_at="CAMERA_STATUS") == 0
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def counters_have_32_bits(dut: Any) -> None:
+@on_bench(Bench)
+async def counters_have_32_bits(bench: Bench) -> None:
     """They count on from any value, and stay at the largest."""
-    bench = Bench(dut)
-    await bench.start()
     values = [(1 << bit) - 1 for bit in range(1, 33)] + [WORD - 1, WORD - 200]
     for value in (*values, *(bench.random.getrandbits(32) for _ in range(2))):
         await bench.preset(value)
@@ -146,10 +139,8 @@ async def counters_have_32_bits(dut: Any) -> None:
         assert await bench.clock(read_at="CAMERA_LOST") == min(value + 200, WORD)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def an_event_in_the_clock_of_a_clearing_write_is_kept(dut: Any) -> None:
-    bench = Bench(dut)
-    await bench.start()
+@on_bench(Bench)
+async def an_event_in_the_clock_of_a_clearing_write_is_kept(bench: Bench) -> None:
     await bench.preset(WORD)
     await bench.clock(faults=fault("row_short"), frames_lost=3)  # reaches the counters in the next cycle
     await bench.clock(("CAMERA_CONTROL", CONTROL.field("clear_counters").mask, WHOLE))
@@ -157,11 +148,9 @@ async def an_event_in_the_clock_of_a_clearing_write_is_kept(dut: Any) -> None:
     assert await bench.clock(read_at="CAMERA_LOST") == 3
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def set_up(dut: Any) -> None:
+@on_bench(Bench)
+async def set_up(bench: Bench) -> None:
     """A written 1 restarts it for one cycle; its state is read as it stands."""
-    bench = Bench(dut)
-    await bench.start()
     for word in (CONTROL.mask(), 1, 2, WORD & ~2, 0):
         await bench.clock(("CAMERA_CONTROL", word, WHOLE))
         await bench.clock(("CAMERA_CONTROL", word, WHOLE), rst=True)
@@ -177,9 +166,7 @@ async def set_up(dut: Any) -> None:
         assert (status["setup_done"], status["setup_failed"]) == (done, failed)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_writes(dut: Any) -> None:
+@on_bench(Bench)
+async def random_writes(bench: Bench) -> None:
     """Drive random writes, reads, events and resets."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.random_clocks(EVERY)

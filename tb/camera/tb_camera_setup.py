@@ -13,6 +13,7 @@ from cocotb.triggers import ClockCycles, ReadOnly, RisingEdge
 
 from tactile_depth.camera.camera_setup import CameraSetup, Entry, Kind
 from tb.camera.sccb_camera import SccbCamera
+from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import CLOCK_NS, REGRESS, parameters, sample
 
@@ -98,19 +99,17 @@ class Bench:
         assert {address: self.camera.registers.get(address) for address in last} == last
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize(acknowledges=[True, False])
-async def whole_list(dut: Any, acknowledges: bool) -> None:
+async def whole_list(bench: Bench) -> None:
     """Play the whole list: every register arrives, whatever the camera drives in the ninth bit, and the pins end as the
     list says."""
-    bench = Bench(dut, acknowledges=acknowledges)
-    await bench.start()
     await bench.end()
-    assert dut.done.value
-    assert not dut.failed.value
+    assert bench.dut.done.value
+    assert not bench.dut.failed.value
     bench.check_registers()
     last = [entry.address for entry in bench.list if entry.kind == Kind.PINS][-1]
-    assert (int(dut.power_down.value) << 1 | int(dut.reset_n.value)) == last
+    assert (int(bench.dut.power_down.value) << 1 | int(bench.dut.reset_n.value)) == last
     sent = [len(data) for data in bench.camera.transmissions]
     address_bytes = bench.address_bytes
     expected = {Kind.WRITE: [2 + address_bytes, 1 + address_bytes, 2], Kind.CHECK: [1 + address_bytes, 2]}
@@ -181,21 +180,19 @@ async def faults_that_stay(dut: Any) -> None:
     assert dut.done.value
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize(pin=["rst", "restart"])
-async def begun_afresh(dut: Any, pin: str) -> None:
+async def begun_afresh(bench: Bench, pin: str) -> None:
     """Reset or restart at any time: the list begins with its first entry and is completed."""
-    bench = Bench(dut)
-    await bench.start()
     chance = random.Random(cocotb.RANDOM_SEED)
     for _ in range(12 if REGRESS else 4):
-        await ClockCycles(dut.clk, chance.randint(1, 3000))
-        getattr(dut, pin).value = 1
-        await ClockCycles(dut.clk, chance.randint(1, 3))
-        getattr(dut, pin).value = 0
-    await ClockCycles(dut.clk, 2)
+        await ClockCycles(bench.dut.clk, chance.randint(1, 3000))
+        getattr(bench.dut, pin).value = 1
+        await ClockCycles(bench.dut.clk, chance.randint(1, 3))
+        getattr(bench.dut, pin).value = 0
+    await ClockCycles(bench.dut.clk, 2)
     await bench.end()
-    assert dut.done.value
+    assert bench.dut.done.value
     bench.check_registers()
 
 

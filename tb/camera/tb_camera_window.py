@@ -16,6 +16,7 @@ from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
 from tactile_depth.latency import CAMERA_WINDOW
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, video
+from tb.cases import on_bench
 from tb.stream import CLOCK_NS, MANY, REGRESS, parameters
 
 KINDS = [kind for kind in BREAKS if kind not in SILENT]
@@ -179,18 +180,16 @@ async def windows_anywhere(dut: Any, stalls: str) -> None:
     assert outside, "the test is void: every window lies inside the picture"
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench, milliseconds=5)
+async def resets(bench: Bench) -> None:
     """Reset at every position of a picture; the next picture is right."""
-    bench = Bench(dut)
-    await bench.start()
     bench.use(Settings(bench.width + 1 + bench.pairs, bench.height + 1, 1, 0))
     for position in range(bench.settings.columns * bench.settings.rows * bench.words):
         words = bench.picture()
         if position % 3 == 0:
             words[position] = words[position]._replace(last=1 - words[position].last)
         cocotb.start_soon(bench.source.send(words))
-        await ClockCycles(dut.clk, position + 2)
+        await ClockCycles(bench.dut.clk, position + 2)
         await bench.reset(1 + position % 2)
         await bench.source.send(bench.picture())
         assert not (await bench.check(f"reset at {position}")).faults

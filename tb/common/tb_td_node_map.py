@@ -7,6 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_node_map import latency, node_map, side
+from tb.cases import on_bench
 from tb.depth_frames import packed
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends, watch_active
 from tb.stream import REGRESS, Bench, StreamDriver, StreamMonitor, check_words, parameters, places, sample, send_apart
@@ -17,7 +18,7 @@ BEATS = 1024  # that a test sends, at least
 class Map:
     """Device, and the words that each frame should get."""
 
-    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut)
         names = ("Lanes", "Channels", "Signed", "Select", "DataWidth")
@@ -79,13 +80,11 @@ async def at_power_up(dut: Any) -> None:
     await device.check()
 
 
-@cocotb.test(timeout_time=60, timeout_unit="ms")
+@on_bench(Map, milliseconds=60)
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
-async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
+async def frames_while_the_bus_rewrites(device: Map) -> None:
     """Rewrite nodes while frames stream: the frame before a change-over has the old words, the frame after it the
     new."""
-    device = Map(dut, gap, pause)
-    await device.start()
     await device.nodes.write(device.nodes.random(device.bench.random))
     device.nodes.due = True
     going_on = [True]
@@ -97,20 +96,16 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     assert len({words.tobytes() for words in device.expected}) > 1, "the test is void: no change-over was seen"
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def read_as_a_pause_ends(dut: Any) -> None:
-    device = Map(dut, 0.0, 0.0)
-    await device.start()
+@on_bench(Map, milliseconds=20)
+async def read_as_a_pause_ends(device: Map) -> None:
     await reads_as_a_pause_ends(device, device.nodes)
     await device.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Map, milliseconds=20)
 @cocotb.parametrize(pause=[0.0, 0.3])
-async def named_inside_a_frame(dut: Any, pause: float) -> None:
+async def named_inside_a_frame(device: Map) -> None:
     """Select the other bank at any beat of a frame: the next frame uses it."""
-    device = Map(dut, 0.0, pause)
-    await device.start()
     stride = device.row + 1 if REGRESS or len(device.beats) < 500 else len(device.beats) // 8
     for count in range(4, len(device.beats), stride):
         await device.nodes.write(device.nodes.random(device.bench.random))
@@ -122,11 +117,9 @@ async def named_inside_a_frame(dut: Any, pause: float) -> None:
     await device.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def captured(dut: Any) -> None:
+@on_bench(Map, milliseconds=20)
+async def captured(device: Map) -> None:
     """Capture all nodes, several at once, into both banks; the bus reads the same values, and 0 at unused entries."""
-    device = Map(dut, 0.0, 0.0)
-    await device.start()
     for _ in range(2):
         await device.nodes.capture(device.nodes.random(device.bench.random))
         for index in range(device.nodes.per_node * device.nodes.banks[0][..., 0].size):
@@ -136,11 +129,9 @@ async def captured(dut: Any) -> None:
     await device.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Map, milliseconds=20)
+async def resets(device: Map) -> None:
     """Reset inside a frame: words and banks stay, a due change-over takes place, and the next frame is right."""
-    device = Map(dut, 0.0, 0.0)
-    await device.start()
     for count in (1, 2, 3, 4, 6, device.row, 2 * device.row + 3, 5 * device.row // 2):
         await device.nodes.write(device.nodes.random(device.bench.random))
         await device.beats_of_frame(0, count)

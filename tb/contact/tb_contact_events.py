@@ -11,6 +11,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.contact.contact_events import CYCLES_TO_TOUCHING, WORDS, ContactEvents, Settings, latency
 from tactile_depth.contact.record_packets import RecordPackets
 from tb.axis import profile
+from tb.cases import on_bench
 from tb.contact.depth_bench import DepthBench
 from tb.stream import REGRESS
 
@@ -173,12 +174,10 @@ def random_settings(bench: Any, rng: Any, depth: np.ndarray) -> Any:
     return Settings(on, off, int(minimum), int(rng.choice([0, 1, 2, 3], p=[0.2, 0.3, 0.3, 0.2])))
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@on_bench(Bench, milliseconds=100)
 @cocotb.parametrize(gap=[0.0, 0.1])
-async def random_frames(dut: Any, gap: float) -> None:
+async def random_frames(bench: Bench, gap: float) -> None:
     """Send random maps, back to back or with gaps: every field of every record equals numpy on the map."""
-    bench = Bench(dut, gap=gap)
-    await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     events, want = Events(), []
     for number in range(FRAMES[gap]):
@@ -204,12 +203,10 @@ async def random_frames(dut: Any, gap: float) -> None:
     )
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def centroids_between_two(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def centroids_between_two(bench: Bench) -> None:
     """Reach means half way between two codes, which round to the even one: with 32 pixels above, 16 sum / 32 has
     halves."""
-    bench = Bench(dut)
-    await bench.start()
     want, halves = [], set()
     for _ in range(24):
         depth = np.zeros((bench.rows, bench.columns), np.int64)
@@ -222,11 +219,9 @@ async def centroids_between_two(dut: Any) -> None:
     assert halves == {0, 1, 2, 3}, "the test is void: it did not reach both ties"
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def hysteresis(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def hysteresis(bench: Bench) -> None:
     """Send depths between the thresholds: either state stays. A depth equal to a threshold is not above it."""
-    bench = Bench(dut)
-    await bench.start()
     settings, status = Settings(20, 10, 2, 1), []
     levels = [0, 15, 20, 21, 15, 11, 10, 15, 21, 21, 0, 15]
     for level in levels:
@@ -238,11 +233,9 @@ async def hysteresis(dut: Any) -> None:
     assert status == [0, 0, 0, 3, 1, 1, 4, 0, 3, 1, 4, 0, 3, 4]
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def settings_in_every_bit(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def settings_in_every_bit(bench: Bench) -> None:
     """Set each bit of the minimum area and of the debounce alone: it decides the state of its own frame."""
-    bench = Bench(dut)
-    await bench.start()
     for debounce in (1, 0):  # 1: each bit of the area decides alone
         for bit in range(32):
             await bench.frame(bench.full(1), Settings(0, 0, 1 << bit, debounce or 1 << bit % 8))
@@ -253,23 +246,19 @@ async def settings_in_every_bit(dut: Any) -> None:
     await bench.settle()
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def frame_numbers(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def frame_numbers(bench: Bench) -> None:
     """Count frames through every bit of the number and past its end."""
-    bench = Bench(dut)
-    await bench.start()
     for bits in range(6, 33):
-        dut.frame.value = bench.model.frames = (1 << bits) - 1
+        bench.dut.frame.value = bench.model.frames = (1 << bits) - 1
         await bench.frame(bench.full(0), Settings(0, 0, 1, 1))
         await bench.settle()
     assert [words[1] for words in bench.records] == [*(1 << bits for bits in range(6, 32)), 0]
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def interrupted_frames(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def interrupted_frames(bench: Bench) -> None:
     """Begin a frame inside another one: it is measured alone, with its own settings."""
-    bench = Bench(dut)
-    await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
         await bench.frame(bench.random_map(rng), Settings(-3, 5, 1, 1), 7, words=int(words))
@@ -281,11 +270,9 @@ async def interrupted_frames(dut: Any) -> None:
             assert bench.records[-1][1:3] == (len(bench.records), 8)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def the_sink_takes_the_last_word(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20)
+async def the_sink_takes_the_last_word(bench: Bench) -> None:
     """Take the last word in any cycle around a new record: the waiting record leaves or is lost, never both."""
-    bench = Bench(dut)
-    await bench.start()
     for late in range(-3, 4):
         await bench.reset()
         bench.records, bench.sent, bench.lost = [], [], 0
@@ -305,11 +292,9 @@ async def the_sink_takes_the_last_word(dut: Any) -> None:
         assert bench.sent == bench.records[: 1 if bench.lost else 3] + bench.records[2:] * bench.lost
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20, accepts="alternate")
+async def resets(bench: Bench) -> None:
     """Reset in any cycle of a frame and after it: nothing of the frame remains, and registers read zero."""
-    bench = Bench(dut, accepts="alternate")
-    await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     total = bench.beats + bench.latency + 2 * WORDS + 3
     for clocks in sorted({*range(1, total, 3), *range(bench.beats - 1, total)}):

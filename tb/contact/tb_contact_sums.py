@@ -8,6 +8,7 @@ import numpy as np
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.contact.contact_sums import CYCLES_TO_AREA, ContactSums, Sums, Thresholds, cycles_to_sums
+from tb.cases import on_bench
 from tb.contact.depth_bench import WORD_LOW, DepthBench
 from tb.stream import REGRESS
 
@@ -71,12 +72,10 @@ class Bench(DepthBench):
         await self.idle(self.cycles_to_sums + 1)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@on_bench(Bench, milliseconds=100)
 @cocotb.parametrize(gap=[0.0, 0.1])
-async def random_frames(dut: Any, gap: float) -> None:
+async def random_frames(bench: Bench) -> None:
     """Send maps of every kind, back to back or with gaps, with thresholds near their values."""
-    bench = Bench(dut, gap)
-    await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     for _ in range(FRAMES):
         depth = bench.random_map(rng)
@@ -88,11 +87,9 @@ async def random_frames(dut: Any, gap: float) -> None:
     assert areas.count(bench.pixels) > FRAMES // 50, "the test is void: too few frames have all depths above"
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def ties_and_edges(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def ties_and_edges(bench: Bench) -> None:
     """Find the first of equal peaks in stream order, a single one in each corner, and all and no depths above."""
-    bench = Bench(dut)
-    await bench.start()
     maps = bench.edge_maps()
     for depth in maps:
         await bench.frame(depth, Thresholds(0, 0))
@@ -103,11 +100,9 @@ async def ties_and_edges(dut: Any) -> None:
     assert bench.received[4].peak_position == (first_row, 0), "the peak is not the first of the equal ones"
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
-async def interrupted_frames(dut: Any) -> None:
+@on_bench(Bench, milliseconds=10)
+async def interrupted_frames(bench: Bench) -> None:
     """Begin a frame inside another one: it is measured alone, with its own thresholds."""
-    bench = Bench(dut)
-    await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
         await bench.frame(bench.random_map(rng), Thresholds(-3, 5), words=int(words))
@@ -117,11 +112,9 @@ async def interrupted_frames(dut: Any) -> None:
     assert len(bench.received) > bench.beats // 3 - 1
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20)
+async def resets(bench: Bench) -> None:
     """Reset in any cycle of a frame and after it: nothing of it remains."""
-    bench = Bench(dut)
-    await bench.start()
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
     for clocks in range(1, bench.beats + bench.cycles_to_sums + 2):
         await bench.frame(bench.random_map(rng), Thresholds(0, -1), words=clocks)

@@ -10,6 +10,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.contact.threshold_comparator import ThresholdComparator
+from tb.cases import on_bench
 from tb.stream import CLOCK_NS, parameters
 
 CLOCKS = 5000
@@ -67,12 +68,10 @@ class Bench:
         return bool(self.dut.contact.value)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def boundaries(dut: Any) -> None:
+@on_bench(Bench)
+async def boundaries(bench: Bench) -> None:
     """Send depths equal to the threshold and one above it, with thresholds at and beyond both full scales of the
     data."""
-    bench = Bench(dut)
-    await bench.start()
     low, high = bench.lowest, bench.highest
     word_low, word_high = -(1 << WORD_BITS - 1), (1 << WORD_BITS - 1) - 1
     for threshold in sorted({0, 1, -1, 1000, -1000, low, low + 1, high, high - 1, word_low, word_high}):
@@ -85,11 +84,9 @@ async def boundaries(dut: Any) -> None:
                     assert await bench.contact_after(*frame) == want, f"{frame} over {threshold}"
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def clearing(dut: Any) -> None:
+@on_bench(Bench)
+async def clearing(bench: Bench) -> None:
     """Clear contact by the first beat of a frame, not by its second; a first beat above the threshold sets it."""
-    bench = Bench(dut)
-    await bench.start()
     bench.threshold = 10
     assert await bench.contact_after(0, 11, 0, 0)
     assert not await bench.contact_after(0), "the first beat did not clear contact"
@@ -98,15 +95,13 @@ async def clearing(dut: Any) -> None:
         await bench.idle()
     await bench.beat(11, user=True)  # contact stays high through this beat: `edge` checks every cycle
     await bench.idle()
-    assert dut.contact.value, "clearing won over setting"
+    assert bench.dut.contact.value, "clearing won over setting"
     assert not await bench.contact_after(10, 10, 10)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def hold(dut: Any) -> None:
+@on_bench(Bench)
+async def hold(bench: Bench) -> None:
     """Hold contact while the bit is set; afterwards it has the value that it would have without the bit."""
-    bench = Bench(dut)
-    await bench.start()
     bench.threshold, bench.hold = 10, True
     assert not await bench.contact_after(0, 0), "hold alone raised it"
     assert await bench.contact_after(0, 11)
@@ -114,33 +109,31 @@ async def hold(dut: Any) -> None:
     bench.hold = False
     await bench.idle()
     await bench.idle()
-    assert not dut.contact.value, "contact stayed high after the bit was cleared between frames"
+    assert not bench.dut.contact.value, "contact stayed high after the bit was cleared between frames"
 
     bench.hold = True
     assert await bench.contact_after(0, 11)
     bench.hold = False
     await bench.beat(0)
     await bench.idle()
-    assert dut.contact.value, "clearing the bit inside a frame that raised contact cleared contact"
+    assert bench.dut.contact.value, "clearing the bit inside a frame that raised contact cleared contact"
     bench.hold = True
     assert await bench.contact_after(0, 0)
     bench.hold = False
     await bench.beat(0)
     await bench.idle()
-    assert not dut.contact.value, "contact stayed high in a frame that did not raise it"
+    assert not bench.dut.contact.value, "contact stayed high in a frame that did not raise it"
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def threshold_change(dut: Any) -> None:
+@on_bench(Bench)
+async def threshold_change(bench: Bench) -> None:
     """Write a threshold inside a frame and between frames: it applies from the next frame on."""
-    bench = Bench(dut)
-    await bench.start()
     bench.threshold = 10
     await bench.beat(0, user=True)
     bench.threshold = -10
     await bench.beat(0)
     await bench.idle()
-    assert not dut.contact.value, "a lower threshold applied inside the frame in which it was written"
+    assert not bench.dut.contact.value, "a lower threshold applied inside the frame in which it was written"
     assert await bench.contact_after(0), "it did not apply to the next frame"
     bench.threshold = 10
     await bench.beat(5)
@@ -150,11 +143,9 @@ async def threshold_change(dut: Any) -> None:
     assert await bench.contact_after(5)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_frames(dut: Any) -> None:
+@on_bench(Bench)
+async def random_frames(bench: Bench) -> None:
     """Send random beats near a changing threshold, with random gaps, hold and resets."""
-    bench = Bench(dut)
-    await bench.start()
     rng = bench.random
     left = 0
     raised = 0
@@ -164,9 +155,9 @@ async def random_frames(dut: Any) -> None:
         if rng.random() < 0.05:
             bench.hold = rng.random() < 0.3
         if rng.random() < 0.01:
-            dut.rst.value = 1
+            bench.dut.rst.value = 1
             await bench.edge(False)
-            dut.rst.value = 0
+            bench.dut.rst.value = 0
             bench.model.reset()
             left = 0
         elif rng.random() < 0.3:

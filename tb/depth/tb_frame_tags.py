@@ -10,6 +10,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.depth.frame_tags import FrameTags
+from tb.cases import on_bench
 from tb.stream import CLOCK_NS, parameters
 
 
@@ -52,20 +53,16 @@ class Bench:
                 left -= en or rst
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(pause=[0.0, 0.4])
-async def frames_as_close_as_they_can_be(dut: Any, pause: float) -> None:
-    bench = Bench(dut)
-    await bench.start()
+async def frames_as_close_as_they_can_be(bench: Bench, pause: float) -> None:
     await bench.frames(30, lambda: bench.pixels, pause)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(reset=[0.0, 0.01])
-async def frames_apart(dut: Any, reset: Any) -> None:
+async def frames_apart(bench: Bench, reset: Any) -> None:
     """Send frames at each distance, from the closest until the one before has left; then at random."""
-    bench = Bench(dut)
-    await bench.start()
     distances = iter(range(bench.pixels, bench.model.latency + bench.pixels + 2))
     await bench.frames(bench.model.latency + 2, lambda: next(distances), reset=reset)
     await bench.frames(60, lambda: bench.pixels + bench.random.randrange(2 * bench.model.latency), 0.2, reset)

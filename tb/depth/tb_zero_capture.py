@@ -11,6 +11,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_node_map import side
 from tactile_depth.depth.zero_capture import captured_zero, cycles, levels
+from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid
@@ -22,7 +23,7 @@ WORDS = 2048  # that a test sends, about
 class Capture:
     """Device, and the writes that are expected of it."""
 
-    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut = dut
         self.config = Grid.of(dut)
         self.largest, self.lanes = parameters(dut, "MaxLog2", "Lanes")
@@ -131,14 +132,12 @@ class Capture:
                 await RisingEdge(self.dut.clk)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@on_bench(Capture, milliseconds=100)
 @cocotb.parametrize(
     (("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.5), (0.6, 0.0), (0.3, 0.3)])), ("log2", sample([0, 1, 3]))
 )
-async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
+async def captures(device: Capture, gap: float, log2: int) -> None:
     """Capture frames in a row; earlier frames do not count."""
-    device = Capture(dut, gap, pause)
-    await device.start()
     await device.send()
     if device.size > WORDS and (log2 > 1 or gap):
         return
@@ -168,23 +167,19 @@ async def most_frames(dut: Any, high: bool) -> None:
         assert len(device.taken) == 1 << device.largest
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
-async def depths_of_all_kinds(dut: Any) -> None:
+@on_bench(Capture, milliseconds=100)
+async def depths_of_all_kinds(device: Capture) -> None:
     """Capture depths at their limits, at ties of either sign, and random ones."""
-    device = Capture(dut, 0.0, 0.0)
-    await device.start()
     for index in range(1 if device.size > WORDS else 30 if REGRESS else 12):
         await device.request(min(index % 4, device.largest))
         await device.until_done()
 
 
-@cocotb.test(timeout_time=200, timeout_unit="ms")
+@on_bench(Capture, milliseconds=200)
 @cocotb.parametrize(pause=[0.0, 0.4])
-async def requests_at_any_time(dut: Any, pause: float) -> None:
+async def requests_at_any_time(device: Capture) -> None:
     """Request a capture while idle, armed, summing and writing, and in the cycles of a frame's first word, its last
     word and done."""
-    device = Capture(dut, 0.0, pause)
-    await device.start()
     size = device.size
     waits = [*range(8), *range(size - 2, size + device.clocks + 4), 2 * size]
     rows = size - size % (device.row << device.config.reference_block_log2)  # beats before a cut row of blocks
@@ -197,11 +192,9 @@ async def requests_at_any_time(dut: Any, pause: float) -> None:
     await request_after(device, waits, size)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Capture, milliseconds=100)
+async def resets(device: Capture) -> None:
     """Reset during a capture: it ends, nothing is written from then on, and the next request is served."""
-    device = Capture(dut, 0.0, 0.0)
-    await device.start()
     size, columns = device.size, device.row
     block = columns << device.config.reference_block_log2  # beats of a row of blocks
     counts = [1, 2, 3, 4, 5, 6, *range(block - columns, block + 8), size - 1, size]
@@ -210,7 +203,7 @@ async def resets(dut: Any) -> None:
             await device.request(0)
             await device.send(count=count)
             for _ in range(wait):
-                await RisingEdge(dut.clk)
+                await RisingEdge(device.dut.clk)
             await device.bench.reset(en=turn % 2)
             if turn % 3:
                 await device.send()

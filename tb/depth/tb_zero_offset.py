@@ -16,6 +16,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_offset import zero_offset
 from tactile_depth.latency import zero_offset_latency
 from tactile_depth.registers.register_map import TABLES
+from tb.cases import on_bench
 from tb.depth_frames import DepthDriver, depth_words, packed, random_depths
 from tb.nodes import Grid, Nodes
 from tb.stream import Bench, depth_position, parameters, places, sample
@@ -44,7 +45,7 @@ class Zeros(Nodes):
 class Zero:
     """Device, and the words that the model expects for every word sent."""
 
-    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut)
         self.shape = (self.config.rows, self.config.columns)
@@ -155,13 +156,11 @@ async def at_power_up(dut: Any) -> None:
         device.zeros.due = True
 
 
-@cocotb.test(timeout_time=60, timeout_unit="ms")
+@on_bench(Zero, milliseconds=60)
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
-async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
+async def frames_while_the_bus_rewrites(device: Zero) -> None:
     """Rewrite the zero offset while frames stream: the frame before a change-over has the old one, the frame after it
     the new."""
-    device = Zero(dut, gap, pause)
-    await device.start()
     await device.zeros.write(device.zeros.random(device.chance))
     device.zeros.due = True
     going_on = [True]
@@ -174,11 +173,9 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     assert device.counted == device.monitor.saturations.total() > 0
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def captured(dut: Any) -> None:
+@on_bench(Zero, milliseconds=20)
+async def captured(device: Zero) -> None:
     """Capture all nodes into both banks; the bus reads the same values."""
-    device = Zero(dut, 0.0, 0.0)
-    await device.start()
     for _ in range(2):
         await device.zeros.capture(device.zeros.random(device.chance))
         for index in range(device.zeros.banks[0].size):
@@ -188,11 +185,9 @@ async def captured(dut: Any) -> None:
     await device.check()
 
 
-@cocotb.test(timeout_time=60, timeout_unit="ms")
-async def differences_at_their_limits(dut: Any) -> None:
+@on_bench(Zero, milliseconds=60)
+async def differences_at_their_limits(device: Zero) -> None:
     """Reach differences that just fit, differences that are just clipped, and the largest difference of all."""
-    device = Zero(dut, 0.0, 0.0)
-    await device.start()
     low, high = -(1 << device.width - 1), (1 << device.width - 1) - 1
     for level in (low,) if device.large else (low, low + 1, -1, 0, 1, high - 1, high):
         await device.zeros.write(np.full((*device.config.reference_nodes, 1), level))
@@ -206,11 +201,9 @@ async def differences_at_their_limits(dut: Any) -> None:
     assert device.counted == device.monitor.saturations.total() > 0
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Zero, milliseconds=20)
+async def resets(device: Zero) -> None:
     """Reset inside a frame: no earlier word leaves or is counted, the nodes stay, and a due change-over takes place."""
-    device = Zero(dut, 0.0, 0.0)
-    await device.start()
     row = device.config.columns // device.lanes
     size = device.config.rows * row
     counts = (1, 2, 3, 4, *range(device.latency - 2, device.latency + 3), 2 * row + 3, size)

@@ -13,6 +13,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.gradient.flat_field import dark_pixels, deviations, flat_codes, unit_gains
 from tactile_depth.latency import FLAT_FIELD
 from tactile_depth.registers.register_map import TABLES
+from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
 from tb.pixels import pack
 from tb.stream import MANY, Bench, StreamDriver, StreamMonitor, check_words, parameters, raster, sample, send_apart
@@ -51,7 +52,7 @@ class Gains(Nodes):
 class Field:
     """Device, and the words that the model expects for every frame sent."""
 
-    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut, "GainWidth")
         self.quadratic = bool(parameters(dut, "Offset")[0])
@@ -139,11 +140,9 @@ async def at_power_up(dut: Any) -> None:
     np.testing.assert_array_equal(codes, (pixels.astype(int) - 128) * 32 if device.quadratic else pixels)
 
 
-@cocotb.test(timeout_time=60, timeout_unit="ms")
+@on_bench(Field, milliseconds=60)
 @cocotb.parametrize((("gap", "pause"), sample([(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.7, 0.5)])))
-async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> None:
-    device = Field(dut, gap, pause)
-    await device.start()
+async def frames_while_the_bus_rewrites(device: Field) -> None:
     await device.gains.write(device.gains.random(device.bench.random))
     device.gains.due = True
     going_on = [True]
@@ -155,19 +154,15 @@ async def frames_while_the_bus_rewrites(dut: Any, gap: float, pause: float) -> N
     assert device.dark, "the test is void: no dark pixel"
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def read_as_a_pause_ends(dut: Any) -> None:
-    device = Field(dut, 0.0, 0.0)
-    await device.start()
+@on_bench(Field, milliseconds=20)
+async def read_as_a_pause_ends(device: Field) -> None:
     await reads_as_a_pause_ends(device, device.gains)
     await device.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def named_inside_a_frame(dut: Any) -> None:
+@on_bench(Field, milliseconds=20)
+async def named_inside_a_frame(device: Field) -> None:
     """Select the other bank at any word of a frame: the next frame uses it."""
-    device = Field(dut, 0.0, 0.0)
-    await device.start()
     size = len(device.places)
     for count in range(3, size, size if device.large else max(device.config.columns + 1, size // 5)):
         await device.gains.write(device.gains.random(device.bench.random))
@@ -176,13 +171,11 @@ async def named_inside_a_frame(dut: Any) -> None:
     await device.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def products_at_their_limits(dut: Any) -> None:
+@on_bench(Field, milliseconds=20)
+async def products_at_their_limits(device: Field) -> None:
     """Reach ties of the rounding, the largest pixel with the largest gain that is not dark, and products just beyond
     both limits."""
-    device = Field(dut, 0.0, 0.0)
-    await device.start()
-    drop = parameters(dut, "Drop")[0]
+    drop = parameters(device.dut, "Drop")[0]
     half = 1 << (drop - 1)
     dead = 1 << device.gains.width - 1
     gains = (half, 3 * half, dead - 1, dead, dead // 2 + half // 2)
@@ -203,12 +196,10 @@ def beside_ties(gains: np.ndarray, drop: int) -> Any:
     return np.abs(products % (1 << drop) - (1 << drop - 1)).argmin(axis=0).astype(np.uint8)
 
 
-@cocotb.test(timeout_time=60, timeout_unit="ms")
-async def products_beside_ties(dut: Any) -> None:
+@on_bench(Field, milliseconds=60)
+async def products_beside_ties(device: Field) -> None:
     """Send pixels beside ties, whose rounding depends on the lowest bits of the gain."""
-    device = Field(dut, 0.0, 0.0)
-    await device.start()
-    (drop,) = parameters(dut, "Drop")
+    (drop,) = parameters(device.dut, "Drop")
     for _ in range(2 if device.large else 2 * MANY):
         gains = device.gains.random(device.bench.random)
         await device.gains.write(gains)
@@ -218,12 +209,10 @@ async def products_beside_ties(dut: Any) -> None:
     await device.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Field, milliseconds=20)
+async def resets(device: Field) -> None:
     """Reset inside a frame with pixels in each stage: none of them leaves or is counted, and the next frame is
     right."""
-    device = Field(dut, 0.0, 0.0)
-    await device.start()
     generator = np.random.default_rng(1)
     counts = (1, 2, 3, 4, 8, 10, 11, 12, 13, 14, 2 * device.config.columns + 3)
     for count in counts[-1:] if device.large else counts:

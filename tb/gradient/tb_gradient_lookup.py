@@ -15,6 +15,7 @@ from tactile_depth.common.td_banked_table import BankedTable
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.latency import GRADIENT_LOOKUP
 from tactile_depth.registers.register_map import TABLES
+from tb.cases import on_bench
 from tb.pixels import pack, unpack
 from tb.stream import Bench, StreamDriver, StreamMonitor, configuration, parameters, send_apart, uniform
 from tb.table_bus import READ_CLOCKS, TableBus, signed
@@ -38,7 +39,7 @@ class Lookup:
 
     banks: Any = None  # content of the banks; it survives a reset, so the next test begins with it
 
-    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         self.width, self.bits = parameters(dut, "Width", "BitsPerChannel")
         self.bins = 1 << 3 * self.bits
@@ -153,11 +154,9 @@ class Lookup:
 TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Lookup, milliseconds=20)
 @TRAFFIC
-async def whole_table_then_rewritten(dut: Any, gap: float, pause: float) -> None:
-    lookup = Lookup(dut, gap, pause)
-    await lookup.start()
+async def whole_table_then_rewritten(lookup: Lookup) -> None:
     await lookup.frame()
     for _ in range(2):
         codes = uniform((lookup.bins, 2), lookup.width)
@@ -171,12 +170,10 @@ async def whole_table_then_rewritten(dut: Any, gap: float, pause: float) -> None
     assert lookup.tables == {0, 1}
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Lookup, milliseconds=20)
 @TRAFFIC
-async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> None:
+async def rewritten_while_frames_stream(lookup: Lookup, gap: float) -> None:
     """Send short frames back to back; write, read and commit in every one of their cycles."""
-    lookup = Lookup(dut, gap, pause)
-    await lookup.start()
     random, running, changes = lookup.bench.random, True, 0
 
     async def software() -> None:
@@ -188,13 +185,13 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
                 )
             for _ in range(random.randrange(4)):
                 await lookup.read(random.randrange(lookup.bins))
-            await ClockCycles(dut.clk, random.randrange(1, 4))
+            await ClockCycles(lookup.dut.clk, random.randrange(1, 4))
             await lookup.commit()
-            while running and lookup.banks.in_use != int(dut.table_bank.value):
+            while running and lookup.banks.in_use != int(lookup.dut.table_bank.value):
                 if random.random() < 0.5:  # while the change-over is due, in its cycle, and after it
                     await lookup.read(random.randrange(lookup.bins))
                 else:
-                    await RisingEdge(dut.clk)
+                    await RisingEdge(lookup.dut.clk)
             changes += 1
 
     working = cocotb.start_soon(software())
@@ -208,10 +205,8 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
     await lookup.frame()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def reset_keeps_the_table_and_takes_the_bank_over(dut: Any) -> None:
-    lookup = Lookup(dut, 0.0, 0.0)
-    await lookup.start()
+@on_bench(Lookup, milliseconds=20)
+async def reset_keeps_the_table_and_takes_the_bank_over(lookup: Lookup) -> None:
     await lookup.write(0, 1, -2)
     await send_apart(lookup.bench, lookup.driver, lookup.words(np.zeros((3, 3), np.uint8)), 0.0)
     for changes in (False, True, False):

@@ -16,6 +16,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.gradient.quadratic_gradient import coefficients, slope_codes
 from tactile_depth.latency import QUADRATIC_GRADIENT
 from tactile_depth.registers.register_map import TABLES
+from tb.cases import on_bench
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
 from tb.table_bus import READ_CLOCKS, TableBus, signed
 
@@ -221,12 +222,10 @@ def corners_of(random: Any, count: int, width: int) -> Any:
 TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Gradient, milliseconds=20)
 @TRAFFIC
-async def both_banks(dut: Any, gap: float, pause: float) -> None:
+async def both_banks(device: Gradient) -> None:
     """Send frames with the words of power-up, then with new words, each read back before it is used."""
-    device = Gradient(dut, gap, pause)
-    await device.start()
     await device.send(5, 8)
     await device.compare()
     for _ in range(2):
@@ -242,12 +241,10 @@ async def both_banks(dut: Any, gap: float, pause: float) -> None:
     assert device.used == {0, 1}
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Gradient, milliseconds=20)
 @TRAFFIC
-async def limits(dut: Any, gap: float, pause: float) -> None:
+async def limits(device: Gradient) -> None:
     """Use words and deviations of every kind, so that sums clip in both directions and polynomials overflow."""
-    device = Gradient(dut, gap, pause)
-    await device.start()
     clipped = 0
     for _ in range(25):
         await device.use(device.any_words())
@@ -262,12 +259,10 @@ async def limits(dut: Any, gap: float, pause: float) -> None:
     assert clipped or largest < 2 ** (device.width - 1), "the test is void: nothing was clipped"
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Gradient, milliseconds=20)
 @TRAFFIC
-async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> None:
+async def rewritten_while_frames_stream(device: Gradient) -> None:
     """Send frames back to back; write, read and commit in every one of their cycles."""
-    device = Gradient(dut, gap, pause)
-    await device.start()
     random, running, changes = device.random, True, 0
 
     async def software() -> None:
@@ -278,13 +273,13 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
                 await device.write(index, words[index])
             for _ in range(random.randrange(4)):
                 await device.read(random.randrange(COUNT))
-            await ClockCycles(dut.clk, random.randrange(1, 4))
+            await ClockCycles(device.dut.clk, random.randrange(1, 4))
             await device.commit()
-            while running and device.in_use[-1] != int(dut.table_bank.value):
+            while running and device.in_use[-1] != int(device.dut.table_bank.value):
                 if random.random() < 0.5:  # while the change-over is due, in its cycle, and after it
                     await device.read(random.randrange(COUNT))
                 else:
-                    await RisingEdge(dut.clk)
+                    await RisingEdge(device.dut.clk)
             changes += 1
 
     working = cocotb.start_soon(software())
@@ -296,11 +291,9 @@ async def rewritten_while_frames_stream(dut: Any, gap: float, pause: float) -> N
     assert changes > 20, "the test is void: the words hardly changed"
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
+@on_bench(Gradient, milliseconds=20)
+async def reset_keeps_the_words_and_takes_the_bank_over(device: Gradient) -> None:
     """Reset among pixels that all clip: none is counted after it, the words stay, and the due bank is taken."""
-    device = Gradient(dut)
-    await device.start()
     lowest = [[-1 << device.deviation_width - 1] * 3]
     words = np.where(np.arange(COUNT) % 6, 0, -1 << device.word_width - 1)
     for pixels, moving in itertools.product((*range(1, 14), 15, 20), (False, True)):
@@ -309,9 +302,9 @@ async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
         if device.random.random() < 0.5:
             await device.commit()
         if moving:  # with en
-            dut.rst.value = 1
-            await RisingEdge(dut.clk)
-            dut.rst.value = 0
+            device.dut.rst.value = 1
+            await RisingEdge(device.dut.clk)
+            device.dut.rst.value = 0
         else:
             await device.bench.reset()
         device.forget()
@@ -325,12 +318,10 @@ async def reset_keeps_the_words_and_takes_the_bank_over(dut: Any) -> None:
     await device.read(3)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Gradient, milliseconds=20)
 @TRAFFIC
-async def a_cut_frame_does_no_harm_to_the_next(dut: Any, gap: float, pause: float) -> None:
+async def a_cut_frame_does_no_harm_to_the_next(device: Gradient) -> None:
     """Cut a frame short, which only an upset of a mark can do: the next frame is right."""
-    device = Gradient(dut, gap, pause)
-    await device.start()
     for pixels in (*range(1, 14), 20):
         await device.use(device.any_words())
         await device.send(3, 8, pixels)

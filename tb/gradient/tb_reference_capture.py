@@ -12,6 +12,7 @@ from cocotb.triggers import RisingEdge
 from tactile_depth.common.td_block_sum import CYCLES_TO_SUM
 from tactile_depth.configuration import DARKEST_LOG2
 from tactile_depth.gradient.reference_capture import reference_capture, reference_capture_clocks
+from tb.cases import on_bench
 from tb.common.capture_bench import request, request_after
 from tb.pixels import pack
 from tb.stream import REGRESS, Bench, StreamDriver, configuration, parameters, raster, sample, send_apart
@@ -24,7 +25,7 @@ FIELDS = ["pixel", "position", "bad"]
 class Capture:
     """Device, its memory, and the content that is expected when the capture is done."""
 
-    def __init__(self, dut: Any, gap: float, pause: float) -> None:
+    def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         self.config = configuration()
         (self.largest,) = parameters(dut, "MaxLog2")
@@ -174,12 +175,10 @@ class Capture:
             await self.send(self.chance.random() < bad)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
+@on_bench(Capture, milliseconds=100)
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]), ("log2", sample([0, 3, 1])))
-async def captures(dut: Any, gap: float, pause: float, log2: int) -> None:
+async def captures(device: Capture, gap: float, log2: int) -> None:
     """Capture frames in a row, with and without broken ones between."""
-    device = Capture(dut, gap, pause)
-    await device.start()
     await device.send()
     if len(device.places) > PIXELS and (log2 > 1 or gap):
         return
@@ -224,13 +223,11 @@ async def any_sum(dut: Any) -> None:
     assert device.captures == count
 
 
-@cocotb.test(timeout_time=200, timeout_unit="ms")
+@on_bench(Capture, milliseconds=200)
 @cocotb.parametrize(pause=[0.0, 0.4])
-async def requests_at_any_time(dut: Any, pause: float) -> None:
+async def requests_at_any_time(device: Capture) -> None:
     """Request a capture while idle, armed, summing and dividing, and in the cycles of a frame's first pixel, its last
     pixel and done."""
-    device = Capture(dut, 0.0, pause)
-    await device.start()
     size = len(device.places)
     waits = [0, 1, 2, 3, 5, size - 1, size, size + 1, size + 2, size + 3, size + 4, size + 5, 2 * size]
     waits += [size + device.clocks + offset for offset in (-90, -30, -4, -3, -2, -1, 0, 1, 2)]
@@ -242,22 +239,20 @@ async def requests_at_any_time(dut: Any, pause: float) -> None:
     await request_after(device, waits, size)
 
 
-@cocotb.test(timeout_time=100, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Capture, milliseconds=100)
+async def resets(device: Capture) -> None:
     """Reset during a capture: it ends, nothing is written after it, and the next request is served."""
-    device = Capture(dut, 0.0, 0.0)
-    await device.start()
     size = len(device.places)
     counts = [1, 2, 3, 4, 5, 6, size - 1, size, size + 1, size + 3, size + 4, size + 90, size + device.clocks - 2]
     for count in counts if size <= PIXELS else []:
         await device.request(0)
         sender = cocotb.start_soon(device.send())
         for _ in range(count):
-            await RisingEdge(dut.clk)
+            await RisingEdge(device.dut.clk)
         await device.bench.reset()
         if not sender.done():
             await sender
         for _ in range(8):
-            await RisingEdge(dut.clk)
+            await RisingEdge(device.dut.clk)
     await device.request(0)
     await device.until_done()

@@ -22,6 +22,7 @@ from tactile_depth.registers.event_registers import (
 )
 from tactile_depth.registers.register_map import WORD
 from tb import structs
+from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 
 COUNTER_ORDER = (  # names of the words of `counts`, from the lowest
@@ -116,11 +117,9 @@ async def each_event(dut: Any) -> None:
         assert shown == STATUS.pack(**{level: 1})
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def an_event_in_the_clock_of_its_clearing(dut: Any) -> None:
+@on_bench(Bench)
+async def an_event_in_the_clock_of_its_clearing(bench: Bench) -> None:
     """Raise an event in the cycle that clears its bit: it is kept. One in the cycle before is cleared."""
-    bench = Bench(dut)
-    await bench.start()
     for register in ("STATUS", "INTERRUPT_STATUS", "CONTROL"):
         for before, same in ((1, 0), (0, 1), (1, 1)):
             await bench.happen(*(EVENTS if before else ()), saturations=9 * before)
@@ -131,11 +130,9 @@ async def an_event_in_the_clock_of_its_clearing(dut: Any) -> None:
                 await bench.clock(write=(name, WORD, WHOLE))
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def counters_stay_at_the_top(dut: Any) -> None:
+@on_bench(Bench)
+async def counters_stay_at_the_top(bench: Bench) -> None:
     """Count up to all ones from a value near it, and through every bit: the counter stays there until it is cleared."""
-    bench = Bench(dut)
-    await bench.start()
     sources: dict[str, dict[str, Any]] = {name: {"events": event} for event, name in EVENT_COUNTERS.items()}
     for name in COUNTERS:
         event, step = sources.get(name, {}).get("events"), 1 if name in sources else 255
@@ -152,11 +149,9 @@ async def counters_stay_at_the_top(dut: Any) -> None:
         assert await bench.clock(read_at=name) == 0
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def counters_count_for_themselves(dut: Any) -> None:
+@on_bench(Bench)
+async def counters_count_for_themselves(bench: Bench) -> None:
     """Count on from random values: no counter depends on another one."""
-    bench = Bench(dut)
-    await bench.start()
     for _ in range(100):
         bench.set_counters(**{name: bench.random.getrandbits(32) for name in COUNTERS})
         await bench.clock(**bench.random_inputs())
@@ -164,22 +159,18 @@ async def counters_count_for_themselves(dut: Any) -> None:
             await bench.clock(read_at=name)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def the_last_latency_stays(dut: Any) -> None:
+@on_bench(Bench)
+async def the_last_latency_stays(bench: Bench) -> None:
     """Change the latency: the register follows only while it is valid."""
-    bench = Bench(dut)
-    await bench.start()
     for clocks in (0x1234_5678, WORD, 0, 34_567, *(1 << bit for bit in range(32))):
         await bench.clock(first_depth_latency=clocks, first_depth_latency_valid=1)
         await bench.clock(first_depth_latency=99, write=("CONTROL", 2, WHOLE))
         assert await bench.clock(read_at=LATENCY) == clocks
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def the_interrupt(dut: Any) -> None:
+@on_bench(Bench)
+async def the_interrupt(bench: Bench) -> None:
     """Check irq: high while a bit is set and not masked, one cycle late."""
-    bench = Bench(dut)
-    await bench.start()
     for event, bit in INTERRUPT_EVENTS.items():
         own = INTERRUPT_STATUS.field(bit).mask
         await bench.happen(event)
@@ -193,17 +184,13 @@ async def the_interrupt(dut: Any) -> None:
         assert not bench.model.irq
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_events(dut: Any) -> None:
+@on_bench(Bench)
+async def random_events(bench: Bench) -> None:
     """Drive random events, writes, reads and resets."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.random_clocks((*READ, "STATUS", "INTERRUPT_STATUS", "CONTROL"))
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def other_offsets(dut: Any) -> None:
+@on_bench(Bench)
+async def other_offsets(bench: Bench) -> None:
     """Access offsets that differ in one bit from that of a register: they are not taken for it."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.other_offsets((*READ, "CONTROL"))

@@ -9,6 +9,7 @@ import cocotb
 
 from tactile_depth.registers.register_map import REGISTERS, WORD
 from tactile_depth.registers.setting_registers import MASKS, RESETS, SETTINGS, SettingRegisters
+from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 
 
@@ -34,23 +35,19 @@ class Bench(RegisterBench):
         self.model.reset()
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_values(dut: Any) -> None:
+@on_bench(Bench)
+async def reset_values(bench: Bench) -> None:
     """Reset: every setting has the value of the map."""
-    bench = Bench(dut)
-    await bench.start()
     for name in SETTINGS:
         fields = [f for f in REGISTERS[name].fields if f.setting and f.reset is not None]
         assert RESETS[name] == sum((f.reset or 0) << f.low for f in fields)
         assert await bench.clock(read_at=name) == bench.model.resets[name]
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(name=list(SETTINGS))
-async def every_bit_and_byte(dut: Any, name: str) -> None:
+async def every_bit_and_byte(bench: Bench, name: str) -> None:
     """Write single bits and bytes: a write sets the bits of its strobed bytes, and no other bit."""
-    bench = Bench(dut)
-    await bench.start()
     for strobe in range(16):
         for word in (0, WORD, 0x5AA5_C33C):
             await bench.clock(write=(name, ~word & WORD, WHOLE), read_at=name)
@@ -61,17 +58,13 @@ async def every_bit_and_byte(dut: Any, name: str) -> None:
         assert await bench.clock(read_at=name) == 1 << bit & MASKS[name]
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_writes(dut: Any) -> None:
+@on_bench(Bench)
+async def random_writes(bench: Bench) -> None:
     """Drive random writes, reads and resets."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.random_clocks(tuple(SETTINGS))
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def other_offsets(dut: Any) -> None:
+@on_bench(Bench)
+async def other_offsets(bench: Bench) -> None:
     """Access offsets that differ in one bit from that of a register: they are not taken for it."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.other_offsets(tuple(SETTINGS))

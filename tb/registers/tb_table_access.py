@@ -6,11 +6,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import cocotb
-
 from tactile_depth.registers.register_map import TABLES, WORD
 from tactile_depth.registers.table_access import HIGH, INDEX, LOW, PORTS, SIZE, TableAccess
 from tb import structs
+from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 
 PARAMETERS = {"gradient": "GradientWords", "coefficients": "CoefficientWords"}
@@ -104,11 +103,9 @@ def built(bench: Bench) -> dict[int, int]:
     return {table: size for table, size in bench.model.sizes.items() if size}
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def entries_in_turn(dut: Any) -> None:
+@on_bench(Bench)
+async def entries_in_turn(bench: Bench) -> None:
     """Access entries in turn: TABLE_LOW increments the index, from the last entry to the first; TABLE_HIGH does not."""
-    bench = Bench(dut)
-    await bench.start()
     for table, size in built(bench).items():
         assert await bench.clock(read_at=SIZE, select=table) == size
         first = max(0, size - 2)
@@ -126,11 +123,9 @@ async def entries_in_turn(dut: Any) -> None:
             await bench.ask(LOW)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def neighbours_of_the_last_entry(dut: Any) -> None:
+@on_bench(Bench)
+async def neighbours_of_the_last_entry(bench: Bench) -> None:
     """Access the entries around the last one: the index returns to 0 after the last entry only."""
-    bench = Bench(dut)
-    await bench.start()
     for table, size in built(bench).items():
         for bit in range(size.bit_length()):
             index = (size - 1) ^ 1 << bit
@@ -143,11 +138,9 @@ async def neighbours_of_the_last_entry(dut: Any) -> None:
                 assert await bench.clock(read_at=INDEX) == index + 1
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def refused(dut: Any) -> None:
+@on_bench(Bench)
+async def refused(bench: Bench) -> None:
     """Refuse writes outside of the table, of some bytes only, or to a closed table, and reads outside of the table."""
-    bench = Bench(dut)
-    await bench.start()
     for table, size in bench.model.sizes.items():
         await bench.choose(table, 0)
         for strobe in range(16):
@@ -165,11 +158,9 @@ async def refused(dut: Any) -> None:
             assert await bench.clock(read_at=INDEX) == size
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def every_bit_of_index_and_upper_word(dut: Any) -> None:
+@on_bench(Bench)
+async def every_bit_of_index_and_upper_word(bench: Bench) -> None:
     """Write single bits and bytes: a write sets the bits of its strobed bytes, and no other bit."""
-    bench = Bench(dut)
-    await bench.start()
     for name in (INDEX, HIGH):
         for strobe in range(16):
             for word in (0, WORD, 0x5AA5_C33C):
@@ -181,11 +172,9 @@ async def every_bit_of_index_and_upper_word(dut: Any) -> None:
             await bench.clock(read_at=name)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def a_reset_in_a_read(dut: Any) -> None:
+@on_bench(Bench)
+async def a_reset_in_a_read(bench: Bench) -> None:
     """Reset one cycle after a read began: the table is not read in the reset."""
-    bench = Bench(dut)
-    await bench.start()
     table = next(iter(built(bench)))
     await bench.choose(table, 1)
     for name in PORTS:
@@ -197,17 +186,13 @@ async def a_reset_in_a_read(dut: Any) -> None:
         await bench.choose(table, 1)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_accesses(dut: Any) -> None:
+@on_bench(Bench)
+async def random_accesses(bench: Bench) -> None:
     """Drive random writes, reads, tables and resets."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.random_clocks((INDEX, HIGH, LOW, LOW, SIZE))
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def other_offsets(dut: Any) -> None:
+@on_bench(Bench)
+async def other_offsets(bench: Bench) -> None:
     """Access offsets that differ in one bit from that of a register: they are not taken for it."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.other_offsets((INDEX, HIGH, LOW, SIZE))

@@ -11,6 +11,7 @@ import cocotb
 from tactile_depth.registers.register_map import TABLES, WORD
 from tactile_depth.registers.table_banks import CAPTURES, COMMIT, TableBanks
 from tb import structs
+from tb.cases import on_bench
 from tb.registers.register_bench import WHOLE, RegisterBench
 
 ALL = (1 << len(TABLES)) - 1
@@ -98,11 +99,9 @@ class Bench(RegisterBench):
         return {"frame_start": int(rng.random() < 0.1), "cold_rst": int(rng.random() < 0.005)} | captures
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def change_overs(dut: Any) -> None:
+@on_bench(Bench)
+async def change_overs(bench: Bench) -> None:
     """Commit: tables change over with the next frame, and are pending and closed until the table has followed."""
-    bench = Bench(dut)
-    await bench.start()
     present = bench.model.present
     for tables in range(ALL + 1):
         before = bench.model.bank
@@ -121,11 +120,9 @@ async def change_overs(dut: Any) -> None:
         assert await bench.clock(read_at=COMMIT.name) == 0
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def a_frame_that_starts_with_the_commit(dut: Any) -> None:
+@on_bench(Bench)
+async def a_frame_that_starts_with_the_commit(bench: Bench) -> None:
     """Start a frame in the cycle of the commit: it still uses the old table."""
-    bench = Bench(dut)
-    await bench.start()
     for _ in range(2):
         before = bench.model.bank
         await bench.clock(write=(COMMIT.name, ALL, WHOLE), frame_start=1)
@@ -135,11 +132,9 @@ async def a_frame_that_starts_with_the_commit(dut: Any) -> None:
         await bench.follow()
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench)
+async def resets(bench: Bench) -> None:
     """Reset: commits that no frame has taken are dropped, and the banks stay. A cold reset clears the banks."""
-    bench = Bench(dut)
-    await bench.start()
     present = bench.model.present
     for cold in (0, 1):
         await bench.clock(write=(COMMIT.name, ALL, WHOLE))
@@ -156,12 +151,10 @@ async def resets(dut: Any) -> None:
         await bench.follow()
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(table=list(CAPTURES))
-async def captures(dut: Any, table: str) -> None:
+async def captures(bench: Bench, table: str) -> None:
     """Capture: a start makes a request, the capture closes only its table, and its end commits it."""
-    bench = Bench(dut)
-    await bench.start()
     register, start, bit = CAPTURES[table], START[table], COMMIT.field(table).mask
 
     def capturing(**flags: int) -> dict[str, Any]:
@@ -189,17 +182,13 @@ async def captures(dut: Any, table: str) -> None:
         await bench.follow()
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def random_writes(dut: Any) -> None:
+@on_bench(Bench)
+async def random_writes(bench: Bench) -> None:
     """Drive random commits, starts, frames, captures and resets."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.random_clocks((COMMIT.name, COMMIT.name, *(register.name for register in CAPTURES.values())))
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def other_offsets(dut: Any) -> None:
+@on_bench(Bench)
+async def other_offsets(bench: Bench) -> None:
     """Access offsets that differ in one bit from that of a register: they are not taken for it."""
-    bench = Bench(dut)
-    await bench.start()
     await bench.other_offsets((COMMIT.name, *(register.name for register in CAPTURES.values())))

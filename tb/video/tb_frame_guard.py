@@ -15,6 +15,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.video.frame_guard import FAULTS, frame_guard
 from tb.axis import BREAKS, SILENT, AxisMonitor, AxisSource, broken, faults_of, positions, profile, video
+from tb.cases import on_bench
 from tb.stream import CLOCK_NS, REGRESS, parameters, raster
 
 TIMEOUT = 5
@@ -132,20 +133,18 @@ STALLS = {
 }
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def long_silences(dut: Any) -> None:
+@on_bench(Bench)
+async def long_silences(bench: Bench) -> None:
     """Time out with every bit of the timeout and of the counter, which is set to a value near its end to save time."""
-    bench = Bench(dut)
-    await bench.start()
     powers = [1 << bit for bit in range(3, 32)]
     for timeout in (*powers, *(power - 1 for power in powers), *(bench.random.getrandbits(32) | 8 for _ in range(10))):
         await bench.reset(1, timeout)
         await bench.source.send(bench.frame()[:3])
-        await ClockCycles(dut.clk, 2)
-        dut.silence.value = timeout - 3
-        await ClockCycles(dut.clk, 4)
+        await ClockCycles(bench.dut.clk, 2)
+        bench.dut.silence.value = timeout - 3
+        await ClockCycles(bench.dut.clk, 4)
         assert not bench.collector.faults, f"timed out before {timeout} cycles"
-        await ClockCycles(dut.clk, 1)
+        await ClockCycles(bench.dut.clk, 1)
         assert bench.collector.faults == ["timed_out"], f"not timed out after {timeout} cycles"
 
 
@@ -184,12 +183,10 @@ async def words_before_the_first_frame(dut: Any, stalls: str) -> None:
         assert [frame.bad for frame in want.frames] == [False]
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def silence(dut: Any) -> None:
+@on_bench(Bench)
+async def silence(bench: Bench) -> None:
     """Pause at every position for `timeout` cycles and for one more. With a timeout of 0, or between frames, wait for
     ever."""
-    bench = Bench(dut)
-    await bench.start()
     for timeout in (0, 1, TIMEOUT):
         await bench.reset(1, timeout)
         for position in bench.places("timed_out"):
@@ -225,35 +222,31 @@ async def silence_without_movement(dut: Any) -> None:
     assert bench.collector.faults == ["timed_out"]
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def long_time_outs(dut: Any) -> None:
+@on_bench(Bench)
+async def long_time_outs(bench: Bench) -> None:
     """Time out with every bit of the register; the counter is set to a value near its end to save time."""
-    bench = Bench(dut)
-    await bench.start()
     left = 5
     for timeout in (*(1 << bit for bit in range(4, 32)), (1 << 32) - 1):
         await bench.reset(1, timeout)
         await bench.source.send(bench.frame()[:3])
-        await ClockCycles(dut.clk, 2)
-        dut.silence.value = timeout - left
-        await ClockCycles(dut.clk, left)
+        await ClockCycles(bench.dut.clk, 2)
+        bench.dut.silence.value = timeout - left
+        await ClockCycles(bench.dut.clk, left)
         assert not bench.collector.faults, f"timeout {timeout}: too early"
-        await ClockCycles(dut.clk, 2)
+        await ClockCycles(bench.dut.clk, 2)
         assert bench.collector.faults == ["timed_out"], f"timeout {timeout}"
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(clocks=[1, 2, 16])
-async def resets(dut: Any, clocks: Any) -> None:
+async def resets(bench: Bench, clocks: Any) -> None:
     """Reset at every position of a good frame and of the filler of a broken one; the next frame is right."""
-    bench = Bench(dut)
-    await bench.start()
     for position in bench.places("start_early"):
         for fault in (None, "row_short"):
             words = bench.frame()
             words = words if fault is None else broken(words, fault, 0, bench.columns)
             cocotb.start_soon(bench.source.send(words))
-            await ClockCycles(dut.clk, position + 1)
+            await ClockCycles(bench.dut.clk, position + 1)
             await bench.reset(clocks)
             await bench.source.send(bench.frame())
             want = await bench.check(f"reset of {clocks} clocks at {position}, {fault}")
