@@ -23,8 +23,7 @@ module fv_area_average #(
   logic out_valid, out_last, out_user;
   logic [23:0] out_pixel;
   area_average #(.Rows(Rows), .Columns(Columns), .Numerator(1), .Denominator(1), .Bits(8), .Bayer(0)) dut (
-    .clk, .rst, .en, .in_valid, .in_samples('0), .in_colour('0), .in_row_start, .in_frame_start, .in_abort, .in_gains('0), .out_valid,
-    .out_pixel, .out_last, .out_user
+    .*, .in_samples('0), .in_colour('0), .in_gains('0)
   );
 
   logic started;

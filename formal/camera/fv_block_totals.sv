@@ -37,13 +37,8 @@ module fv_block_totals #(
   logic [3*AreaWidth-1:0] out_areas;
   block_totals #(
     .Columns(Columns), .Numerator(Numerator), .Denominator(Denominator), .Width(Width), .Bayer(Bayer)
-  ) dut (
-    .clk, .rst, .en, .in_row_start, .in_frame_start, .in_blue_row, .in_ends, .in_sums, .in_red_columns, .out_valid,
-    .out_totals, .out_areas
-  );
-  bind fv_block_totals.dut.u_line ram_check #(.Depth(Depth)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  ) dut (.*);
+  bind fv_block_totals.dut.u_line ram_check #(.Depth(Depth)) u_check (.*);
 
   logic allowed, started;
   logic [7:0] column;

@@ -18,9 +18,7 @@ module fv_block_weights #(
 
   logic [Width-1:0] weight;
   logic block_ends;
-  block_weights #(.Numerator(Numerator), .Denominator(Denominator)) dut (
-    .clk, .en, .step, .restart, .weight, .block_ends
-  );
+  block_weights #(.Numerator(Numerator), .Denominator(Denominator)) dut (.*);
 
   logic [15:0] begin_q, begins, ends;  // of the pixel, from the beginning of a block
   logic known = 1'b0;                  // an axis has begun

@@ -32,9 +32,7 @@ module fv_camera_setup #(
   camera_setup #(
     .Entries(Entries), .AddressBytes(AddressBytes), .DeviceId(DeviceId), .QuarterClocks(QuarterClocks),
     .MillisecondClocks(MillisecondClocks), .XclkHalfClocks(2), .Attempts(Attempts)
-  ) dut (
-    .clk, .rst, .restart, .xclk, .power_down, .reset_n, .sio_c, .sio_d_low, .sio_d, .done, .failed, .entry, .found
-  );
+  ) dut (.*);
 
   localparam logic [2:0] Fetch = 3'd0, Decode = 3'd1, Wait = 3'd2, Send = 3'd3;
   localparam logic [1:0] VerifiedWrite = 2'd0, Pins = 2'd3;

@@ -34,11 +34,7 @@ module fv_camera_window #(
   logic [23:0] out_data;
   camera_window #(
     .WindowColumns(Width), .WindowRows(Height), .WordsPerPixel(WordsPerPixel), .PixelPairs(PixelPairs)
-  ) dut (
-    .clk, .rst, .en, .columns(13'(columns)), .rows(13'(rows)), .window_x(13'(window_x)), .window_y(13'(window_y)),
-    .s_valid, .s_ready, .s_data, .s_last, .s_user, .out_valid, .out_data, .out_inside, .out_odd_row, .out_odd_column,
-    .out_row_start, .out_frame_start, .out_abort, .row_short, .row_long, .start_missing, .start_early, .window_outside
-  );
+  ) dut (.*, .columns(13'(columns)), .rows(13'(rows)), .window_x(13'(window_x)), .window_y(13'(window_y)));
 
   logic started;
   assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
@@ -88,8 +84,7 @@ module fv_camera_window #(
   logic [23:0] data;
   logic [7:0] low;
   kept #(.Width(31)) u_kept (
-    .clk, .rst, .en, .held,
-    .out({out_valid, out_abort, out_data, out_inside, out_odd_row, out_odd_column, out_row_start, out_frame_start})
+    .*, .out({out_valid, out_abort, out_data, out_inside, out_odd_row, out_odd_column, out_row_start, out_frame_start})
   );
   always_ff @(posedge clk) begin
     settings_q <= {columns, rows, window_x, window_y};

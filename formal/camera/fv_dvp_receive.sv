@@ -20,10 +20,7 @@ module fv_dvp_receive (
 
   logic [7:0] m_axis_tdata, frames_lost;
   logic m_axis_tvalid, m_axis_tlast, m_axis_tuser;
-  dvp_receive dut (
-    .pclk, .vsync, .href, .data, .clk, .rst, .m_axis_tdata, .m_axis_tvalid, .m_axis_tready, .m_axis_tlast,
-    .m_axis_tuser, .frames_lost
-  );
+  dvp_receive dut (.*);
 
   // The camera's side.
 

@@ -30,10 +30,7 @@ module fv_pixel_format
   logic out_valid, out_row_start, out_frame_start, out_abort;
   logic [1:0] out_colour;
   logic [Channels*Width-1:0] out_samples;
-  pixel_format #(.Format(Format), .Phase(Phase)) dut (
-    .clk, .rst, .en, .in_valid, .in_data, .in_inside, .in_odd_row, .in_odd_column, .in_row_start, .in_frame_start,
-    .in_abort, .out_valid, .out_samples, .out_colour, .out_row_start, .out_frame_start, .out_abort
-  );
+  pixel_format #(.Format(Format), .Phase(Phase)) dut (.*);
 
   logic allowed, started;
   protocol_pixel_format #(.Format(Format)) u_protocol (

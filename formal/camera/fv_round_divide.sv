@@ -19,9 +19,7 @@ module fv_round_divide #(
   typedef logic signed [Wide-1:0] wide_t;
 
   logic [7:0] mean;
-  round_divide #(.TotalWidth(TotalWidth), .WeightWidth(WeightWidth), .Drop(Drop)) dut (
-    .clk, .en, .total, .weight, .mean
-  );
+  round_divide #(.TotalWidth(TotalWidth), .WeightWidth(WeightWidth), .Drop(Drop)) dut (.*);
   logic allowed;
   protocol_round_divide #(.WeightWidth(WeightWidth)) u_protocol (.clk, .en, .weight, .holds(allowed));
   always_comb assume (allowed);

@@ -28,9 +28,7 @@ module fv_row_sums #(
   logic out_ends;
   logic [Lanes*SumWidth-1:0] out_sums;
   logic [BlockWidth-1:0] out_red_columns;
-  row_sums #(.Numerator(Numerator), .Denominator(Denominator), .Width(Width), .Bayer(Bayer)) dut (
-    .clk, .rst, .en, .in_valid, .in_samples, .in_blue_column, .in_row_start, .out_ends, .out_sums, .out_red_columns
-  );
+  row_sums #(.Numerator(Numerator), .Denominator(Denominator), .Width(Width), .Bayer(Bayer)) dut (.*);
 
   logic allowed, started;
   protocol_row_sums u_protocol (.clk, .rst, .en, .in_valid, .in_row_start, .out_ends, .holds(allowed));

@@ -28,8 +28,7 @@ module protocol_camera_front_end #(
   logic [15:0] column = '0;
   assign reset = rst | ~holds;
   axis_source #(.Width(26)) u_source (
-    .clk, .rst, .reset, .valid(s_axis_tvalid), .ready(s_axis_tready),
-    .word({s_axis_tuser, s_axis_tlast, s_axis_tdata}), .holds
+    .*, .valid(s_axis_tvalid), .ready(s_axis_tready), .word({s_axis_tuser, s_axis_tlast, s_axis_tdata})
   );
   always_ff @(posedge clk) begin
     live <= live | reset;

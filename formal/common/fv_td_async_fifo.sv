@@ -26,9 +26,7 @@ module fv_td_async_fifo #(
 
   logic write_ready, read_valid;
   logic [Width-1:0] read_data;
-  td_async_fifo #(.Width(Width), .DepthLog2(DepthLog2)) dut (
-    .write_clk, .write_valid, .write_ready, .write_data, .read_clk, .read_valid, .read_ready, .read_data
-  );
+  td_async_fifo #(.Width(Width), .DepthLog2(DepthLog2)) dut (.*);
 
   // Words, modulo 2^CountWidth: fewer are inside.
 

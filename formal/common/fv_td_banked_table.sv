@@ -29,10 +29,7 @@ module fv_td_banked_table #(
 
   logic table_in_use;
   logic [Width-1:0] read_word, free_word;
-  td_banked_table #(.Width(Width), .Depth(Depth)) dut (
-    .clk, .rst, .en, .table_bank, .table_in_use, .frame_start, .change, .read, .read_address, .read_word,
-    .free_write, .free_write_address, .free_write_word, .free_read, .free_read_address, .free_word
-  );
+  td_banked_table #(.Width(Width), .Depth(Depth)) dut (.*);
 
   logic allowed, started;
   protocol_td_banked_table #(.Depth(Depth)) u_protocol (
@@ -78,12 +75,8 @@ module fv_td_banked_table #(
     end
   end
 
-  bind fv_td_banked_table.dut.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
-  bind fv_td_banked_table.dut.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_td_banked_table.dut.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_0 (.*);
+  bind fv_td_banked_table.dut.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (.*);
 
 endmodule
 

@@ -34,10 +34,7 @@ module fv_td_block_sum #(
   logic [SumWidth-1:0] read_sums, write_sums;
   td_block_sum #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(1), .ColumnLog2(ColumnLog2), .Width(Width), .Signed(Signed), .SumWidth(SumWidth)
-  ) dut (
-    .clk, .rst, .in_valid, .in_frame_start, .in_first_frame, .in_last_frame, .in_data, .read_en, .read_block, .read_sums,
-    .write_en, .write_block, .write_sums, .write_complete
-  );
+  ) dut (.*);
   td_ram #(.Width(SumWidth), .Depth(Blocks)) u_ram (
     .clk, .write_en, .write_address(write_block), .write_data(write_sums),
     .read_en, .read_address(read_block), .read_data(read_sums)

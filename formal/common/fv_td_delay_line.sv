@@ -37,9 +37,7 @@ module fv_td_delay_line #(
   end
 
   if (Delay > 4) begin : g_memory  // longer than the longest shift register
-    bind fv_td_delay_line.dut.g_memory.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (
-      .clk, .write_en, .write_address, .read_en, .read_address
-    );
+    bind fv_td_delay_line.dut.g_memory.u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
   end
 
 endmodule

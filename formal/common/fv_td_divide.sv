@@ -19,9 +19,7 @@ module fv_td_divide #(
   logic done, overflow;
   logic [QuotientWidth-1:0] quotient;
   logic [DivisorWidth-1:0] remainder;
-  td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) dut (
-    .clk, .rst, .start, .numerator, .divisor, .done, .quotient, .remainder, .overflow
-  );
+  td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) dut (.*);
 
   logic allowed, started;
   protocol_td_divide #(.DivisorWidth(DivisorWidth), .QuotientWidth(QuotientWidth)) u_protocol (

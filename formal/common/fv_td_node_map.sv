@@ -65,11 +65,7 @@ module fv_td_node_map
   td_node_map #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(Width), .Signed(Signed), .Channels(Channels),
     .Lanes(Lanes), .DataWidth(1)
-  ) dut (
-    .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use, .capture_write, .capture_write_node,
-    .capture_words, .capture_read, .capture_read_node, .capture_read_words, .in_valid, .in_frame_start, .in_data,
-    .out_valid, .out_data, .out_words, .active
-  );
+  ) dut (.*);
 
   // The accesses that reach the table, and the answer to them (fv_td_table_port).
   logic table_write, table_read;
@@ -121,9 +117,7 @@ module fv_td_node_map
   logic [Latency-1:0] valid;
   logic held, read_known, changed, used, captured;
   logic [Side-1:0][Width-1:0] captured_words, captured_now;
-  fixed_delay #(.Latency(Latency)) u_delay (
-    .clk, .rst, .en, .in_valid, .in_data, .out_valid, .out_data, .active, .valid, .held
-  );
+  fixed_delay #(.Latency(Latency)) u_delay (.*);
   logic [Lanes*Width-1:0] out, out_q;  // of the channel
   for (genvar lane = 0; lane < Lanes; lane++) begin : g_out
     assign out[lane*Width+:Width] = out_words[(lane*Channels+Channel)*Width+:Width];

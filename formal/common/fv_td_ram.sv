@@ -21,9 +21,7 @@ module fv_td_ram #(
 );
 
   logic [Width-1:0] read_data;
-  td_ram #(.Width(Width), .Depth(Depth), .Style(Style)) dut (
-    .clk, .write_en, .write_address, .write_data, .read_en, .read_address, .read_data
-  );
+  td_ram #(.Width(Width), .Depth(Depth), .Style(Style)) dut (.*);
   logic allowed;
   protocol_td_ram #(.Depth(Depth)) u_protocol (
     .write_en, .write_address, .read_en, .read_address, .holds(allowed)

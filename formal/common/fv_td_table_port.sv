@@ -24,9 +24,7 @@ module fv_td_table_port
   logic write, read;
   logic [IndexWidth-1:0] index;
   logic [Words*Width-1:0] word;
-  td_table_port #(
-    .Select(Select), .IndexWidth(IndexWidth), .Width(Width), .Words(Words), .Signed(Signed)
-  ) dut (.*);
+  td_table_port #(.Select(Select), .IndexWidth(IndexWidth), .Width(Width), .Words(Words), .Signed(Signed)) dut (.*);
 
   logic started = 1'b0;
   logic own, rst_q, reads_q, known;  // known: an entry was read

@@ -33,9 +33,7 @@ module protocol_td_block_sum #(
     live <= live | reset;
     begun <= ~reset & (begun | in_valid);
   end
-  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (
-    .clk, .reset, .en(1'b1), .in_valid, .place, .row, .column
-  );
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.*, .en(1'b1));
   assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign counts = live & ~reset;
   assign counts_read_block = counts & read_en;

@@ -51,12 +51,8 @@ module protocol_td_node_map #(
     captured <= capture_read & holds;
     if (reset || (en && in_valid && &place[1:0])) named <= table_bank;
   end
-  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (
-    .clk, .reset, .en, .in_valid, .place, .row, .column
-  );
-  table_accesses #(.Select(Select), .Entries(Nodes << $clog2(Channels))) u_accesses (
-    .clk, .rst, .holds, .table_command, .write, .read, .index(unused_index), .idle, .legal, .known
-  );
+  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (.*);
+  table_accesses #(.Select(Select), .Entries(Nodes << $clog2(Channels))) u_accesses (.*, .index(unused_index));
   assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign settled = table_bank == table_in_use & named == table_in_use;
   assign holds = legal

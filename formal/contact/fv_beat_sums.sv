@@ -20,9 +20,7 @@ module fv_beat_sums #(
   logic signed [VolumeWidth-1:0] volume;
   logic signed [Width-1:0] peak;
   logic [OffsetWidth-1:0] peak_offset, least_offset, greatest_offset;
-  beat_sums #(.Width(Width), .Lanes(Lanes)) dut (
-    .clk, .above, .data, .count, .offset_sum, .volume, .peak, .peak_offset, .least_offset, .greatest_offset
-  );
+  beat_sums #(.Width(Width), .Lanes(Lanes)) dut (.*);
 
   logic [Latency-1:0] known = '0;
   logic [Latency*Lanes-1:0] above_q;

@@ -21,9 +21,7 @@ module fv_centroid #(
 
   logic done;
   logic [MeanWidth-1:0] column, row;
-  centroid #(.PositionWidth(PositionWidth), .AreaWidth(AreaWidth)) dut (
-    .clk, .rst, .start, .column_sum, .row_sum, .area, .done, .column, .row
-  );
+  centroid #(.PositionWidth(PositionWidth), .AreaWidth(AreaWidth)) dut (.*);
 
   logic allowed, started;
   protocol_centroid #(.PositionWidth(PositionWidth), .AreaWidth(AreaWidth)) u_protocol (

@@ -22,9 +22,7 @@ module fv_contact_debounce #(
   assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   logic touching, touching_next, began, ended;
-  contact_debounce #(.AreaWidth(AreaWidth)) dut (
-    .clk, .rst, .area_valid, .area, .minimum_area, .debounce, .touching_next, .touching, .began, .ended
-  );
+  contact_debounce #(.AreaWidth(AreaWidth)) dut (.*);
 
   logic [7:0] debounce_q;
   logic [Most-1:0] against;  // of the last frames since a reset or a change, the newest in bit 0

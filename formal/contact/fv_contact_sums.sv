@@ -37,10 +37,7 @@ module fv_contact_sums
   contact_sums_t sums;
   contact_sums #(
     .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
-  ) dut (
-    .clk, .rst, .in_valid, .in_position, .in_data, .on_threshold(32'(on_level)), .off_threshold(32'(off_level)), .touching,
-    .area_valid, .area, .sums_valid, .sums
-  );
+  ) dut (.*, .on_threshold(32'(on_level)), .off_threshold(32'(off_level)));
 
   logic allowed, started;
   logic [$clog2(Pixels/Lanes)-1:0] beat;

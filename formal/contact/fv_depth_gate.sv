@@ -26,10 +26,7 @@ module fv_depth_gate
   logic en, event_dropped, m_valid, tap_valid;
   depth_position_t m_position, tap_position;
   logic [Width-1:0] m_data, tap_data;
-  depth_gate #(.Width(Width)) dut (
-    .clk, .rst, .drop_frames, .en, .in_valid, .in_position, .in_data,
-    .event_dropped, .m_valid, .m_ready, .m_position, .m_data, .tap_valid, .tap_position, .tap_data
-  );
+  depth_gate #(.Width(Width)) dut (.*);
 
   logic allowed, started;
   protocol_depth_gate #(.Width(Width)) u_protocol (

@@ -23,10 +23,7 @@ module fv_record_packets #(
   logic record_valid, record_lost, m_event_tvalid, m_event_tlast;
   logic [32*Words-1:0] record;
   logic [31:0] m_event_tdata;
-  record_packets #(.Words(Words)) dut (
-    .clk, .rst, .new_valid, .new_record, .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid,
-    .m_event_tready, .m_event_tlast
-  );
+  record_packets #(.Words(Words)) dut (.*);
 
   logic [32*Words-1:0] newest, record_q;
   logic [3:0] watched, word;

@@ -19,9 +19,7 @@ module fv_threshold_comparator #(
 );
 
   logic contact;
-  threshold_comparator #(.Width(Width), .Lanes(Lanes)) dut (
-    .clk, .rst, .in_valid, .in_frame_start, .in_data, .threshold, .hold, .contact
-  );
+  threshold_comparator #(.Width(Width), .Lanes(Lanes)) dut (.*);
 
   logic allowed, started;
   protocol_threshold_comparator u_protocol (.clk, .rst, .in_valid, .in_frame_start, .holds(allowed));

@@ -23,9 +23,7 @@ module protocol_contact_events #(
 
   logic reset;
   assign {counts_m_event_tdata, counts_m_event_tlast} = {2{counts & m_event_tvalid}};
-  depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (
-    .clk, .rst, .in_valid, .in_position, .place, .holds, .reset, .counts
-  );
+  depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (.*);
 
 endmodule
 

@@ -25,9 +25,7 @@ module protocol_contact_sums #(
   logic reset;
   assign counts_area = counts & area_valid;
   assign counts_sums = counts & sums_valid;
-  depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (
-    .clk, .rst, .in_valid, .in_position, .place, .holds, .reset, .counts
-  );
+  depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (.*);
 
 endmodule
 

@@ -28,10 +28,7 @@ module fv_frame_output
   logic active, out_of_step, out_valid;
   depth_position_t out_position;
   logic [Width-1:0] out_data;
-  frame_output #(.Width(Width), .Rows(Rows), .Columns(Columns)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .in_due, .in_bad, .active, .out_of_step,
-    .out_valid, .out_position, .out_data
-  );
+  frame_output #(.Width(Width), .Rows(Rows), .Columns(Columns)) dut (.*);
 
   logic started;
   assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);

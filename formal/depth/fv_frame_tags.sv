@@ -19,9 +19,7 @@ module fv_frame_tags #(
 
   logic due, held;
   logic [Width-1:0] due_tag;
-  frame_tags #(.Width(Width), .Latency(Latency), .Pixels(Pixels)) dut (
-    .clk, .rst, .en, .push, .tag, .due, .due_tag, .held
-  );
+  frame_tags #(.Width(Width), .Latency(Latency), .Pixels(Pixels)) dut (.*);
 
   logic allowed, started;
   protocol_frame_tags #(.Pixels(Pixels)) u_protocol (.clk, .rst, .en, .push, .holds(allowed));

@@ -41,10 +41,7 @@ module fv_zero_capture #(
   logic [Side*Width-1:0] map_write_zero;
   zero_capture #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .MaxLog2(MaxLog2), .Lanes(Lanes)
-  ) dut (
-    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_frame_start, .in_frame_end, .in_data,
-    .map_write, .map_write_node, .map_write_zero
-  );
+  ) dut (.*);
 
   logic [15:0] row_in, column_in, row, column;
   logic [1:0] given;
@@ -175,9 +172,7 @@ module fv_zero_capture #(
     end
   end
 
-  bind fv_zero_capture.dut.u_sums ram_check #(.Depth(Depth)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_zero_capture.dut.u_sums ram_check #(.Depth(Depth)) u_check (.*);
 
 endmodule
 

@@ -4,9 +4,6 @@
 // depth is counted once, nothing else is. A frame is inside from the clock behind its first beat until its last has
 // left, whatever follows it. The map is told where frames begin; a zero offset that was written, by the bus or the
 // capture, reads back.
-//
-// Assumed: frames in raster order, whole but for a reset; nothing is written or read while a change-over is due (what
-// is then read: fv_td_node_map); bus and capture one at a time.
 
 `default_nettype none
 
@@ -45,10 +42,7 @@ module fv_zero_offset
   logic [$clog2(Lanes):0] saturations;
   logic [2:0] out_position;  // frame_start, row_end, frame_end
   logic [Lanes*Width-1:0] out_data;
-  zero_offset #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .Lanes(Lanes)) dut (
-    .clk, .rst, .en, .table_command, .table_answer, .table_bank, .table_in_use,
-    .capture_write, .capture_write_node, .capture_zero, .in_valid, .in_position, .in_data, .out_valid, .out_position, .out_data, .active, .saturations
-  );
+  zero_offset #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .Lanes(Lanes)) dut (.*);
 
   // The accesses that reach the table, and the answer to them (fv_td_table_port).
   logic table_write, table_read;
@@ -59,23 +53,15 @@ module fv_zero_offset
     .index(table_index), .word(table_word), .free_word(asked_word)
   );
 
-  logic [3:0] row, column, position;
-  raster_counter #(.Rows(Rows), .Columns(Columns / Lanes)) u_raster (
-    .clk, .rst, .en, .in_valid, .row, .column, .position
+  logic allowed, started;
+  logic [2:0] given;
+  logic [15:0] row, column;
+  protocol_zero_offset #(.Rows(Rows), .Columns(Columns), .BlockLog2(1), .Lanes(Lanes)) u_protocol (
+    .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .capture_write, .capture_write_node, .in_valid,
+    .in_position, .out_valid, .row, .column, .given_in_position(given), .holds(allowed)
   );
-  logic started = 1'b0;
+  assumed u_assumed (.clk, .rst, .allowed(allowed && in_position == given), .started);
   logic [1:0] read_left;  // clocks until what was read stands
-  logic named;            // bank of the frame that came last
-  always_ff @(posedge clk) if (rst || (en && in_valid && in_position[2])) named <= table_bank;
-  always_comb begin
-    if (!started) assume (rst);
-    if (in_valid) assume (in_position == {&position[1:0], position[3], &position[3:2]});
-    assume (32'(table_index) < Nodes && 32'(capture_write_node) < Nodes);
-    if (rst || table_bank != table_in_use || named != table_in_use || read_left != 0) begin
-      assume (!table_write && !capture_write && !table_read);
-    end
-    assume (2'(table_write) + 2'(capture_write) + 2'(table_read) < 2'd2);
-  end
 
   // The beat that is followed, and the words on their way.
   logic [ToOut-1:0] valid;
@@ -84,7 +70,7 @@ module fv_zero_offset
   logic [$clog2(Lanes):0] clips, clips_q;  // of the beat
   logic [2:0] position_followed;
   logic [Lanes*Width-1:0] depths, limited, expected, zero_words;
-  logic [Lanes*Width+3:0] out_q;
+  kept #(.Width(Lanes * Width + 4)) u_kept (.clk, .rst, .en, .out({out_valid, out_position, out_data}), .held);
   assign zero_words = dut.zero_words;
   assign subtracts = en && follows && age == 4'(ToZero);
   always_comb begin
@@ -97,9 +83,6 @@ module fv_zero_offset
     end
   end
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_valid, out_position, out_data};
     moved <= en && !rst && valid[ToZero-1];
     counted <= subtracts;
     left <= en && !rst && out_valid && out_position[0];
@@ -141,7 +124,7 @@ module fv_zero_offset
     end
     read_left <= table_read ? 2'd1 : read_left - 2'(read_left != 0);
     if (table_read) begin
-      read_known <= 1'b1;
+      read_known <= u_protocol.u_zeros.settled;  // what is read while a change is due: fv_td_node_map
       asked_word <= table_in_use ? words_0[table_index] : words_1[table_index];
     end
     if (rst) begin
@@ -158,7 +141,6 @@ module fv_zero_offset
         position_travels: assert (out_position == position_followed);
         subtracted: assert (out_data == expected);
       end
-      if (held) holds: assert ({out_valid, out_position, out_data} == out_q);
       if (counted) clipped_counted: assert (saturations == clips_q);
       if (!moved) once: assert (saturations == '0);
       frame_inside: assert (active == (row != '0 || column != '0 || valid != '0));
@@ -176,7 +158,7 @@ module fv_zero_offset
   // The map is told where frames begin, as it assumes.
   logic map_start;
   assign map_start = dut.u_map.in_frame_start;
-  always_comb if (started && in_valid) frame_begins: assert (map_start == (row == '0 && column == '0));
+  always_comb if (started && in_valid && !rst) frame_begins: assert (map_start == (row == '0 && column == '0));
   bind fv_zero_offset.dut.u_map.g_node[0].g_table[0].u_words.g_bank[0].u_ram ram_check #(
     .Depth(Depth), .Defined(0)
   ) u_check_0 (.clk, .write_en, .write_address, .read_en, .read_address);

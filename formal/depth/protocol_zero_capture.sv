@@ -29,9 +29,7 @@ module protocol_zero_capture #(
   logic live = 1'b0;
   logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst;
-  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (
-    .clk, .reset(rst), .en, .in_valid, .place, .row, .column
-  );
+  raster_places #(.Rows(Rows), .Columns(Columns / Lanes)) u_places (.*, .reset(rst));
   assign given_in_frame_start = in_valid & ~rst ? &place[1:0] : in_frame_start;
   assign given_in_frame_end = in_valid & ~rst ? &place[3:2] : in_frame_end;
   assign {counts_busy, counts_done} = {2{live & ~rst}};

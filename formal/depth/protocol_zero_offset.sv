@@ -22,6 +22,8 @@ module protocol_zero_offset #(
   input  logic                 in_valid,
   input  logic [2:0]           in_position,  // frame_start, row_end, frame_end
   input  logic                 out_valid,
+  output logic [15:0]          row,
+  output logic [15:0]          column,            // of the beat
   output logic [2:0]           given_in_position,
   output logic                 holds,
   output logic                 counts_out_valid,
@@ -40,10 +42,8 @@ module protocol_zero_offset #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Lanes(Lanes),
     .Select(td_register_map_pkg::TableSelectZero)
   ) u_zeros (
-    .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .capture_write, .capture_write_node,
-    .capture_read(1'b0), .capture_read_node('0), .in_valid, .in_frame_start(in_position[2]), .out_valid,
-    .given_in_frame_start(), .row(), .column(), .place, .holds, .counts_out_valid, .counts_out_data,
-    .counts_out_words(), .counts_active, .counts_table_in_use, .counts_table_answer, .counts_capture_read_words()
+    .*, .capture_read(1'b0), .capture_read_node('0), .in_frame_start(in_position[2]), .given_in_frame_start(),
+    .counts_out_words(), .counts_capture_read_words()
   );
   assign given_in_position = in_valid & ~rst ? {&place[1:0], place[3], &place[3:2]} : in_position;
   assign counts_out_position = counts_out_data;

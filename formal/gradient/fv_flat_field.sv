@@ -43,33 +43,22 @@ module fv_flat_field #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(1), .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset),
     .OutWidth(OutWidth), .Flat(Flat)
   ) dut (
-    .clk, .rst, .en, .dark_level, .table_command, .table_answer, .table_bank, .table_in_use,
-    .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0), .capture_read_node('0),
-    .capture_read_gains, .in_valid, .in_pixel, .in_position,
-    .out_valid, .out_position, .out_red, .out_green, .out_blue, .dark, .saturations
+    .*, .capture_write(1'b0), .capture_write_node('0), .capture_gains('0), .capture_read(1'b0), .capture_read_node('0)
   );
 
-  logic [3:0] row, column;
-  raster_source #(.Rows(Rows), .Columns(Columns)) u_source (.clk, .rst, .en, .in_valid, .in_position, .row, .column);
-  logic started = 1'b0;
-  always_ff @(posedge clk) started <= 1'b1;
-  always_comb begin
-    if (!started) assume (rst);
-    assume ((in_pixel & ~24'h010101) == '0);
-  end
+  // Pixels in raster order, as the protocol has them; what it asks of the table these properties do not need.
+  logic started;
+  logic [3:0] place;
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.*, .reset(rst), .row(), .column());
+  assumed u_assumed (.clk, .rst, .allowed(!in_valid || in_position == place), .started);
+  always_comb assume ((in_pixel & ~24'h010101) == '0);
 
   if (Meets != 0) begin : g_meets
-    bind fv_flat_field.dut flat_field_meets u_check (
-      .clk, .rst, .en, .choose(fv_flat_field.choose), .dark_level, .in_valid, .in_pixel, .in_position, .gain_valid,
-      .gain_position, .dim, .colours
-    );
+    bind fv_flat_field.dut flat_field_meets u_check (.*, .choose(fv_flat_field.choose));
   end else begin : g_leaves
     bind fv_flat_field.dut flat_field_leaves #(
       .GainWidth(GainWidth), .Drop(Drop), .Offset(Offset), .OutWidth(OutWidth), .Flat(Flat)
-    ) u_check (
-      .clk, .rst, .en, .gain_valid, .gain_position, .dim, .colours, .gains, .out_valid, .out_position, .out_red, .out_green,
-      .out_blue, .dark, .saturations
-    );
+    ) u_check (.*);
   end
 
 endmodule

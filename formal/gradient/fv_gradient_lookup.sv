@@ -41,8 +41,12 @@ module fv_gradient_lookup
     .index(table_index), .word(table_word), .free_word(asked_word)
   );
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst && !table_bank);
+  logic allowed, started;
+  protocol_gradient_lookup #(.BitsPerChannel(BitsPerChannel)) u_protocol (
+    .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .in_valid, .in_position, .out_valid, .holds(allowed)
+  );
+  assumed u_assumed (.clk, .rst, .allowed, .started);
+  always_comb if (!started) assume (!table_bank);
 
   // The table as the register map describes it: red uppermost, then green, then blue.
   logic [2*Width-1:0] bank_0[1 << IndexWidth];
@@ -66,15 +70,11 @@ module fv_gradient_lookup
   logic [3:0] valid;           // of the pixels 1 to 4 enabled clocks ago
   logic [15:0] place;
   logic [8*Width-1:0] slopes;
-  logic begun;                 // the last pixel taken was the first of a frame
   logic held;
-  logic [4+2*Width:0] out_q;
+  kept #(.Width(5 + 2 * Width)) u_kept (.clk, .rst, .en, .out({out_valid, out_position, out_gx, out_gy}), .held);
   logic asked;                 // a read a clock ago
   logic read_known, changed_over;
   always_ff @(posedge clk) begin
-    started <= 1'b1;
-    held <= ~en & ~rst;
-    out_q <= {out_valid, out_position, out_gx, out_gy};
     in_use <= rst ? table_bank : used;
     if (rst || begins) named <= table_bank;
     if (en) starts_q <= begins;
@@ -83,7 +83,6 @@ module fv_gradient_lookup
     if (table_write && !in_use) bank_1[table_index] <= table_word;
     if (en) begin
       valid <= {valid[2:0], in_valid};
-      begun <= begins;
       place <= {place[11:0], in_position};
       slopes <= {slopes[6*Width-1:0], (begins ? table_bank : named) ? bank_1[index] : bank_0[index]};
     end
@@ -99,17 +98,11 @@ module fv_gradient_lookup
     end
   end
   always_comb begin
-    if (table_write) assume (table_bank == in_use && !(starts_q && named != in_use) && !table_read);
-    if (begun && in_valid) assume (!(&in_position[1:0]));
-  end
-
-  always_comb begin
     if (started) begin
       bank_shown: assert (table_in_use == in_use);
       valid_travels: assert (out_valid == valid[3]);
       if (out_valid) place_travels: assert (out_position == place[15:12]);
       if (out_valid) slopes_of_index: assert ({out_gy, out_gx} == slopes[6*Width+:2*Width]);
-      if (held) holds: assert ({out_valid, out_position, out_gx, out_gy} == out_q);
       if (read_known) reads_spare: assert (table_answer == expected_answer);
       from_power_up: cover (out_valid && written == '0);
       from_write: cover (out_valid && changed_over && in_valid && valid == 4'b1111 && held);
@@ -117,12 +110,8 @@ module fv_gradient_lookup
     end
   end
 
-  bind fv_gradient_lookup.dut.u_table.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
-  bind fv_gradient_lookup.dut.u_table.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_gradient_lookup.dut.u_table.g_bank[0].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
+  bind fv_gradient_lookup.dut.u_table.g_bank[1].u_ram ram_check #(.Depth(Depth), .Defined(0)) u_check_1 (.*);
 
 endmodule
 

@@ -37,10 +37,7 @@ module fv_reference_capture #(
   logic [3*Width-1:0] map_write_gains, map_read_gains;
   reference_capture #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(1), .Width(Width), .GainFraction(Width), .MaxLog2(MaxLog2)
-  ) dut (
-    .clk, .rst, .en, .request, .log2_frames, .busy, .done, .in_valid, .in_pixel, .in_position, .in_bad,
-    .map_write, .map_write_node, .map_write_gains, .map_read, .map_read_node, .map_read_gains
-  );
+  ) dut (.*);
   td_ram #(.Width(3 * Width), .Depth(Nodes)) u_ram (
     .clk, .write_en(map_write), .write_address(map_write_node), .write_data(map_write_gains),
     .read_en(map_read), .read_address(map_read_node), .read_data(map_read_gains)

@@ -43,10 +43,8 @@ module protocol_flat_field #(
     .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Channels(3),
     .Select(td_register_map_pkg::TableSelectReference)
   ) u_gains (
-    .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .capture_write, .capture_write_node, .capture_read,
-    .capture_read_node, .in_valid, .in_frame_start(&in_position[1:0]), .out_valid, .given_in_frame_start(), .row(),
-    .column(), .place, .holds, .counts_out_valid, .counts_out_data(pixel), .counts_out_words(), .counts_active(),
-    .counts_table_in_use, .counts_table_answer, .counts_capture_read_words(counts_capture_read_gains)
+    .*, .in_frame_start(&in_position[1:0]), .given_in_frame_start(), .row(), .column(), .counts_out_data(pixel),
+    .counts_out_words(), .counts_active(), .counts_capture_read_words(counts_capture_read_gains)
   );
   assign given_in_position = in_valid & ~rst ? place : in_position;
   assign {counts_out_position, counts_out_red, counts_out_green, counts_out_blue} = {4{pixel}};

@@ -26,9 +26,7 @@ module protocol_reference_capture #(
   logic live = 1'b0;
   logic [3:0] place;
   always_ff @(posedge clk) live <= live | rst;
-  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (
-    .clk, .reset(rst), .en, .in_valid, .place, .row, .column
-  );
+  raster_places #(.Rows(Rows), .Columns(Columns)) u_places (.*, .reset(rst));
   assign given_in_position = in_valid & ~rst ? place : in_position;
   assign counts = live & ~rst;
   assign {counts_map_write_node, counts_map_write_gains} = {2{counts & map_write}};

@@ -49,9 +49,7 @@ module fv_back_substitution #(
     .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .InWidth(InWidth),
     .Drop(Drop),
     .TableWords(Words), .SettledWidth(SettledWidth)
-  ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
-  );
+  ) dut (.*);
   protocol_back_substitution #(.Columns(Columns), .Rows(Rows), .Lanes(Lanes)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
   );

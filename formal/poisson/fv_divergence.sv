@@ -32,10 +32,7 @@ module fv_divergence #(
 
   logic out_valid, out_frame_start;
   logic signed [OutWidth-1:0] out_data;
-  divergence #(.Width(Width), .Columns(Columns), .Neumann(Neumann)) dut (
-    .clk, .rst, .en, .in_valid, .in_position, .in_gx, .in_gy,
-    .out_valid, .out_frame_start, .out_data
-  );
+  divergence #(.Width(Width), .Columns(Columns), .Neumann(Neumann)) dut (.*);
   protocol_divergence #(.Columns(Columns)) u_protocol (
     .clk, .rst, .en, .in_valid, .in_position, .out_valid, .column, .holds(allowed)
   );
@@ -83,9 +80,7 @@ module fv_divergence #(
     end
   end
 
-  bind fv_divergence.dut.u_line ram_check #(.Depth(Depth), .Defined(0)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_divergence.dut.u_line ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 
 endmodule
 

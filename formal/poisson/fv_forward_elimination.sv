@@ -46,9 +46,7 @@ module fv_forward_elimination #(
     .Width(Width), .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .StoreDrop(StoreDrop), .OutWidth(OutWidth),
     .Neumann(Neumann), .TableWords(Words), .SettledWidth(SettledWidth), .LastShiftWidth(LastShiftWidth),
     .MomentDrop(MomentDrop), .MeanReciprocal(MeanReciprocal), .MeanDrop(MeanDrop)
-  ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
-  );
+  ) dut (.*);
   protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
   );
@@ -138,9 +136,7 @@ module fv_forward_elimination #(
     end
   end
 
-  bind fv_forward_elimination.dut.u_state_row ram_check #(.Depth(Depth), .Defined(0)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_forward_elimination.dut.u_state_row ram_check #(.Depth(Depth), .Defined(0)) u_check (.*);
 
 endmodule
 

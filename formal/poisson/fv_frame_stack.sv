@@ -33,9 +33,7 @@ module fv_frame_stack #(
   logic [RowWidth-1:0] row;
   logic [Lanes-1:0] out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
-  frame_stack #(.Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .WordsPerRow(WordsPerRow)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
-  );
+  frame_stack #(.Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .WordsPerRow(WordsPerRow)) dut (.*);
   protocol_bursts #(.Columns(Columns), .Rows(Rows)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start(out_start[0]), .active, .position, .row, .last_row, .holds(allowed)
   );
@@ -74,9 +72,7 @@ module fv_frame_stack #(
     end
   end
 
-  bind td_ram ram_check #(.Depth(Depth), .Covered(0)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind td_ram ram_check #(.Depth(Depth), .Covered(0)) u_check (.*);
   // Lane 0 reads no memory where the last row is its only one, and a lane beyond the rows never does.
   for (genvar e = 0; e < Lanes; e++) begin : g_read
     if (e == 0 ? Rows > Lanes : e < Rows) begin : g_memory

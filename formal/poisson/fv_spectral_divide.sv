@@ -28,10 +28,7 @@ module fv_spectral_divide #(
   logic signed [Width-1:0] out_data;
   spectral_divide #(
     .Width(Width), .CoeffWidth(8), .Columns(Columns), .ShiftWidth(1), .Drop(0)
-  ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data(Width'(1)),
-    .out_start, .out_frame_start, .out_data, .saturations
-  );
+  ) dut (.*, .in_data(Width'(1)));
   protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .holds(allowed)
   );
@@ -46,9 +43,7 @@ module fv_spectral_divide #(
     .clk, .rst, .en, .pick(pick & active), .in(square[{row[PositionWidth-1:0], position}]), .due, .word(expected)
   );
   kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
-  burst_timing #(.Columns(Columns), .Latency(Latency)) u_timing (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
-  );
+  burst_timing #(.Columns(Columns), .Latency(Latency)) u_timing (.*);
   always_comb begin
     if (started) begin
       if (due) own_reciprocal: assert (out_data == $signed(expected));

@@ -29,9 +29,7 @@ module fv_thomas_table #(
   thomas_table #(
     .CoeffWidth(CoeffWidth), .Rows(Rows), .Columns(Columns), .Words(Words), .SettledWidth(SettledWidth),
     .LastShiftWidth(LastShiftWidth)
-  ) dut (
-    .clk, .en, .position, .row, .coefficient, .shift
-  );
+  ) dut (.*);
 
   logic [LastShiftWidth+CoeffWidth-1:0] square[Rows*Columns];
   initial $readmemh("square.hex", square);

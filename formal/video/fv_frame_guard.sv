@@ -34,9 +34,7 @@ module fv_frame_guard
   position_t out_position;
   logic [23:0] out_data;
   frame_guard #(.Rows(Rows), .Columns(Columns)) dut (
-    .clk, .rst, .en, .timeout, .s_valid, .s_ready, .s_data, .s_last, .s_user, .out_valid, .out_data,
-    .out_position, .out_frame_start, .out_frame_end, .out_bad,
-    .faults({timed_out, start_early, start_missing, row_long, row_short})
+    .*, .faults({timed_out, start_early, start_missing, row_long, row_short})
   );
 
   logic started;

@@ -37,9 +37,7 @@ module fv_corner_turn #(
 
   logic out_start, out_frame_start;
   logic [Lanes*Width-1:0] out_data;
-  corner_turn #(.Width(Width), .Columns(Columns), .Lanes(Lanes)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
-  );
+  corner_turn #(.Width(Width), .Columns(Columns), .Lanes(Lanes)) dut (.*);
 
   protocol_corner_turn #(.Columns(Columns), .Lanes(Lanes)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)

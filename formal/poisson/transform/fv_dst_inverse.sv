@@ -22,18 +22,14 @@ module fv_dst_inverse #(
   logic [7:0] saturations;
   dst_inverse #(
     .Size(Size), .InWidth(Width), .InputDrop(0), .Width(Width), .CoeffWidth(2), .OutputDrop(0), .OutWidth(Width)
-  ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data, .saturations
-  );
+  ) dut (.*);
 
   logic allowed, started;
   protocol_bursts #(.Columns(Size)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
   );
   assumed u_assumed (.clk, .rst, .allowed, .started);
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
-  );
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
 
 endmodule
 

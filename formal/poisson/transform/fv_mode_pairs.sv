@@ -26,9 +26,7 @@ module fv_mode_pairs #(
   logic [PositionWidth-1:0] position;
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_mode, out_mirrored;
-  mode_pairs #(.Width(Width), .Size(Size)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_mode, .out_start, .out_frame_start, .out_mode, .out_mirrored
-  );
+  mode_pairs #(.Width(Width), .Size(Size)) dut (.*);
   protocol_bursts #(.Columns(Size)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
   );
@@ -65,9 +63,7 @@ module fv_mode_pairs #(
     if (rst) following <= 1'b0;
   end
 
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
-  );
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
   always_comb begin
     if (started) begin
       if (following && age == AgeWidth'(Latency)) mode_in_place: assert (out_mode == value);
@@ -79,9 +75,7 @@ module fv_mode_pairs #(
     end
   end
 
-  bind fv_mode_pairs.dut.u_ram ram_check #(.Depth(Depth)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_mode_pairs.dut.u_ram ram_check #(.Depth(Depth)) u_check (.*);
 
 endmodule
 

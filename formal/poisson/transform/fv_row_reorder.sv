@@ -21,9 +21,7 @@ module fv_row_reorder #(
 
   logic allowed, started, out_start, out_frame_start;
   logic [Width-1:0] out_data;
-  row_reorder #(.Width(Width), .Columns(Columns), .ToBurst(ToBurst)) dut (
-    .clk, .rst, .en, .in_valid, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
-  );
+  row_reorder #(.Width(Width), .Columns(Columns), .ToBurst(ToBurst)) dut (.*);
 
   protocol_words #(.Columns(Columns)) u_protocol (
     .clk, .rst, .en, .in_valid, .in_frame_start, .out_start, .holds(allowed)
@@ -54,9 +52,8 @@ module fv_row_reorder #(
   logic [PositionWidth-1:0] place;
   logic [Width-1:0] value;
   follow_word #(.Width(Width), .Words(Columns), .Latency(2)) u_follow (
-    .clk, .rst, .en, .pick, .in_word(in_valid), .in_first(in_valid & (position == '0)), .in_closed(1'b0),
-    .in_place(ToBurst != 0 ? place_of_sample : sample_at_place), .in_data, .close(row_end),
-    .due, .present, .place, .watched, .value
+    .*, .in_word(in_valid), .in_first(in_valid & (position == '0)), .in_closed(1'b0),
+    .in_place(ToBurst != 0 ? place_of_sample : sample_at_place), .close(row_end)
   );
   logic [1:0] first_row_ends;
   logic held;
@@ -77,9 +74,7 @@ module fv_row_reorder #(
     end
   end
 
-  bind fv_row_reorder.dut.u_ram ram_check #(.Depth(Depth)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_row_reorder.dut.u_ram ram_check #(.Depth(Depth)) u_check (.*);
 
 endmodule
 

@@ -33,10 +33,7 @@ module fv_sdf_butterfly #(
   logic [1:0] saturations;
   sdf_butterfly #(
     .Width(Width), .Size(Size), .Delay(Delay), .RotateBlock(RotateBlock), .Inverse(Inverse), .Halve(Halve)
-  ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_re, .in_im,
-    .out_start, .out_frame_start, .out_re, .out_im, .saturations
-  );
+  ) dut (.*);
   protocol_bursts #(.Columns(Size)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
   );
@@ -107,9 +104,7 @@ module fv_sdf_butterfly #(
   logic none_leaves;  // nothing was rounded in the clock before
   always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
 
-  burst_timing #(.Columns(Size), .Latency(Delay + 2)) u_timing (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
-  );
+  burst_timing #(.Columns(Size), .Latency(Delay + 2)) u_timing (.*);
   always_comb begin
     if (started) begin
       if (following && age == AgeWidth'(Delay + 2)) begin

@@ -22,19 +22,14 @@ module fv_sdf_fft #(
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_re, out_im;
   logic [6:0] saturations;
-  sdf_fft #(.Width(Width), .CoeffWidth(2), .Size(Size), .Inverse(Inverse)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_re, .in_im,
-    .out_start, .out_frame_start, .out_re, .out_im, .saturations
-  );
+  sdf_fft #(.Width(Width), .CoeffWidth(2), .Size(Size), .Inverse(Inverse)) dut (.*);
 
   logic allowed, started;
   protocol_bursts #(.Columns(Size)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
   );
   assumed u_assumed (.clk, .rst, .allowed, .started);
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
-  );
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
 
 endmodule
 

@@ -26,9 +26,7 @@ module fv_transpose #(
   logic [$clog2(Columns+1)-1:0] row;
   logic out_start, out_frame_start;
   logic [Width-1:0] out_data;
-  transpose #(.Width(Width), .Columns(Columns), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_data, .out_start, .out_frame_start, .out_data
-  );
+  transpose #(.Width(Width), .Columns(Columns), .MakhoulIn(MakhoulIn), .MakhoulOut(MakhoulOut)) dut (.*);
   protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .last_row, .holds(allowed)
   );
@@ -65,9 +63,7 @@ module fv_transpose #(
     end
   end
 
-  bind fv_transpose.dut.u_ram ram_check #(.Depth(Depth)) u_check (
-    .clk, .write_en, .write_address, .read_en, .read_address
-  );
+  bind fv_transpose.dut.u_ram ram_check #(.Depth(Depth)) u_check (.*);
 
 endmodule
 

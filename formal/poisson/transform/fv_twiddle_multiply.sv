@@ -32,10 +32,7 @@ module fv_twiddle_multiply #(
   twiddle_multiply #(
     .InWidth(2), .OutWidth(OutWidth), .CoeffWidth(CoeffWidth), .Drop(0), .Size(Size), .Block(Block),
     .RealOnly(RealOnly), .File("factors.hex")
-  ) dut (
-    .clk, .rst, .en, .in_start, .in_frame_start, .in_re(turned ? 2'd0 : 2'd1), .in_im(turned ? 2'd1 : 2'd0),
-    .out_start, .out_frame_start, .out_re, .out_im, .saturations
-  );
+  ) dut (.*, .in_re(turned ? 2'd0 : 2'd1), .in_im(turned ? 2'd1 : 2'd0));
   protocol_bursts #(.Columns(Size)) u_protocol (
     .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
   );
@@ -54,9 +51,7 @@ module fv_twiddle_multiply #(
     .clk, .rst, .en, .pick(pick & active), .in({factor_re, factor_im}), .due, .word({re, im})
   );
   kept #(.Width(2 * OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_re, out_im}), .held);
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .out_frame_start
-  );
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
   always_comb begin
     if (started) begin
       if (due) own_factor: assert (out_re == re && out_im == im);
