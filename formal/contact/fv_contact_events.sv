@@ -62,11 +62,14 @@ module fv_contact_events
     end
   end
 
-  // What frames of so many depths have; stated, because the search is long without it.
-  always_comb if (due[Latency-2:0] != '0) assume (!(in_valid && in_position.frame_end));
-
+  logic [Latency-1:0] early;
+  for (genvar n = 0; n < Latency; n++) begin : g_early
+    assign early[n] = due[n] && 32'(u_protocol.u_frames.next_place) > n;
+  end
   always_comb begin
     if (started) begin
+      // Behind the proof: frames of so many depths are Latency clocks long.
+      apart: assert (early == '0);
       record_due: assert (record_valid == due[Latency-1]);
       if (!record_valid && !was_reset) keeps: assert (record == record_q);
       if (!was_reset && !due[2]) between_frames: assert (touching == touching_q);
