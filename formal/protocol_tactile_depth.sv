@@ -49,11 +49,7 @@ module protocol_tactile_depth
     .clk, .rst, .reset, .valid(s_axis_tvalid), .ready(s_axis_tready),
     .word({s_axis_tuser, s_axis_tlast, s_axis_tdata}), .holds(source_holds)
   );
-  axil_client #(.AddressWidth(AddressWidth)) u_client (
-    .clk, .rst, .reset, .awaddr(s_axil_awaddr), .awvalid(s_axil_awvalid), .awready(s_axil_awready),
-    .wdata(s_axil_wdata), .wstrb(s_axil_wstrb), .wvalid(s_axil_wvalid), .wready(s_axil_wready),
-    .araddr(s_axil_araddr), .arvalid(s_axil_arvalid), .arready(s_axil_arready), .holds(client_holds)
-  );
+  axil_client #(.AddressWidth(AddressWidth)) u_client (.*, .holds(client_holds));
   assign counts = live;
   assign {counts_m_axis_tdata, counts_m_axis_tlast, counts_m_axis_tuser} = {3{live & m_axis_tvalid}};
   assign {counts_contact, counts_m_event_tvalid} = {2{live & ~reset}};

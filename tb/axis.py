@@ -213,6 +213,29 @@ def video(pixels: Iterable[int], columns: int) -> list[Word]:
     ]
 
 
+def spoiled(words: list[Word], rng: random.Random, longest: int) -> list[Word]:
+    """Return the words of a frame with up to three faults: a mark flipped or missing, a run of up to `longest` words
+    lost or repeated, the end cut off."""
+    for _ in range(rng.choice((0, 0, 1, 1, 2, 3))):
+        if not words:
+            break
+        place = rng.randrange(len(words))
+        match rng.randrange(6):
+            case 0:
+                words[place] = words[place]._replace(last=1 - words[place].last)
+            case 1:
+                words[place] = words[place]._replace(user=1 - words[place].user)
+            case 2:
+                del words[place : place + rng.randint(1, longest)]
+            case 3:
+                words[place:place] = words[place : place + rng.randint(1, longest)]
+            case 4:
+                words[0] = words[0]._replace(user=0)
+            case 5:
+                words = words[:place]
+    return words
+
+
 # Each way to break a frame, and some that break nothing, with the faults that it raises between whole frames.
 # `inner` is False at the beginning of a row.
 BREAKS: dict[str, Callable[[bool], tuple[str, ...]]] = {

@@ -41,11 +41,17 @@ def configuration() -> Configuration:
     return Configuration(**RUN.device["configuration"])
 
 
-def uniform(shape: int | tuple[int, ...], width: int, amplitude: float = 1.0) -> np.ndarray:
-    """Return random words of `width` signed bits, up to `amplitude` of full scale; a seed gives the same words."""
+def uniform(shape: int | tuple[int, ...], width: int, amplitude: float | None = 1.0) -> np.ndarray:
+    """Return random words of `width` signed bits, up to `amplitude` of full scale; a seed gives the same words.
+
+    An amplitude of None gives mostly the lowest and the highest word, whose sums and differences clip in every pairing.
+    """
+    random_words = np.random.default_rng(cocotb.RANDOM_SEED)
+    if amplitude is None:
+        low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
+        return random_words.choice([*6 * [low, high], -1, 0], shape)
     limit = amplitude * 2.0 ** (width - 1)
-    words = np.random.default_rng(cocotb.RANDOM_SEED).uniform(-limit, limit, shape)
-    return np.clip(np.rint(words), -limit, limit - 1).astype(np.int64)
+    return np.clip(np.rint(random_words.uniform(-limit, limit, shape)), -limit, limit - 1).astype(np.int64)
 
 
 def places(count: int, width: int) -> np.ndarray:
@@ -69,12 +75,6 @@ def extremes(size: int, width: int, fields: int = 1) -> np.ndarray:
     bursts[5] = np.where(np.arange(fields) % 2, low, high)
     bursts[6, 0], bursts[7, -1] = high, low
     return bursts
-
-
-def corners(shape: int | tuple[int, ...], width: int) -> np.ndarray:
-    """Return random words, mostly the lowest and the highest, whose sums and differences clip in every pairing."""
-    low, high = -(1 << (width - 1)), (1 << (width - 1)) - 1
-    return np.random.default_rng(cocotb.RANDOM_SEED).choice([*6 * [low, high], -1, 0], shape)
 
 
 def raster(rows: int, columns: int) -> list[Any]:

@@ -44,8 +44,8 @@ module fv_camera_registers
     .BlackLevel(BlackLevel), .RedGain(RedGain), .GreenGain(GreenGain), .BlueGain(BlueGain), .Phase(2)
   ) dut (.*);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   // The write of this clock, and what a register becomes by it.
   logic [31:0] written_at, ones, mask;
@@ -69,7 +69,6 @@ module fv_camera_registers
   logic clears;
   assign clears = written_at == CameraControlOffset & ones[0] & mask[0];
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     picture <= becomes(CameraPictureOffset, picture, 32'h1fff1fff);
     window <= becomes(CameraWindowOffset, window, 32'h1fff1fff);
     black <= becomes(CameraBlackLevelOffset, black, 32'hfff);

@@ -21,7 +21,7 @@ module fv_spectral_divide #(
   localparam int Latency = 6;
   localparam int Width = 10;
 
-  logic allowed, started, active;
+  logic started, active;
   logic [PositionWidth-1:0] position;
   logic [RowWidth-1:0] row;
   logic out_start, out_frame_start, saturations;
@@ -29,10 +29,6 @@ module fv_spectral_divide #(
   spectral_divide #(
     .Width(Width), .CoeffWidth(8), .Columns(Columns), .ShiftWidth(1), .Drop(0)
   ) dut (.*, .in_data(Width'(1)));
-  protocol_bursts #(.Columns(Columns), .Rows(Columns)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .row, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [Width-1:0] square[Columns*Columns];
   initial $readmemh("square.hex", square);
@@ -43,7 +39,7 @@ module fv_spectral_divide #(
     .clk, .rst, .en, .pick(pick & active), .in(square[{row[PositionWidth-1:0], position}]), .due, .word(expected)
   );
   kept #(.Width(Width + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_data}), .held);
-  burst_timing #(.Columns(Columns), .Latency(Latency)) u_timing (.*);
+  burst_timing #(.Columns(Columns), .Rows(Columns), .Latency(Latency)) u_timing (.*);
   always_comb begin
     if (started) begin
       if (due) own_reciprocal: assert (out_data == $signed(expected));

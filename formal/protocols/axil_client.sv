@@ -9,29 +9,29 @@ module axil_client #(
   input  logic                    clk,
   input  logic                    rst,
   input  logic                    reset,
-  input  logic [AddressWidth-1:0] awaddr,
-  input  logic                    awvalid,
-  input  logic                    awready,
-  input  logic [31:0]             wdata,
-  input  logic [3:0]              wstrb,
-  input  logic                    wvalid,
-  input  logic                    wready,
-  input  logic [AddressWidth-1:0] araddr,
-  input  logic                    arvalid,
-  input  logic                    arready,
+  input  logic [AddressWidth-1:0] s_axil_awaddr,
+  input  logic                    s_axil_awvalid,
+  input  logic                    s_axil_awready,
+  input  logic [31:0]             s_axil_wdata,
+  input  logic [3:0]              s_axil_wstrb,
+  input  logic                    s_axil_wvalid,
+  input  logic                    s_axil_wready,
+  input  logic [AddressWidth-1:0] s_axil_araddr,
+  input  logic                    s_axil_arvalid,
+  input  logic                    s_axil_arready,
   output logic                    holds
 );
 
   logic write_address_stays, write_stays, read_address_stays;
   assign holds = write_address_stays & write_stays & read_address_stays;
   offer_stays #(.Width(AddressWidth)) u_write_address (
-    .clk, .rst, .reset, .valid(awvalid), .ready(awready), .word(awaddr), .holds(write_address_stays)
+    .clk, .rst, .reset, .valid(s_axil_awvalid), .ready(s_axil_awready), .word(s_axil_awaddr), .holds(write_address_stays)
   );
   offer_stays #(.Width(36)) u_write (
-    .clk, .rst, .reset, .valid(wvalid), .ready(wready), .word({wstrb, wdata}), .holds(write_stays)
+    .clk, .rst, .reset, .valid(s_axil_wvalid), .ready(s_axil_wready), .word({s_axil_wstrb, s_axil_wdata}), .holds(write_stays)
   );
   offer_stays #(.Width(AddressWidth)) u_read_address (
-    .clk, .rst, .reset, .valid(arvalid), .ready(arready), .word(araddr), .holds(read_address_stays)
+    .clk, .rst, .reset, .valid(s_axil_arvalid), .ready(s_axil_arready), .word(s_axil_araddr), .holds(read_address_stays)
   );
 
 endmodule

@@ -32,8 +32,8 @@ module fv_axil_port
   logic [31:0] s_axil_rdata, write_offset, write_ones, write_mask, read_offset;
   axil_port dut (.*);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   // Half a write that was taken; a write that took effect, whose response has not left.
   logic has_address, has_data, answered;
@@ -47,7 +47,6 @@ module fv_axil_port
   logic [31:0] strobed;
   always_comb for (int n = 0; n < 32; n++) strobed[n] = word[32 + n / 8];
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (s_axil_awvalid && s_axil_awready) {has_address, address} <= {1'b1, s_axil_awaddr};
     if (s_axil_wvalid && s_axil_wready) {has_data, word} <= {1'b1, s_axil_wstrb, s_axil_wdata};
     write_was <= write;

@@ -94,8 +94,8 @@ module fv_axil_registers
   endfunction
   axil_registers #(.Config(configuration())) dut (.*);
 
-  logic started = 1'b0;
-  always_comb if (!started) assume (rst);
+  logic started;
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
 
   // What the bus carried.
   logic aw, w, b, ar, r;
@@ -153,28 +153,13 @@ module fv_axil_registers
                 || !(data[ZeroCaptureStartBit] && strobes[ZeroCaptureStartBit/8])))
         || (offset == TableLowOffset && index < size && !closed[select] && strobes == 4'b1111));
   end
-  logic writes_control, writes_status, writes_threshold, writes_timeout;
-  logic writes_select, writes_index, writes_high, writes_low, writes_commit;
-  logic writes_dark, writes_capture, writes_zero, writes_off, writes_area, writes_debounce;
-  logic writes_interrupt, writes_mask, writes_pitch;
-  assign writes_control = effective & (offset == ControlOffset);
-  assign writes_status = effective & (offset == StatusOffset);
-  assign writes_threshold = effective & (offset == ThresholdOffset);
-  assign writes_timeout = effective & (offset == TimeoutOffset);
-  assign writes_index = effective & (offset == TableIndexOffset);
-  assign writes_select = effective & (offset == TableSelectOffset);
-  assign writes_high = effective & (offset == TableHighOffset);
-  assign writes_low = effective & (offset == TableLowOffset) & ~refused;
-  assign writes_commit = effective & (offset == TableCommitOffset);
-  assign writes_dark = effective & (offset == DarkLevelOffset);
-  assign writes_capture = effective & (offset == ReferenceCaptureOffset) & ~refused;
-  assign writes_zero = effective & (offset == ZeroCaptureOffset) & ~refused;
-  assign writes_off = effective & (offset == OffThresholdOffset);
-  assign writes_area = effective & (offset == MinimumAreaOffset);
-  assign writes_interrupt = effective & (offset == InterruptStatusOffset);
-  assign writes_mask = effective & (offset == InterruptMaskOffset);
-  assign writes_pitch = effective & (offset == PitchOffset);
-  assign writes_debounce = effective & (offset == DebounceOffset);
+  function automatic logic writes(input int register_offset);
+    return effective & (offset == register_offset);
+  endfunction
+  logic writes_low, writes_capture, writes_zero;
+  assign writes_low = writes(TableLowOffset) & ~refused;
+  assign writes_capture = writes(ReferenceCaptureOffset) & ~refused;
+  assign writes_zero = writes(ZeroCaptureOffset) & ~refused;
 
   function automatic logic [31:0] written(input logic [31:0] word);
     return (data & mask) | (word & ~mask);
@@ -189,7 +174,7 @@ module fv_axil_registers
   logic [31:0] dim, averaged, zero_averaged, off, area, frames_needed, dark, given_up, lost;
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
-  assign clears = writes_control & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
+  assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
   // Events reach status and counters a clock later; those of a clock in reset do not.
   events_t seen;
   logic seen_frame_dropped;
@@ -292,7 +277,6 @@ module fv_axil_registers
   assign index_written = written(index);
   assign select_written = written(32'(select));
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     if (aw) address <= s_axil_awaddr;
     if (w) {data, strobes} <= {s_axil_wdata, s_axil_wstrb};
     has_address <= aw | (has_address & ~b);
@@ -317,33 +301,34 @@ module fv_axil_registers
     rresp_q <= s_axil_rresp;
     rdata_q <= s_axil_rdata;
 
-    if (writes_control && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
-    if (writes_control && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
-    if (writes_dark) dim <= written(dim) & 32'hff;
+    if (writes(ControlOffset) && mask[ControlHoldContactBit]) hold <= data[ControlHoldContactBit];
+    if (writes(ControlOffset) && mask[ControlDropFramesBit]) drop <= data[ControlDropFramesBit];
+    if (writes(DarkLevelOffset)) dim <= written(dim) & 32'hff;
     if (writes_capture) averaged <= written(averaged) & 32'hf;
     if (writes_zero) zero_averaged <= written(zero_averaged) & 32'hf;
-    if (writes_off) off <= written(off);
-    if (writes_area) area <= written(area);
-    if (writes_debounce) frames_needed <= written(frames_needed) & 32'hff;
-    if (writes_threshold) limit <= written(limit);
-    if (writes_timeout) silence <= written(silence);
-    if (writes_index) index <= 32'(index_written[IndexWidth-1:0]);
+    if (writes(OffThresholdOffset)) off <= written(off);
+    if (writes(MinimumAreaOffset)) area <= written(area);
+    if (writes(DebounceOffset)) frames_needed <= written(frames_needed) & 32'hff;
+    if (writes(ThresholdOffset)) limit <= written(limit);
+    if (writes(TimeoutOffset)) silence <= written(silence);
+    if (writes(TableIndexOffset)) index <= 32'(index_written[IndexWidth-1:0]);
     if (writes_low || (since == 3'd1 && !upper && index < size)) index <= next_index;
-    if (writes_select) select <= select_written[1:0];
-    if (writes_high) high <= written(high);
+    if (writes(TableSelectOffset)) select <= select_written[1:0];
+    if (writes(TableHighOffset)) high <= written(high);
     for (int table_number = 0; table_number < Tables; table_number++) begin
       if (frame_start && requested[table_number] && !rst) bank[table_number] <= !bank[table_number];
       if (frame_start && requested[table_number]) requested[table_number] <= 1'b0;
-      else if (writes_commit && data[table_number] && mask[table_number] && has[table_number] && !closed[table_number])
+      else if (writes(TableCommitOffset) && data[table_number] && mask[table_number] && has[table_number]
+          && !closed[table_number])
         requested[table_number] <= 1'b1;
       if (reference_status.done && table_number == TableSelectReference && has[table_number]) requested[table_number] <= 1'b1;
       if (zero_status.done && table_number == TableSelectZero && has[table_number]) requested[table_number] <= 1'b1;
     end
-    interrupts <= (interrupts & ~(writes_interrupt ? data & mask : '0)) | interrupts_happened;
-    if (writes_mask) unmasked <= written(unmasked) & 32'h3;
-    if (writes_pitch) width_nm <= written(width_nm);
+    interrupts <= (interrupts & ~(writes(InterruptStatusOffset) ? data & mask : '0)) | interrupts_happened;
+    if (writes(InterruptMaskOffset)) unmasked <= written(unmasked) & 32'h3;
+    if (writes(PitchOffset)) width_nm <= written(width_nm);
     raised <= |(interrupts & unmasked);
-    sticky <= (sticky & ~(writes_status ? data & mask : '0)) | happened;
+    sticky <= (sticky & ~(writes(StatusOffset) ? data & mask : '0)) | happened;
     frames_in <= counted(clears ? '0 : frames_in, 32'(seen.frame_in));
     frames_out <= counted(clears ? '0 : frames_out, 32'(seen.frame_out));
     frames_dropped <= counted(clears ? '0 : frames_dropped, 32'(seen_frame_dropped));
@@ -416,7 +401,7 @@ module fv_axil_registers
 
       read_back: cover (read_due && read_offset == ThresholdOffset && word_q == 32'h12345678 && known_q);
       interrupted: cover (irq && interrupts == 32'h2);
-      set_wins: cover (writes_status && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
+      set_wins: cover (writes(StatusOffset) && data[StatusRowLongBit] && mask[StatusRowLongBit] && seen.faults.row_long
           && sticky[StatusRowLongBit]);
       refused_while_pending: cover (effective && offset == TableLowOffset && strobes == 4'b1111 && requested[TableCommitZeroBit]);
       if (Camera != 0) camera_answer: cover (read_due && known_q && word_q == 32'h12345678 && rdata_q == '0 && write_due && !refused_q && offset == 32'h104);

@@ -30,9 +30,9 @@ module fv_table_banks
   logic [3:0] table_bank, closed;
   table_banks #(.Present(Present)) dut (.*);
 
-  logic started = 1'b0;
+  logic started;
   logic [1:0] pick_was;
-  always_comb if (!started) assume (rst);
+  assumed u_assumed (.clk, .rst, .allowed(1'b1), .started);
   always_comb if (started) assume (pick == pick_was);
 
   // The followed table: a request that no frame has taken, its bank, and its capture.
@@ -51,7 +51,6 @@ module fv_table_banks
   assign may_start = has && !(is_zero && (waits || done));
 
   always_ff @(posedge clk) begin
-    started <= 1'b1;
     pick_was <= pick;
     if (frame_start && !rst && requested) bank <= !bank;
     if (frame_start) requested <= 1'b0;

@@ -30,11 +30,7 @@ module protocol_axil_registers
   logic reset, live = 1'b0;
   assign reset = rst | ~holds;
   always_ff @(posedge clk) live <= live | reset;
-  axil_client #(.AddressWidth(AddressWidth)) u_client (
-    .clk, .rst, .reset, .awaddr(s_axil_awaddr), .awvalid(s_axil_awvalid), .awready(s_axil_awready),
-    .wdata(s_axil_wdata), .wstrb(s_axil_wstrb), .wvalid(s_axil_wvalid), .wready(s_axil_wready),
-    .araddr(s_axil_araddr), .arvalid(s_axil_arvalid), .arready(s_axil_arready), .holds
-  );
+  axil_client #(.AddressWidth(AddressWidth)) u_client (.*);
   assign counts = live;
   assign counts_s_axil_bresp = live & s_axil_bvalid;
   assign {counts_s_axil_rdata, counts_s_axil_rresp} = {2{live & s_axil_rvalid}};

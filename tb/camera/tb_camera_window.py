@@ -15,7 +15,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
 from tactile_depth.latency import CAMERA_WINDOW
 from tactile_depth.video.frame_guard import Word
-from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, video
+from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
 from tb.stream import CLOCK_NS, MANY, REGRESS, parameters
 
@@ -25,8 +25,9 @@ LONG = 30  # columns or rows of the largest pictures
 
 
 class Bench:
-    def __init__(self, dut: Any, offers: str = "none", enabled: str = "none") -> None:
+    def __init__(self, dut: Any, stalls: str = "none") -> None:
         self.dut = dut
+        offers, enabled = STALLS[stalls]
         names = ("WindowColumns", "WindowRows", "WordsPerPixel", "PixelPairs", "CountWidth")
         self.width, self.height, self.words, pairs, count_width = parameters(dut, *names)
         self.pairs, self.largest = bool(pairs), (1 << count_width) - 1
@@ -136,15 +137,13 @@ class Bench:
         return positions(kind, self.settings.rows, self.settings.columns * self.words)
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
+@on_bench(Bench, milliseconds=5)
 @cocotb.parametrize(kind=KINDS, stalls=list(STALLS))
-async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
+async def broken_pictures(bench: Bench, kind: str, stalls: str) -> None:
     """Send a good picture, a broken one and a good one, for every position of the break; with stalls for a few
     positions."""
-    bench = Bench(dut, *STALLS[stalls])
-    await bench.start()
     bench.use(Settings(bench.width + 2, bench.height + 2, 1, 1))
-    await ClockCycles(dut.clk, 2)
+    await ClockCycles(bench.dut.clk, 2)
     places = bench.places(kind)
     stride = 1 if REGRESS or stalls == "none" else min(7, len(places))
     for position in places[bench.random.randrange(stride) :: stride]:
@@ -154,12 +153,10 @@ async def broken_pictures(dut: Any, kind: str, stalls: str) -> None:
         bench.forget()
 
 
-@cocotb.test(timeout_time=5, timeout_unit="ms")
+@on_bench(Bench, milliseconds=5)
 @cocotb.parametrize(stalls=list(STALLS))
-async def windows_anywhere(dut: Any, stalls: str) -> None:
+async def windows_anywhere(bench: Bench) -> None:
     """Change the settings before, at the start of and within pictures; some windows exceed the picture."""
-    bench = Bench(dut, *STALLS[stalls])
-    await bench.start()
     outside = 0
     for _ in range(20 * MANY):
         settings = bench.any_settings()
@@ -172,7 +169,7 @@ async def windows_anywhere(dut: Any, stalls: str) -> None:
         size = settings if max(settings.columns, settings.rows) < bench.largest else bench.settings
         bench.use(settings)
         bench.settings = size
-        await ClockCycles(dut.clk, bench.random.choice((0, 1, 2)))
+        await ClockCycles(bench.dut.clk, bench.random.choice((0, 1, 2)))
         await bench.source.send(bench.picture())
         outside += "window_outside" in bench.faults
         await bench.check(settings)
@@ -195,31 +192,15 @@ async def resets(bench: Bench) -> None:
         assert not (await bench.check(f"reset at {position}")).faults
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize(stalls=list(STALLS))
-async def random_streams(dut: Any, stalls: str) -> None:
+async def random_streams(bench: Bench) -> None:
     """Send random streams: good and broken pictures, several faults in one, stray words, flipped marks."""
-    bench = Bench(dut, *STALLS[stalls])
-    await bench.start()
     rng, flagged = bench.random, set()
     for index in range(30 * MANY):
         if index % 10 == 0:
             bench.use(bench.any_settings())
-        words = bench.picture()
-        for _ in range(rng.choice((0, 0, 1, 1, 2, 3))):
-            place = rng.randrange(len(words))
-            match rng.randrange(5):
-                case 0:
-                    words[place] = words[place]._replace(last=1 - words[place].last)
-                case 1:
-                    words[place] = words[place]._replace(user=1 - words[place].user)
-                case 2:
-                    words = words[:place] + words[place + rng.randint(1, 5) :]
-                case 3:
-                    words[place:place] = words[place : place + rng.randint(1, 5)]
-                case 4:
-                    words[0] = words[0]._replace(user=0)
-            words = words or bench.picture()
+        words = spoiled(bench.picture(), rng, 5) or bench.picture()
         await bench.source.send(words)
         if index % 10 == 9:
             flagged |= {name for _, name in (await bench.check(f"random stream {index}")).faults}

@@ -15,7 +15,7 @@ from tactile_depth.latency import BACK_SUBSTITUTION, FORWARD_ELIMINATION
 from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import forward_elimination
 from tb.lanes import LanesMonitor, check_lanes
-from tb.stream import MANY, check_bursts, configuration, corners, sample, uniform, with_and_without_en
+from tb.stream import MANY, check_bursts, configuration, sample, uniform, with_and_without_en
 
 MODELS = {"forward_elimination": forward_elimination, "back_substitution": back_substitution}
 LATENCIES = {"forward_elimination": FORWARD_ELIMINATION, "back_substitution": BACK_SUBSTITUTION}
@@ -34,10 +34,7 @@ async def check(dut: Any, amplitude: Any, frames: int = 3, **behaviour: Any) -> 
 
     width = config.arithmetic_width if core == "forward_elimination" else config.data_width
     shape = (frames * config.rows, config.columns, 1)
-    if amplitude == math.inf:
-        words = np.full(shape, (1 << width - 1) - 1)
-    else:
-        words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+    words = np.full(shape, (1 << width - 1) - 1) if amplitude == math.inf else uniform(shape, width, amplitude)
     if config.lanes > 1 and core == "back_substitution":
         sink = LanesMonitor(dut, "out", config.columns, config.lanes)
         stack = words.reshape(frames, config.rows, config.columns)

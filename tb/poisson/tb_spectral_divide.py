@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.latency import SPECTRAL_DIVIDE
 from tactile_depth.poisson.spectral_divide import spectral_divide
-from tb.stream import MANY, check_bursts, configuration, corners, extremes, parameters, sample, uniform
+from tb.stream import MANY, check_bursts, configuration, extremes, parameters, sample, uniform
 
 
 async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
@@ -34,8 +34,7 @@ async def frames(dut: Any, gap: float, pause: float, amplitude: float) -> None:
 async def many_frames(dut: Any, amplitude: float) -> None:
     """Reach ties of the rounding, and values that just clip."""
     columns, width = parameters(dut, "Columns", "Width")
-    shape = (MANY * columns, columns, 1)
-    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
+    await check(dut, uniform((MANY * columns, columns, 1), width, amplitude))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

@@ -17,7 +17,6 @@ from tb.stream import (
     check_frame_starts,
     check_maps,
     configuration,
-    corners,
     interrupt,
     send_apart,
     uniform,
@@ -29,7 +28,7 @@ def codes(frames: int, amplitude: float) -> Any:
     word."""
     config = configuration()
     shape, width = (frames, config.columns, config.columns), config.divergence.width
-    return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+    return uniform(shape, width, amplitude)
 
 
 async def check(dut: Any, f: Any, gap: float = 0.0, pause: float = 0.0, interrupts: Any = (), strays: int = 0) -> Any:

@@ -18,7 +18,6 @@ from tb.stream import (
     check_frame_starts,
     check_maps,
     configuration,
-    corners,
     interrupt,
     sample,
     send_apart,
@@ -68,7 +67,7 @@ def codes(frames: int, amplitude: float) -> Any:
     word."""
     config = configuration()
     shape, width = (frames, config.rows, config.columns), config.divergence.width
-    return corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
+    return uniform(shape, width, amplitude)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")

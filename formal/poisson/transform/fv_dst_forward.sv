@@ -24,12 +24,7 @@ module fv_dst_forward #(
     .Size(Size), .InWidth(Width), .InputDrop(0), .Width(Width), .CoeffWidth(2), .OutputDrop(0), .OutWidth(Width)
   ) dut (.*);
 
-  logic allowed, started;
-  protocol_bursts #(.Columns(Size)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*, .started(), .active(), .position(), .row());
 
 endmodule
 

@@ -22,15 +22,11 @@ module fv_mode_pairs #(
   localparam int Latency = Size / 2 + 2;
   localparam int AgeWidth = PositionWidth + 2;
 
-  logic allowed, started, active;
+  logic started, active;
   logic [PositionWidth-1:0] position;
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_mode, out_mirrored;
   mode_pairs #(.Width(Width), .Size(Size)) dut (.*);
-  protocol_bursts #(.Columns(Size)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // Position of a mode: its number with the bits reversed; its mirror is Size minus its number.
   function automatic logic [PositionWidth-1:0] reversed(input logic [PositionWidth-1:0] word);
@@ -63,7 +59,7 @@ module fv_mode_pairs #(
     if (rst) following <= 1'b0;
   end
 
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*, .row());
   always_comb begin
     if (started) begin
       if (following && age == AgeWidth'(Latency)) mode_in_place: assert (out_mode == value);

@@ -26,7 +26,7 @@ module fv_sdf_butterfly #(
 
   localparam int AgeWidth = $clog2(2 * Delay + 3);
 
-  logic allowed, started, active;
+  logic started, active;
   logic [PositionWidth-1:0] position;
   logic out_start, out_frame_start;
   logic signed [Width-1:0] out_re, out_im;
@@ -34,10 +34,6 @@ module fv_sdf_butterfly #(
   sdf_butterfly #(
     .Width(Width), .Size(Size), .Delay(Delay), .RotateBlock(RotateBlock), .Inverse(Inverse), .Halve(Halve)
   ) dut (.*);
-  protocol_bursts #(.Columns(Size)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   // A word as it enters the sum: turned by -j or +j in the last quarter of its block.
   logic turned;
@@ -104,7 +100,7 @@ module fv_sdf_butterfly #(
   logic none_leaves;  // nothing was rounded in the clock before
   always_ff @(posedge clk) none_leaves <= rst | ~en | ~active_q[Delay];
 
-  burst_timing #(.Columns(Size), .Latency(Delay + 2)) u_timing (.*);
+  burst_timing #(.Columns(Size), .Latency(Delay + 2)) u_timing (.*, .row());
   always_comb begin
     if (started) begin
       if (following && age == AgeWidth'(Delay + 2)) begin

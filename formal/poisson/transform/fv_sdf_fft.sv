@@ -24,12 +24,7 @@ module fv_sdf_fft #(
   logic [6:0] saturations;
   sdf_fft #(.Width(Width), .CoeffWidth(2), .Size(Size), .Inverse(Inverse)) dut (.*);
 
-  logic allowed, started;
-  protocol_bursts #(.Columns(Size)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*, .started(), .active(), .position(), .row());
 
 endmodule
 

@@ -24,7 +24,7 @@ module fv_twiddle_multiply #(
   localparam int CoeffWidth = 5;
   localparam int OutWidth = 8;
 
-  logic allowed, started, active;
+  logic started, active;
   logic [PositionWidth-1:0] position;
   logic out_start, out_frame_start;
   logic signed [OutWidth-1:0] out_re, out_im;
@@ -33,10 +33,6 @@ module fv_twiddle_multiply #(
     .InWidth(2), .OutWidth(OutWidth), .CoeffWidth(CoeffWidth), .Drop(0), .Size(Size), .Block(Block),
     .RealOnly(RealOnly), .File("factors.hex")
   ) dut (.*, .in_re(turned ? 2'd0 : 2'd1), .in_im(turned ? 2'd1 : 2'd0));
-  protocol_bursts #(.Columns(Size)) u_protocol (
-    .clk, .rst, .en, .in_start, .in_frame_start, .out_start, .active, .position, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
 
   logic [3*CoeffWidth-1:0] factors[Block];
   initial $readmemh("factors.hex", factors);
@@ -51,7 +47,7 @@ module fv_twiddle_multiply #(
     .clk, .rst, .en, .pick(pick & active), .in({factor_re, factor_im}), .due, .word({re, im})
   );
   kept #(.Width(2 * OutWidth + 2)) u_kept (.clk, .rst, .en, .out({out_start, out_frame_start, out_re, out_im}), .held);
-  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*);
+  burst_timing #(.Columns(Size), .Latency(Latency)) u_timing (.*, .row());
   always_comb begin
     if (started) begin
       if (due) own_factor: assert (out_re == re && out_im == im);

@@ -12,7 +12,7 @@ import numpy as np
 from tactile_depth.latency import dst_forward_latency, dst_inverse_latency
 from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
-from tb.stream import MANY, check_bursts, corners, extremes, parameters, sample, uniform, with_and_without_en
+from tb.stream import MANY, check_bursts, extremes, parameters, sample, uniform, with_and_without_en
 
 CORES: dict[str, tuple[Any, Any]] = {
     "dst_forward": (dst_forward, dst_forward_latency),
@@ -38,9 +38,7 @@ async def check(dut: Any, words: Any, **behaviour: Any) -> Any:
 @cocotb.parametrize((("gap", "pause"), [(0, 0.0), (30, 0.0), (0, 0.3)]), ("amplitude", sample([0.3, 1.0, None])))
 async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
     size, width = parameters(dut, "Size", "InWidth")
-    shape = (5, size, 1)
-    words = corners(shape, width) if amplitude is None else uniform(shape, width, amplitude)
-    await check(dut, words, gap=gap, pause=pause)
+    await check(dut, uniform((5, size, 1), width, amplitude), gap=gap, pause=pause)
 
 
 @cocotb.test(timeout_time=50, timeout_unit="ms")
@@ -48,8 +46,7 @@ async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     size, width = parameters(dut, "Size", "InWidth")
-    shape = (2 * MANY, size, 1)
-    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
+    await check(dut, uniform((2 * MANY, size, 1), width, amplitude))
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
@@ -66,5 +63,5 @@ async def reset_in_mid_burst(dut: Any, late: bool, clips: bool) -> None:
     size, width = parameters(dut, "Size", "InWidth")
     _, latency = CORES[dut._name]
     first = latency(size) - 3 if late else 1
-    words = (corners if clips else uniform)((2, size, 1), width)
+    words = uniform((2, size, 1), width, None if clips else 1.0)
     await check(dut, words, interrupts=with_and_without_en(range(first, first + CLOCKS_OF_A_BURST_EDGE)))

@@ -9,7 +9,7 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.latency import sdf_fft_latency
 from tactile_depth.poisson.transform.sdf_fft import sdf_fft
-from tb.stream import MANY, check_bursts, corners, extremes, parameters, uniform
+from tb.stream import MANY, check_bursts, extremes, parameters, uniform
 
 FIELDS = ["re", "im"]
 
@@ -36,8 +36,7 @@ async def bursts(dut: Any, gap: float, pause: float, amplitude: float) -> None:
 async def many_bursts(dut: Any, amplitude: float) -> None:
     """Reach ties of every rounding, and clip every value that can clip."""
     size, width = parameters(dut, "Size", "Width")
-    shape = (2 * MANY, size, 2)
-    await check(dut, corners(shape, width) if amplitude is None else uniform(shape, width, amplitude))
+    await check(dut, uniform((2 * MANY, size, 2), width, amplitude))
 
 
 @cocotb.test(timeout_time=10, timeout_unit="ms")
