@@ -22,16 +22,17 @@ module axil_client #(
   output logic                    holds
 );
 
-  logic write_address_stays, write_stays, read_address_stays;
-  assign holds = write_address_stays & write_stays & read_address_stays;
+  logic address_stays, data_stays, read_stays;
+  assign holds = address_stays & data_stays & read_stays;
   offer_stays #(.Width(AddressWidth)) u_write_address (
-    .clk, .rst, .reset, .valid(s_axil_awvalid), .ready(s_axil_awready), .word(s_axil_awaddr), .holds(write_address_stays)
+    .clk, .rst, .reset, .valid(s_axil_awvalid), .ready(s_axil_awready), .word(s_axil_awaddr), .holds(address_stays)
   );
   offer_stays #(.Width(36)) u_write (
-    .clk, .rst, .reset, .valid(s_axil_wvalid), .ready(s_axil_wready), .word({s_axil_wstrb, s_axil_wdata}), .holds(write_stays)
+    .clk, .rst, .reset, .valid(s_axil_wvalid), .ready(s_axil_wready), .word({s_axil_wstrb, s_axil_wdata}),
+    .holds(data_stays)
   );
   offer_stays #(.Width(AddressWidth)) u_read_address (
-    .clk, .rst, .reset, .valid(s_axil_arvalid), .ready(s_axil_arready), .word(s_axil_araddr), .holds(read_address_stays)
+    .clk, .rst, .reset, .valid(s_axil_arvalid), .ready(s_axil_arready), .word(s_axil_araddr), .holds(read_stays)
   );
 
 endmodule
