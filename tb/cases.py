@@ -9,7 +9,7 @@ import cocotb
 
 
 def on_bench(bench: Callable[..., Any], milliseconds: float = 1, **fixed: Any) -> Callable[[Any], Any]:
-    """Make a coroutine a test, which gets a bench of the device that has started.
+    """Make a coroutine a test, which gets a bench of the device; a bench that can start has started.
 
     The bench is made of the device, of `fixed`, and of the parameters of the test that it names too. The coroutine gets
     the parameters that it names.
@@ -30,7 +30,8 @@ def on_bench(bench: Callable[..., Any], milliseconds: float = 1, **fixed: Any) -
 
         async def run(dut: Any, **values: Any) -> None:
             device = bench(dut, **fixed, **named(values, bench))
-            await device.start()
+            if hasattr(device, "start"):
+                await device.start()
             await play(device, **named(values, play))
 
         generator.func = run

@@ -10,6 +10,7 @@ from tactile_depth.camera.area_average import UNITY, area_average
 from tactile_depth.camera_configuration import GAIN_WIDTH
 from tactile_depth.latency import AREA_AVERAGE
 from tb.camera.slots import Slot, Slots, Window, packed
+from tb.cases import on_bench
 from tb.stream import MANY, check_words, drive, parameters
 
 OUTPUTS = ["out_valid", "out_pixel", "out_last", "out_user"]
@@ -99,20 +100,18 @@ class Bench:
         check_words(np.array(got), np.array(self.expected), self.columns, self.rows)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.2)]))
-async def frames(dut: Any, gap: float, pause: float) -> None:
-    bench = Bench(dut)
+async def frames(bench: Bench, gap: float, pause: float) -> None:
     for kind in ("black", "white", "lowest", "highest", *["range", "picture", "ties"] * MANY):
         bench.frame(bench.samples(kind), gap)
     await bench.check(pause)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.2)]))
-async def gains(dut: Any, gap: float, pause: float) -> None:
+async def gains(bench: Bench, gap: float, pause: float) -> None:
     """Change the gains with every frame: 0, 1, the largest, each bit, and random ones."""
-    bench = Bench(dut)
     chance, largest = bench.slots.random, (1 << GAIN_WIDTH) - 1
     for bit in range(GAIN_WIDTH):
         of = [1 << bit, chance.choice((0, largest)), chance.getrandbits(GAIN_WIDTH)]
@@ -123,10 +122,9 @@ async def gains(dut: Any, gap: float, pause: float) -> None:
     await bench.check(pause)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def a_gain_of_8_clips_the_mean_alone(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20)
+async def a_gain_of_8_clips_the_mean_alone(bench: Bench) -> None:
     """A quarter of each block is white: times 8 the mean is white, although a pixel alone would exceed the scale."""
-    bench = Bench(dut)
     bench.gains = (8 * UNITY[0],) * 3
     height, width = bench.shape[:2]
     white = np.zeros(bench.shape, np.int64)
@@ -136,12 +134,11 @@ async def a_gain_of_8_clips_the_mean_alone(dut: Any) -> None:
     await bench.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize(gap=[0.0, 0.3])
-async def broken_frames(dut: Any, gap: float) -> None:
+async def broken_frames(bench: Bench, gap: float) -> None:
     """Break a frame after each of its first pixels, at random positions, and between frames; the next one follows at
     once or later."""
-    bench = Bench(dut)
     pixels = bench.window.height * bench.window.width
     anywhere = [bench.slots.random.randrange(pixels) for _ in range(10)]
     row_end = [pixels - 1, pixels - 2, pixels - bench.window.width, pixels - bench.window.width - 1]
@@ -158,10 +155,9 @@ async def broken_frames(dut: Any, gap: float) -> None:
     await bench.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench, milliseconds=20)
+async def resets(bench: Bench) -> None:
     """Reset at random positions: no block inside leaves, and the next frame is right, also if it breaks at once."""
-    bench = Bench(dut)
     pixels = bench.window.height * bench.window.width
     for age in range(AREA_AVERAGE + 2):
         if age % 2:

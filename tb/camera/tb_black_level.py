@@ -9,6 +9,7 @@ import numpy as np
 from tactile_depth.camera.black_level import black_level
 from tactile_depth.latency import BLACK_LEVEL
 from tb.camera.slots import Slot, Slots, packed, unpacked
+from tb.cases import on_bench
 from tb.stream import MANY, drive, parameters
 
 OUTPUTS = ["out_valid", "out_samples", "out_colour", "out_row_start", "out_frame_start", "out_abort", "out_gains"]
@@ -68,10 +69,9 @@ class Bench:
             assert got == want, f"clock {clock}"
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@on_bench(Bench, milliseconds=2)
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.2, 0.3)]))
-async def frames(dut: Any, gap: float, pause: float) -> None:
-    bench = Bench(dut)
+async def frames(bench: Bench, gap: float, pause: float) -> None:
     for _ in range(50 * MANY):
         bench.frame(bench.slots.random.choice((1, 2, 9, 30)), gap)
         if bench.slots.random.random() < 0.3:
@@ -79,9 +79,8 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
     await bench.check(pause)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-async def resets(dut: Any) -> None:
-    bench = Bench(dut)
+@on_bench(Bench, milliseconds=2)
+async def resets(bench: Bench) -> None:
     for age in range(1, 6):
         bench.frame(age)
         if age % 2:

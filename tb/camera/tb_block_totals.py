@@ -10,6 +10,7 @@ from tactile_depth.camera.block_totals import block_areas, block_totals
 from tactile_depth.camera.row_sums import sums_over_blocks
 from tactile_depth.latency import BLOCK_TOTALS
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
+from tb.cases import on_bench
 from tb.stream import drive, parameters
 
 ROWS = 3
@@ -77,10 +78,9 @@ class Bench:
         assert got == self.expected
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
+@on_bench(Bench, milliseconds=2)
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.4, 0.0), (0.3, 0.3)]))
-async def frames(dut: Any, gap: float, pause: float) -> None:
-    bench = Bench(dut)
+async def frames(bench: Bench, gap: float, pause: float) -> None:
     for kind in ("lowest", "highest", *["random"] * FRAMES):
         bench.frame(kind, gap)
         if kind == "random":
@@ -88,10 +88,9 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
     await bench.check(pause)
 
 
-@cocotb.test(timeout_time=2, timeout_unit="ms")
-async def resets(dut: Any) -> None:
+@on_bench(Bench, milliseconds=2)
+async def resets(bench: Bench) -> None:
     """Reset inside a frame: every block inside is dropped, and the next frame is right."""
-    bench = Bench(dut)
     for age in range(1, BLOCK_TOTALS + 2):
         bench.frame("random")
         del bench.stimuli[len(bench.stimuli) - age + 1 :]

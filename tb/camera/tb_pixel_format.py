@@ -10,6 +10,7 @@ from tactile_depth.camera.pixel_format import colours, pixel_format, raw_shift
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.latency import pixel_format_latency
 from tb.camera.slots import Slot, Slots, unpacked
+from tb.cases import on_bench
 from tb.settings import RUN
 from tb.stream import MANY, drive
 
@@ -110,9 +111,8 @@ class Bench:
         assert len(got) == len(self.expected)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def every_code(dut: Any) -> None:
-    bench = Bench(dut)
+@on_bench(Bench, milliseconds=20)
+async def every_code(bench: Bench) -> None:
     rows, columns = bench.camera.picture
     bench.picture(bench.every_code(), (0, 0, columns, rows), 0.0)
     if bench.bayer:
@@ -120,11 +120,10 @@ async def every_code(dut: Any) -> None:
     await bench.check()
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
+@on_bench(Bench, milliseconds=20)
 @cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.5, 0.0), (0.2, 0.3)]))
-async def windows(dut: Any, gap: float, pause: float) -> None:
+async def windows(bench: Bench, gap: float, pause: float) -> None:
     """Send whole and broken pictures with random windows; the picture after a broken one follows at once or later."""
-    bench = Bench(dut)
     small = bench.rng.integers(0, 1 << 24, (4, 6))
     bench.camera = CameraConfiguration(**{**RUN.device["camera"], "picture": small.shape, "grid": (2, 2)})
     for _ in range(10 * MANY):
@@ -137,9 +136,8 @@ async def windows(dut: Any, gap: float, pause: float) -> None:
     await bench.check(pause)
 
 
-@cocotb.test(timeout_time=20, timeout_unit="ms")
-async def resets(dut: Any) -> None:
-    bench = Bench(dut)
+@on_bench(Bench, milliseconds=20)
+async def resets(bench: Bench) -> None:
     small = bench.rng.integers(0, 1 << 24, (4, 6))
     bench.camera = CameraConfiguration(**{**RUN.device["camera"], "picture": small.shape, "grid": (2, 2)})
     for age in range(bench.latency + 2):

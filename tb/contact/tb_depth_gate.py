@@ -11,6 +11,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.contact.depth_gate import DepthGate, Word
 from tb.axis import PROFILES, AxisMonitor, profile
+from tb.cases import on_bench
 from tb.stream import CLOCK_NS, depth_position, parameters
 
 ROWS, COLUMNS = 3, 5
@@ -145,17 +146,10 @@ class Bench:
         return sent
 
 
-async def started(dut: Any, *arguments: Any) -> Any:
-    bench = Bench(dut, *arguments)
-    await bench.start()
-    return bench
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
-async def waiting(dut: Any, accepts: str, gap: float) -> None:
+async def waiting(bench: Bench, accepts: str, gap: float) -> None:
     """Stall with drop_frames at 0: no word is lost, and each is tapped in the cycle in which it leaves."""
-    bench = await started(dut, accepts)
     for _ in range(15):
         await bench.frame()
         await bench.idle(bench.random.randint(0, gap))
@@ -166,11 +160,10 @@ async def waiting(dut: Any, accepts: str, gap: float) -> None:
         assert {left - came for came, left in zip(bench.came, bench.left, strict=True)} == {1}
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
-async def dropping(dut: Any, accepts: str, gap: float) -> None:
+async def dropping(bench: Bench, accepts: str, gap: float) -> None:
     """Stall with drop_frames at 1: the pipeline never waits, and each word is tapped one cycle after it entered."""
-    bench = await started(dut, accepts)
     bench.drop_frames = True
     await bench.idle()
     stood = bench.stood
@@ -193,11 +186,11 @@ async def dropping(dut: Any, accepts: str, gap: float) -> None:
         assert ROWS * COLUMNS in sent
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(stands=[0, 1, 2], gap=[0, 1, 2, 3, 4])
-async def words_left_standing(dut: Any, stands: Any, gap: Any) -> None:
+async def words_left_standing(bench: Bench, stands: Any, gap: Any) -> None:
     """Change drop_frames while words are in the gate: each of them is tapped once, in order."""
-    bench, total = await started(dut), ROWS * COLUMNS
+    total = ROWS * COLUMNS
     for ready_after in range(8):
         await bench.reset()
         # The sink takes all but the last words of the first frame, then nothing for a while.
@@ -227,11 +220,10 @@ def remaining_words(bench: Any, total: int, stands: int) -> Any:
     return words
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@on_bench(Bench, milliseconds=10)
 @cocotb.parametrize(accepts=list(PROFILES))
-async def changes_at_random(dut: Any, accepts: str) -> None:
+async def changes_at_random(bench: Bench, accepts: str) -> None:
     """Change the bit in random cycles: a frame keeps the value with which it began."""
-    bench = await started(dut, accepts)
 
     def coin() -> None:
         if bench.random.random() < 0.1:
@@ -249,11 +241,10 @@ async def changes_at_random(dut: Any, accepts: str) -> None:
     assert bench.dropped or accepts == "none"
 
 
-@cocotb.test(timeout_time=10, timeout_unit="ms")
+@on_bench(Bench, milliseconds=10)
 @cocotb.parametrize(drop_frames=[False, True])
-async def resets(dut: Any, drop_frames: Any) -> None:
+async def resets(bench: Bench, drop_frames: Any) -> None:
     """Reset in any cycle of a stalled frame: nothing of it leaves."""
-    bench = await started(dut)
     bench.drop_frames = drop_frames
     for words in range(1, ROWS * COLUMNS + 1):
         await bench.idle()

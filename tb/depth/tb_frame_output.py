@@ -10,6 +10,7 @@ from cocotb.clock import Clock as ClockOf
 from cocotb.triggers import RisingEdge
 
 from tactile_depth.depth.frame_output import Clock, frame_output
+from tb.cases import on_bench
 from tb.stream import CLOCK_NS, depth_position, parameters
 
 
@@ -23,6 +24,7 @@ class Bench:
         self.width, self.rows, self.columns = parameters(dut, "Width", "Rows", "Columns")
 
     async def start(self) -> None:
+        ClockOf(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
         self.dut.en.value = 1
         await self.reset()
 
@@ -86,18 +88,10 @@ class Bench:
         return want
 
 
-async def started(dut: Any, **arguments: Any) -> Any:
-    ClockOf(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-    bench = Bench(dut, **arguments)
-    await bench.start()
-    return bench
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
-async def frames(dut: Any, gap: float, pause: float) -> None:
+async def frames(bench: Bench, gap: float) -> None:
     """Send frames: those marked bad do not leave, the others do, and out_of_step stays low."""
-    bench = await started(dut, pause=pause)
     marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
     for bad in marks:
         await bench.idle(bench.random.randint(0, gap))
@@ -109,10 +103,9 @@ async def frames(dut: Any, gap: float, pause: float) -> None:
     assert len(out.ends) == len(marks)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def out_of_step(dut: Any) -> None:
+@on_bench(Bench)
+async def out_of_step(bench: Bench) -> None:
     """Send a frame that is not due, omit one that is due, send rows too early, too late or without a start."""
-    bench = await started(dut)
     await bench.frame(due=False)
     await bench.frame()
     await bench.frame(begins=False)
@@ -128,21 +121,19 @@ async def out_of_step(dut: Any) -> None:
     assert len(good.out_of_step) > 5
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def whatever_comes(dut: Any) -> None:
+@on_bench(Bench, pause=0.1)
+async def whatever_comes(bench: Bench) -> None:
     """Drive each input at random: frames that leave have the right form for any bursts."""
-    bench = await started(dut, pause=0.1)
     chance = bench.random.random
     for _ in range(2000):
         await bench.clock(chance() < 0.2, chance() < 0.1, chance() < 0.05)
     bench.check()
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Bench)
 @cocotb.parametrize(bad=[False, True])
-async def resets(dut: Any, bad: Any) -> None:
+async def resets(bench: Bench, bad: Any) -> None:
     """Reset in any row of a frame: nothing of the frame leaves afterwards."""
-    bench = await started(dut)
     for row in range(1, bench.rows + 1):
         await bench.frame(bad, rows=row)
         await bench.reset()
