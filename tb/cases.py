@@ -12,7 +12,7 @@ def on_bench(bench: Callable[..., Any], milliseconds: float = 1, **fixed: Any) -
     """Make a coroutine a test, which gets a bench of the device; a bench that can start has started.
 
     The bench is made of the device, of `fixed`, and of the parameters of the test that it names too. The coroutine gets
-    the parameters that it names.
+    the parameters that it names, and `dut`. A bench that has `finish` is finished after it.
 
     Parameters
     ----------
@@ -32,7 +32,9 @@ def on_bench(bench: Callable[..., Any], milliseconds: float = 1, **fixed: Any) -
             device = bench(dut, **fixed, **named(values, bench))
             if hasattr(device, "start"):
                 await device.start()
-            await play(device, **named(values, play))
+            await play(device, **named({"dut": dut, **values}, play))
+            if hasattr(device, "finish"):
+                await device.finish()
 
         generator.func = run
         return generator

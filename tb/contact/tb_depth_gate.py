@@ -148,7 +148,7 @@ class Bench:
 
 @on_bench(Bench)
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
-async def waiting(bench: Bench, accepts: str, gap: float) -> None:
+async def waiting(bench: Bench, accepts: str, gap: int) -> None:
     """Stall with drop_frames at 0: no word is lost, and each is tapped in the cycle in which it leaves."""
     for _ in range(15):
         await bench.frame()
@@ -162,7 +162,7 @@ async def waiting(bench: Bench, accepts: str, gap: float) -> None:
 
 @on_bench(Bench)
 @cocotb.parametrize(accepts=list(PROFILES), gap=[0, 6])
-async def dropping(bench: Bench, accepts: str, gap: float) -> None:
+async def dropping(bench: Bench, accepts: str, gap: int) -> None:
     """Stall with drop_frames at 1: the pipeline never waits, and each word is tapped one cycle after it entered."""
     bench.drop_frames = True
     await bench.idle()

@@ -90,7 +90,7 @@ class Bench:
 
 @on_bench(Bench)
 @cocotb.parametrize(gap=[0, 7], pause=[0.0, 0.4])
-async def frames(bench: Bench, gap: float) -> None:
+async def frames(bench: Bench, gap: int) -> None:
     """Send frames: those marked bad do not leave, the others do, and out_of_step stays low."""
     marks = [0, 1, 0, 0, 1, 1, 0, *(bench.random.randint(0, 1) for _ in range(6))]
     for bad in marks:

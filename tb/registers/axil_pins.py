@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pins `s_axil_*` as arguments and results of the model of the port."""
+"""Pins `s_axil_*` as arguments and results of the model of the port, and a checker of every output in every cycle."""
 
 from __future__ import annotations
 
+from collections.abc import Coroutine
 from typing import Any
 
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, RisingEdge
+
 from tactile_depth.registers.axil_port import AxilPort, Pins
+from tb.stream import CLOCK_NS
 
 INPUTS = tuple(
     f"s_axil_{pin}"
@@ -44,3 +50,59 @@ def expected(port: AxilPort, resets: bool) -> dict[str, int]:
     if port.answer is not None:
         values["rdata"], values["rresp"] = port.answer
     return {f"s_axil_{name}": value for name, value in values.items()}
+
+
+async def reset(dut: Any) -> None:
+    """Hold the reset for three clocks."""
+    dut.rst.value = 1
+    await ClockCycles(dut.clk, 3)
+    dut.rst.value = 0
+
+
+class PortChecker:
+    """Checker that feeds a model with the input pins in every cycle, and compares every output."""
+
+    inputs: tuple[str, ...] = INPUTS
+
+    def __init__(self, dut: Any) -> None:
+        self.dut, self.port, self.clocks = dut, AxilPort(), 0
+
+    def expect(self, name: str, value: Any) -> None:
+        got = int(getattr(self.dut, name).value)
+        assert got == value, f"clock {self.clocks}: {name} is {got:#x}, expected {value:#x}"
+
+    def begin(self) -> None:
+        """Take over what the first reset leaves."""
+
+    def step(self) -> None:
+        """Compare the outputs of one cycle."""
+        raise NotImplementedError
+
+    def tasks(self) -> list[Coroutine[Any, Any, None]]:
+        """Return what runs until the test ends."""
+        return [self.run()]
+
+    async def run(self) -> None:
+        """Compare until the test ends, from the end of the first reset on: before it all outputs are unknown."""
+        edge = RisingEdge(self.dut.clk)
+        await edge
+        self.begin()
+        while True:
+            await edge
+            self.step()
+            self.clocks += 1
+
+    async def start(self) -> None:
+        """Clock and reset the core, and begin to compare."""
+        for name in self.inputs:
+            getattr(self.dut, name).value = 0
+        self.dut.rst.value = 1
+        Clock(self.dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
+        await RisingEdge(self.dut.clk)
+        for task in self.tasks():
+            cocotb.start_soon(task)
+        await reset(self.dut)
+
+    async def finish(self) -> None:
+        await ClockCycles(self.dut.clk, 3)
+        assert self.clocks > 4

@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 import random
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import Coroutine
 from typing import Any
 
-import cocotb
-from cocotb.clock import Clock
-from cocotb.triggers import ClockCycles, RisingEdge
+from cocotb.triggers import RisingEdge
 
-from tactile_depth.registers.axil_port import LATE_CLOCKS, AxilPort, Response, response, strobed_bits
+from tactile_depth.registers.axil_port import LATE_CLOCKS, Response, response, strobed_bits
 from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.registers.event_registers import EVENTS, LEVELS
 from tactile_depth.registers.register_map import MAP, REGISTERS, WORD
@@ -20,7 +17,7 @@ from tactile_depth.registers.table_banks import CAPTURES
 from tb import axil, structs
 from tb.axil import OFFSET
 from tb.registers import axil_pins
-from tb.stream import CLOCK_NS
+from tb.registers.axil_pins import PortChecker
 
 CONTROL = REGISTERS["CONTROL"]
 INPUTS = (
@@ -42,36 +39,30 @@ def entry(table: int, index: int) -> tuple[int, int]:
     return low * 0xC2B2_AE35 >> 5 & WORD, low
 
 
-class Checker:
-    """Checker that feeds the model with the input pins and compares every output in every cycle."""
+class Checker(PortChecker):
+    """Checker of axil_registers, with tables behind the bus that change their banks after `lag` cycles."""
 
-    def __init__(self, dut: Any) -> None:
-        self.dut = dut
+    inputs = INPUTS
+
+    def __init__(self, dut: Any, lag: int = 0) -> None:
+        super().__init__(dut)
         parameters = {name: getattr(dut, name).value.to_signed() for name in PARAMETERS}
         self.build = Build(parameters)
         self.model = AxilRegisters(self.build, entry)
-        self.port = AxilPort()
+        self.tables = Tables(dut, lag)
         self.late_answer = 0, Response.OKAY
         self.low: int | None = None  # the lower word on the table bus: the strobed bytes of the last word taken
         self.asked = ""  # the port to a table that was read last
         self.responses: dict[str, list[Response]] = {"read": [], "write": []}
-        self.clocks = 0
+
+    def tasks(self) -> list[Coroutine[Any, Any, None]]:
+        return [*super().tasks(), self.tables.run()]
+
+    def begin(self) -> None:
+        self.model.banks.bank = self.pin("table_bank")  # value of the test before: it survives a reset
 
     def pin(self, name: str) -> int:
         return int(getattr(self.dut, name).value)
-
-    def expect(self, name: str, value: Any) -> None:
-        got = self.pin(name)
-        assert got == value, f"clock {self.clocks}: {name} is {got:#x}, expected {value:#x}"
-
-    async def run(self) -> None:
-        """Compare until the test ends, from the end of the first reset on."""
-        await RisingEdge(self.dut.clk)  # end of the first reset: before it all outputs are unknown
-        self.model.banks.bank = self.pin("table_bank")  # value of the test before: it survives a reset
-        while True:
-            await RisingEdge(self.dut.clk)
-            self.step()
-            self.clocks += 1
 
     def status(self, flag: str) -> frozenset[str]:
         """Return the tables whose capture has a flag of its status up."""
@@ -197,32 +188,6 @@ class Tables:
             if dut.rst.value or late > self.lag:
                 dut.table_in_use.value = int(wanted)
                 late = 0
-
-
-async def reset(dut: Any) -> None:
-    """Hold the reset for three clocks."""
-    dut.rst.value = 1
-    await ClockCycles(dut.clk, 3)
-    dut.rst.value = 0
-
-
-@asynccontextmanager
-async def checked(dut: Any, lag: int = 0) -> AsyncIterator[Checker]:
-    """Clock and reset the registers, and compare them with their model until the end; `lag` is that of the tables."""
-    for name in INPUTS:
-        getattr(dut, name).value = 0
-    dut.rst.value = 1
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-    await RisingEdge(dut.clk)
-    checker = Checker(dut)
-    follower = cocotb.start_soon(checker.run())
-    tables = cocotb.start_soon(Tables(dut, lag).run())
-    await reset(dut)
-    yield checker
-    await ClockCycles(dut.clk, 2)
-    assert checker.clocks > 4
-    follower.cancel()
-    tables.cancel()
 
 
 async def pulse(dut: Any, *events: str, saturations: int = 0, settle: int = 1, **values: int) -> None:

@@ -4,19 +4,17 @@
 from __future__ import annotations
 
 import random
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
 from typing import Any
 
 import cocotb
-from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.registers.axil_port import AxilPort, Response, offset_of, response, strobed_bits
+from tactile_depth.registers.axil_port import Response, offset_of, response, strobed_bits
 from tactile_depth.registers.register_map import ADDRESS_WIDTH
 from tb.axil import present, read, take, write, write_beats
-from tb.registers.axil_pins import INPUTS, expected, pin, pins
-from tb.stream import CLOCK_NS, REGRESS
+from tb.cases import on_bench
+from tb.registers.axil_pins import INPUTS, PortChecker, expected, pin, pins, reset
+from tb.stream import REGRESS
 
 WORDS = ("read_data", "late_data")
 FLAGS = ("write_refused", "read_refused", "read_late", "late_refused")
@@ -24,8 +22,8 @@ RANDOM_CLOCKS = 10_000 if REGRESS else 2_000
 LAST = (1 << ADDRESS_WIDTH) - 4
 
 
-class Checker:
-    """Checker that feeds the model with the input pins in every cycle, and compares every output.
+class Checker(PortChecker):
+    """Checker of axil_port.
 
     Attributes
     ----------
@@ -33,23 +31,12 @@ class Checker:
         Writes that took effect.
     """
 
+    inputs = (*INPUTS, *WORDS, *FLAGS)
+
     def __init__(self, dut: Any) -> None:
-        self.dut, self.port, self.clocks = dut, AxilPort(), 0
+        super().__init__(dut)
         self.writes: list[tuple[int, int, int]] = []
         self.taken: dict[str, Any] = dict.fromkeys(("offset", "ones", "mask"))  # the latest; None before the first
-
-    def expect(self, name: str, value: int) -> None:
-        got = int(getattr(self.dut, name).value)
-        assert got == value, f"clock {self.clocks}: {name} is {got:#x}, expected {value:#x}"
-
-    async def run(self) -> None:
-        """Compare until the test ends, from the end of the first reset on."""
-        edge = RisingEdge(self.dut.clk)
-        await edge
-        while True:
-            await edge
-            self.step()
-            self.clocks += 1
 
     def step(self) -> None:
         """Compare the outputs of one cycle."""
@@ -87,29 +74,6 @@ class Checker:
         )
 
 
-async def reset(dut: Any) -> None:
-    """Hold the reset for two clocks."""
-    dut.rst.value = 1
-    await ClockCycles(dut.clk, 2)
-    dut.rst.value = 0
-
-
-@asynccontextmanager
-async def checked(dut: Any) -> AsyncIterator[Checker]:
-    """Clock and reset the port, and compare it with its model until the end of the block."""
-    for name in (*INPUTS, *WORDS, *FLAGS):
-        getattr(dut, name).value = 0
-    dut.rst.value = 1
-    Clock(dut.clk, CLOCK_NS, unit="ns", impl="gpi").start(start_high=False)
-    checker = Checker(dut)
-    follower = cocotb.start_soon(checker.run())
-    await reset(dut)
-    yield checker
-    await ClockCycles(dut.clk, 3)
-    assert checker.clocks > 4
-    follower.cancel()
-
-
 def settle(dut: Any, rng: random.Random) -> None:
     """Drive the answers of the registers with random values."""
     for name in WORDS:
@@ -118,149 +82,142 @@ def settle(dut: Any, rng: random.Random) -> None:
         getattr(dut, name).value = rng.random() < 0.4
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def bytes_of_a_write(dut: Any) -> None:
+@on_bench(Checker)
+async def bytes_of_a_write(checker: Checker, dut: Any) -> None:
     """Write with every strobe, at the first and the last register, and at addresses inside a register."""
-    async with checked(dut) as checker:
-        for strobe in range(16):
-            for address in (0, LAST, LAST + strobe % 4, 4 << strobe % 8):
-                assert await write(dut, address, 0x9ABC_DEF1, strobe) == Response.OKAY
-                mask = sum(0xFF << 8 * byte for byte in range(4) if strobe >> byte & 1)
-                assert checker.writes.pop() == (address & ~3, 0x9ABC_DEF1 & mask, mask)
+    for strobe in range(16):
+        for address in (0, LAST, LAST + strobe % 4, 4 << strobe % 8):
+            assert await write(dut, address, 0x9ABC_DEF1, strobe) == Response.OKAY
+            mask = sum(0xFF << 8 * byte for byte in range(4) if strobe >> byte & 1)
+            assert checker.writes.pop() == (address & ~3, 0x9ABC_DEF1 & mask, mask)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def address_and_data_in_either_order(dut: Any) -> None:
+@on_bench(Checker)
+async def address_and_data_in_either_order(checker: Checker, dut: Any) -> None:
     """Send address and data in either order: neither is lost, and no response comes before both were taken."""
-    async with checked(dut) as checker:
-        address = {"channel": "aw", "awaddr": 0x18}
-        for gap in range(4):
-            for address_first in (True, False):
-                word = 0x100 * gap + address_first
-                data: dict[str, Any] = {"channel": "w", "wdata": word, "wstrb": 0xF}
-                first, second = (address, data) if address_first else (data, address)
-                await present(dut, **first)
-                for _ in range(gap):
-                    assert not dut.s_axil_bvalid.value
-                    await RisingEdge(dut.clk)
-                await present(dut, **second)
-                assert await take(dut, "b") == Response.OKAY
-                assert checker.writes.pop()[:2] == (0x18, word)
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-@cocotb.parametrize(ahead=["aw", "w"])
-async def the_next_waits_for_this(dut: Any, ahead: Any) -> None:
-    """Offer an address or a word while the previous one waits for its other half: it is not taken."""
-    async with checked(dut) as checker:
-        writes = [(0x18, 0x1234), (0x60, 0xABCD_EF01)]
-        addresses: list[dict[str, Any]] = [{"channel": "aw", "awaddr": address} for address, _ in writes]
-        words: list[dict[str, Any]] = [{"channel": "w", "wdata": word, "wstrb": 0xF} for _, word in writes]
-        first, second = (addresses, words) if ahead == "aw" else (words, addresses)
-        await present(dut, **first[0])
-        following = cocotb.start_soon(present(dut, **first[1]))
-        await ClockCycles(dut.clk, 4)
-        for half in second:
-            await present(dut, **half)
-            assert await take(dut, "b") == Response.OKAY
-        await following
-        assert [done[:2] for done in checker.writes] == writes
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def responses_wait(dut: Any) -> None:
-    """Refuse responses: each stays unchanged until it is taken, and delays the next transaction of its kind only."""
-    async with checked(dut):
-        dut.write_refused.value = 1
-        cocotb.start_soon(write_beats(dut, 0x18, 8))
-        while not dut.s_axil_bvalid.value:
-            await RisingEdge(dut.clk)
-        dut.write_refused.value, dut.read_data.value = 0, 77
-        second = cocotb.start_soon(write_beats(dut, 0x18, 9))
-        assert await read(dut, 0x18) == (77, Response.OKAY)  # reads go on
-        assert await take(dut, "b", stall=10) == Response.SLVERR
-        await second
-        assert await take(dut, "b", stall=3) == Response.OKAY
-
-        await present(dut, "ar", araddr=0x18)
-        following = cocotb.start_soon(present(dut, "ar", araddr=0))
-        dut.read_data.value, dut.read_refused.value = 78, 1
-        assert await write(dut, 0x18, 10) == Response.OKAY  # writes go on
-        assert pin(dut, "rdata") == 77
-        assert await take(dut, "r", stall=10) == Response.OKAY
-        await following
-        await RisingEdge(dut.clk)
-        assert pin(dut, "rdata") == 78
-        assert await take(dut, "r", stall=3) == Response.SLVERR
-
-
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def reset_inside_transactions(dut: Any) -> None:
-    """Reset at every point of a write and a read: nothing of the transaction remains."""
-    async with checked(dut) as checker:
-        for late in (0, 1):
-            for clocks in range(8):
-                dut.read_late.value = late
-                dut.s_axil_bready.value = dut.s_axil_rready.value = clocks & 1
-                tasks = [
-                    cocotb.start_soon(present(dut, "aw", awaddr=0x18)),
-                    cocotb.start_soon(present(dut, "ar", araddr=0x18)),
-                ]
-                if clocks % 3:
-                    tasks.append(cocotb.start_soon(present(dut, "w", wdata=0x66, wstrb=0xF)))
-                await ClockCycles(dut.clk, clocks)
-                for task in tasks:
-                    task.cancel()
-                for name in ("awvalid", "wvalid", "arvalid", "bready", "rready"):
-                    getattr(dut, f"s_axil_{name}").value = 0
-                await reset(dut)
+    address = {"channel": "aw", "awaddr": 0x18}
+    for gap in range(4):
+        for address_first in (True, False):
+            word = 0x100 * gap + address_first
+            data: dict[str, Any] = {"channel": "w", "wdata": word, "wstrb": 0xF}
+            first, second = (address, data) if address_first else (data, address)
+            await present(dut, **first)
+            for _ in range(gap):
+                assert not dut.s_axil_bvalid.value
                 await RisingEdge(dut.clk)
-                for name in ("awready", "wready", "arready"):
-                    assert pin(dut, name), f"{name} is low after reset"
-                assert pin(dut, "bvalid") == pin(dut, "rvalid") == 0
-                checker.writes.clear()
-                assert await write(dut, 0x20, 0x77) == Response.OKAY
-                assert [done[:2] for done in checker.writes] == [(0x20, 0x77)]
+            await present(dut, **second)
+            assert await take(dut, "b") == Response.OKAY
+            assert checker.writes.pop()[:2] == (0x18, word)
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
-async def offered_in_reset(dut: Any) -> None:
-    """Offer accesses in a reset and keep them up: none is taken before its end, then each is answered once."""
-    async with checked(dut) as checker:
-        dut.rst.value = 1
-        tasks = [
-            cocotb.start_soon(write_beats(dut, 0x18, 0x55)),
-            cocotb.start_soon(present(dut, "ar", araddr=0x18)),
-        ]
-        for _ in range(3):
+@on_bench(Checker)
+@cocotb.parametrize(ahead=["aw", "w"])
+async def the_next_waits_for_this(checker: Checker, dut: Any, ahead: Any) -> None:
+    """Offer an address or a word while the previous one waits for its other half: it is not taken."""
+    writes = [(0x18, 0x1234), (0x60, 0xABCD_EF01)]
+    addresses: list[dict[str, Any]] = [{"channel": "aw", "awaddr": address} for address, _ in writes]
+    words: list[dict[str, Any]] = [{"channel": "w", "wdata": word, "wstrb": 0xF} for _, word in writes]
+    first, second = (addresses, words) if ahead == "aw" else (words, addresses)
+    await present(dut, **first[0])
+    following = cocotb.start_soon(present(dut, **first[1]))
+    await ClockCycles(dut.clk, 4)
+    for half in second:
+        await present(dut, **half)
+        assert await take(dut, "b") == Response.OKAY
+    await following
+    assert [done[:2] for done in checker.writes] == writes
+
+
+@on_bench(Checker)
+async def responses_wait(checker: Checker, dut: Any) -> None:
+    """Refuse responses: each stays unchanged until it is taken, and delays the next transaction of its kind only."""
+    dut.write_refused.value = 1
+    cocotb.start_soon(write_beats(dut, 0x18, 8))
+    while not dut.s_axil_bvalid.value:
+        await RisingEdge(dut.clk)
+    dut.write_refused.value, dut.read_data.value = 0, 77
+    second = cocotb.start_soon(write_beats(dut, 0x18, 9))
+    assert await read(dut, 0x18) == (77, Response.OKAY)  # reads go on
+    assert await take(dut, "b", stall=10) == Response.SLVERR
+    await second
+    assert await take(dut, "b", stall=3) == Response.OKAY
+
+    await present(dut, "ar", araddr=0x18)
+    following = cocotb.start_soon(present(dut, "ar", araddr=0))
+    dut.read_data.value, dut.read_refused.value = 78, 1
+    assert await write(dut, 0x18, 10) == Response.OKAY  # writes go on
+    assert pin(dut, "rdata") == 77
+    assert await take(dut, "r", stall=10) == Response.OKAY
+    await following
+    await RisingEdge(dut.clk)
+    assert pin(dut, "rdata") == 78
+    assert await take(dut, "r", stall=3) == Response.SLVERR
+
+
+@on_bench(Checker)
+async def reset_inside_transactions(checker: Checker, dut: Any) -> None:
+    """Reset at every point of a write and a read: nothing of the transaction remains."""
+    for late in (0, 1):
+        for clocks in range(8):
+            dut.read_late.value = late
+            dut.s_axil_bready.value = dut.s_axil_rready.value = clocks & 1
+            tasks = [
+                cocotb.start_soon(present(dut, "aw", awaddr=0x18)),
+                cocotb.start_soon(present(dut, "ar", araddr=0x18)),
+            ]
+            if clocks % 3:
+                tasks.append(cocotb.start_soon(present(dut, "w", wdata=0x66, wstrb=0xF)))
+            await ClockCycles(dut.clk, clocks)
+            for task in tasks:
+                task.cancel()
+            for name in ("awvalid", "wvalid", "arvalid", "bready", "rready"):
+                getattr(dut, f"s_axil_{name}").value = 0
+            await reset(dut)
             await RisingEdge(dut.clk)
-            assert not any(pin(dut, f"{channel}ready") for channel in ("aw", "w", "ar"))
-        dut.rst.value = 0
-        assert await take(dut, "b") == await take(dut, "r") == Response.OKAY
-        for task in tasks:
-            await task
-        assert [done[:2] for done in checker.writes] == [(0x18, 0x55)]
-        await ClockCycles(dut.clk, 4)
-        assert pin(dut, "bvalid") == pin(dut, "rvalid") == 0
+            for name in ("awready", "wready", "arready"):
+                assert pin(dut, name), f"{name} is low after reset"
+            assert pin(dut, "bvalid") == pin(dut, "rvalid") == 0
+            checker.writes.clear()
+            assert await write(dut, 0x20, 0x77) == Response.OKAY
+            assert [done[:2] for done in checker.writes] == [(0x20, 0x77)]
 
 
-@cocotb.test(timeout_time=1, timeout_unit="ms")
+@on_bench(Checker)
+async def offered_in_reset(checker: Checker, dut: Any) -> None:
+    """Offer accesses in a reset and keep them up: none is taken before its end, then each is answered once."""
+    dut.rst.value = 1
+    tasks = [
+        cocotb.start_soon(write_beats(dut, 0x18, 0x55)),
+        cocotb.start_soon(present(dut, "ar", araddr=0x18)),
+    ]
+    for _ in range(3):
+        await RisingEdge(dut.clk)
+        assert not any(pin(dut, f"{channel}ready") for channel in ("aw", "w", "ar"))
+    dut.rst.value = 0
+    assert await take(dut, "b") == await take(dut, "r") == Response.OKAY
+    for task in tasks:
+        await task
+    assert [done[:2] for done in checker.writes] == [(0x18, 0x55)]
+    await ClockCycles(dut.clk, 4)
+    assert pin(dut, "bvalid") == pin(dut, "rvalid") == 0
+
+
+@on_bench(Checker)
 @cocotb.parametrize(pressure=[0.0, 0.6])
-async def random_traffic(dut: Any, pressure: float) -> None:
+async def random_traffic(checker: Checker, dut: Any, pressure: float) -> None:
     """Drive random beats, answers and resets; ready of the responses is low with probability `pressure`."""
     rng = random.Random(cocotb.RANDOM_SEED)
-    async with checked(dut) as checker:
-        valid = {channel: getattr(dut, f"s_axil_{channel}valid") for channel in ("aw", "w", "ar")}
-        for _ in range(RANDOM_CLOCKS):
-            settle(dut, rng)
-            for channel, wire in valid.items():
-                if not wire.value or pin(dut, f"{channel}ready") or dut.rst.value:
-                    wire.value = rng.random() < 0.6
-                    for name in {"aw": ("awaddr",), "w": ("wdata", "wstrb"), "ar": ("araddr",)}[channel]:
-                        handle = getattr(dut, f"s_axil_{name}")
-                        handle.value = rng.getrandbits(len(handle))
-            dut.rst.value = rng.random() < 0.01
-            dut.s_axil_bready.value, dut.s_axil_rready.value = (rng.random() >= pressure for _ in range(2))
-            await RisingEdge(dut.clk)
-        dut.rst.value = 0
-        assert len(checker.writes) > RANDOM_CLOCKS // 20
+    valid = {channel: getattr(dut, f"s_axil_{channel}valid") for channel in ("aw", "w", "ar")}
+    for _ in range(RANDOM_CLOCKS):
+        settle(dut, rng)
+        for channel, wire in valid.items():
+            if not wire.value or pin(dut, f"{channel}ready") or dut.rst.value:
+                wire.value = rng.random() < 0.6
+                for name in {"aw": ("awaddr",), "w": ("wdata", "wstrb"), "ar": ("araddr",)}[channel]:
+                    handle = getattr(dut, f"s_axil_{name}")
+                    handle.value = rng.getrandbits(len(handle))
+        dut.rst.value = rng.random() < 0.01
+        dut.s_axil_bready.value, dut.s_axil_rready.value = (rng.random() >= pressure for _ in range(2))
+        await RisingEdge(dut.clk)
+    dut.rst.value = 0
+    assert len(checker.writes) > RANDOM_CLOCKS // 20
