@@ -4,7 +4,8 @@
 // enabled clocks; while en is low all outputs hold. A word read stands on the bus 3 clocks later and until the
 // next: that of the bank not in use. A colour's words change over 1, 2 or 3 enabled clocks behind the first pixel.
 //
-// One polynomial is followed: the deviations of the other colours are zero.
+// One polynomial is followed: the deviations of the other colours are zero. Assumed, as axil_registers and frame_guard
+// have it: nothing is written while a change-over is due or in the clock of a read; frames are whole.
 
 `default_nettype none
 
@@ -12,6 +13,8 @@ module fv_quadratic_gradient
   import td_types_pkg::*;
 #(
   parameter int Polynomial = 0,
+  parameter int Rows       = 2,
+  parameter int Columns    = 4,
   parameter int WordWidth  = 1,
   localparam int Terms = 6,
   localparam int IndexWidth = 6
@@ -22,7 +25,6 @@ module fv_quadratic_gradient
   input logic                        table_bank,
   input table_command_t              table_command,
   input logic                        in_valid,
-  input logic [3:0]                  in_position,
   input logic signed [1:0]           deviation
 );
 
@@ -31,9 +33,12 @@ module fv_quadratic_gradient
   localparam int Axis = Polynomial / 3;
   localparam int Width = WordWidth + 1;  // twice the lowest coefficient does not fit
 
+  // Whole frames.
+  logic [3:0] row, column, in_position;
   logic begins, begins_row;
-  assign begins = en && in_valid && &in_position[1:0];
-  assign begins_row = en && in_valid && in_position[1:0] == 2'b10;  // another row
+  assign in_position = {column == 4'(Columns - 1), row == 4'(Rows - 1), column == '0, row == '0};
+  assign begins = en && in_valid && row == '0 && column == '0;
+  assign begins_row = en && in_valid && row != '0 && column == '0;
 
   logic out_valid, table_in_use;
   table_answer_t table_answer, expected_answer;
@@ -57,12 +62,8 @@ module fv_quadratic_gradient
     .index(table_index), .word(table_word), .free_word(asked_word)
   );
 
-  logic allowed, started;
-  protocol_quadratic_gradient u_protocol (
-    .clk, .rst, .en, .table_command, .table_bank, .table_in_use, .in_valid, .in_position, .out_valid, .holds(allowed)
-  );
-  assumed u_assumed (.clk, .rst, .allowed, .started);
-  always_comb if (!started) assume (!table_bank);
+  logic started = 1'b0;
+  always_comb if (!started) assume (rst && !table_bank);
 
   // The words as the register map describes them.
   logic [WordWidth-1:0] words_0[Terms], words_1[Terms];  // of both banks
@@ -94,9 +95,12 @@ module fv_quadratic_gradient
   logic signed [WordWidth+1:0] exact;
   logic signed [1:0] deviation_q;
   logic held, moved, asked, asked_own, read_known, changed_over, overwritten;
-  kept #(.Width(5 + 2 * Width)) u_kept (.clk, .rst, .en, .out({out_valid, out_position, out_gx, out_gy}), .held);
+  logic [4+2*Width:0] out_q;
   always_ff @(posedge clk) begin
+    started <= 1'b1;
+    held <= ~en & ~rst;
     moved <= en & ~rst;
+    out_q <= {out_valid, out_position, out_gx, out_gy};
     if (rst || begins) {in_use, named} <= {2{table_bank}};
     of_colour <= rst ? table_bank : colour_used;
     reported <= rst ? table_bank : en && begun[2] ? named : reported;
@@ -112,6 +116,8 @@ module fv_quadratic_gradient
         row_step <= step_now;
         row_rise <= begins ? (used ? words_1[3] : words_0[3]) : row_rise + (used ? words_1[4] : words_0[4]);
       end
+      column <= column == 4'(Columns - 1) ? '0 : column + 4'd1;
+      if (column == 4'(Columns - 1)) row <= row == 4'(Rows - 1) ? '0 : row + 4'd1;
     end
     if (en) begin
       valid <= {valid[Latency-2:0], in_valid};
@@ -127,11 +133,18 @@ module fv_quadratic_gradient
     changed_over <= ~rst & (changed_over | (begins & table_bank != in_use));
     if (rst) begin
       valid <= '0;
+      row <= '0;
+      column <= '0;
       asked <= 1'b0;
       begun <= '0;
       read_known <= 1'b0;
     end
   end
+  always_comb begin
+    if (table_write) assume (table_bank == reported && begun == '0 && !table_read);
+    if (table_write || table_read) assume (32'(table_index) < 6 * Terms);
+  end
+
   logic clips;
   assign exact = $signed(product[(WordWidth+2)*Latency-1-:WordWidth+2]);
   assign clips = exact[WordWidth+1] != exact[WordWidth];
@@ -144,6 +157,7 @@ module fv_quadratic_gradient
       if (out_valid && clips) saturated: assert (slope == {exact[WordWidth+1], {WordWidth{~exact[WordWidth+1]}}});
       if (moved && out_valid) clips_counted: assert (clips ? saturations != '0 : saturations < 2'd2);
       if (!moved || !out_valid) no_clips_counted: assert (saturations == '0);
+      if (held) holds: assert ({out_valid, out_position, out_gx, out_gy} == out_q);
       if (read_known) reads_spare: assert (table_answer == expected_answer);
       from_power_up: cover (out_valid && clips && out_position[2] && !changed_over);
       from_write: cover (out_valid && clips && out_position[2] && changed_over && overwritten && held);

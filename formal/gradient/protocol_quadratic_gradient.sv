@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // protocol_quadratic_gradient: frames of two rows or more, of four pixels or more, cut short by a reset alone; how long
-// they are is left open. Nothing is written while a change of bank is due, or in the clock of a read.
+// they are is left open. Nothing is written while a change of bank is due, or in the clock of a read. Inputs stay while
+// en is low.
 
 `default_nettype none
 
@@ -24,18 +25,23 @@ module protocol_quadratic_gradient (
   output logic       counts_saturations
 );
 
-  logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, named = 1'b0, place_legal;
+  logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, named = 1'b0, still = 1'b0, valid_before, place_legal;
   logic write, legal, known;
   logic [1:0] column = '0;  // pixels of this row so far, up to three
+  logic [3:0] place_before;
   assign reset = rst | ~holds;
   assign place_legal = begun ? ~in_position[1] | (column == 2'd3 & (~in_position[0] | second_row)) : &in_position[1:0];
   assign holds = (~in_valid | rst | place_legal)
+      & (~still | rst | (in_valid == valid_before & (~in_valid | in_position == place_before)))
       & (rst | ~write | (table_bank == table_in_use & named == table_in_use)) & legal;
   table_accesses #(.Select(td_register_map_pkg::TableSelectCoefficients), .Entries(36)) u_accesses (
     .clk, .rst, .holds, .table_command, .write, .read(), .index(), .idle(), .legal, .known
   );
   always_ff @(posedge clk) begin
     live <= live | reset;
+    still <= ~en & ~reset;
+    valid_before <= in_valid;
+    place_before <= in_position;
     if (reset || (en && in_valid && &in_position[1:0])) named <= table_bank;
     if (en && in_valid) begin
       begun <= 1'b1;
