@@ -32,7 +32,7 @@ from tactile_depth.gradient.flat_field import captured_gains
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.press_folder import read_presses
 from tactile_depth.presses import GridPress
-from tactile_depth.reference import quadratic_slopes, quadratic_terms
+from tactile_depth.reference import quadratic_coefficients, quadratic_terms, weighted
 from tactile_depth.scenes import LIGHTS
 from tactile_depth.sensor import MODELS
 from tactile_depth.tactile_depth import slope_codes, solve
@@ -450,7 +450,8 @@ def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real: Any) -> None:
         )
         if not fits or circle[2] <= from_edge:  # type: ignore[index]  # not cut
             continue
-        slopes = quadratic_slopes(frame / lit - 1, calibration, calibration.pixel_pitch_mm)
+        size = frame.shape[0], frame.shape[1]
+        slopes = weighted(frame / lit - 1, quadratic_coefficients(*size, calibration, calibration.pixel_pitch_mm))
         middle, edge = (height(slopes, circle, left, y - window // 2) for left in (x - window // 2, x - from_edge))
         kept.append(edge / middle)
     assert len(kept) >= 10

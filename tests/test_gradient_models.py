@@ -239,7 +239,8 @@ def test_slopes_are_near_double_precision(seed: int, choices: Any) -> None:
     codes = np.random.default_rng(seed).integers(-4096, 4096, (2, config.rows, config.columns, 3))
     monitor = Monitor()
     result = quadratic_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
-    want = reference.quadratic_slopes(codes * DEVIATION.lsb, calibration, pitch)
+    coefficients = reference.quadratic_coefficients(config.rows, config.columns, calibration, pitch)
+    want = reference.weighted(codes * DEVIATION.lsb, coefficients)
     assert not monitor.saturations
     assert np.abs(result * config.gradient_lsb - want).max() < 3 * COLOUR_COEFFICIENT.lsb + config.gradient_lsb
 

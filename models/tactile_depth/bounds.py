@@ -27,9 +27,15 @@ class Bounds:
     row_inverse: float
 
 
+def l1(response: np.ndarray) -> np.ndarray:
+    """Return the L1 norm over samples, axis 0."""
+    norm: np.ndarray = np.abs(response).sum(axis=0)
+    return norm
+
+
 def _variation(response: np.ndarray) -> np.ndarray:
-    """Return the L1 norm over axis 0 of the response to slopes, from the response to the divergence."""
-    return np.abs(np.diff(response, axis=0, append=0)).sum(axis=0)
+    """Return the L1 norm of the response to slopes, from the response to the divergence."""
+    return l1(np.diff(response, axis=0, append=0))
 
 
 def wide_arithmetic(neumann: bool) -> dict[str, Any]:
@@ -54,9 +60,9 @@ def difference_bounds(rows: int, columns: int, neumann: bool) -> tuple[np.ndarra
     """
     eigenvalue = eigenvalues(columns, neumann)
     modes = dst_forward(np.eye(columns)[:, makhoul(columns)], **wide_arithmetic(neumann))
-    length = np.abs(modes).sum(axis=0)
+    length = l1(modes)
     inner = np.diff(modes, axis=0, append=modes[-1:] if neumann else 0)  # Neumann: no slope across the edge
-    variation = np.abs(inner).sum(axis=0)
+    variation = l1(inner)
     end = eigenvalue - (1 if neumann else 3)
     weights = largest = np.ones(columns)
     c = 1 / end
@@ -67,15 +73,15 @@ def difference_bounds(rows: int, columns: int, neumann: bool) -> tuple[np.ndarra
     return 2 * length + variation * largest, (4 - eigenvalue) * length
 
 
-class _Responses(Monitor):
-    """Monitor that keeps the response of each node instead of its norm."""
+class Responses(Monitor):
+    """Monitor that keeps the response of each node: (samples, words)."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.responses: dict[str, np.ndarray] = {}
+        self.nodes: dict[str, np.ndarray] = {}
 
     def linear(self, node: str, response: np.ndarray) -> None:
-        self.responses[node] = response.reshape(response.shape[0], -1)
+        self.nodes[node] = response.reshape(len(response), -1)
 
 
 @cache
@@ -83,15 +89,12 @@ def bounds(size: int, neumann: bool = False) -> Bounds:
     """Return the largest L1 norms of the nodes of the spectral solver, from the models run on unit vectors."""
     wide = wide_arithmetic(neumann)
     unit = np.eye(size)[:, makhoul(size)]  # row j: sample j alone, in burst order
-    forward, inverse = _Responses(), _Responses()
+    forward, inverse = Responses(), Responses()
     modes = dst_forward(unit, monitor=forward, node="forward", **wide)
     dst_inverse(modes, monitor=inverse, node="inverse", **wide)
 
-    def largest(nodes: _Responses, norm) -> float:  # type: ignore[no-untyped-def]
-        return max(float(norm(response).max()) for response in nodes.responses.values())
-
-    def l1(response: np.ndarray) -> np.ndarray:
-        return np.abs(response).sum(axis=0)
+    def largest(nodes: Responses, norm) -> float:  # type: ignore[no-untyped-def]
+        return max(float(norm(response).max()) for response in nodes.nodes.values())
 
     def row(response: np.ndarray) -> np.ndarray:  # gx along the row, gy of this row and of the row before
         return _variation(response) + 2 * l1(response)

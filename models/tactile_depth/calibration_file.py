@@ -94,7 +94,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         height_errors={
             model: _height_error(path, arrays, model) for model in models if f"cap_height_{model}" in arrays
         },
-        lighting=_lighting(path, arrays) if "lighting" in arrays else None,
+        lighting=_finite(path, arrays, "lighting", (*LIGHTING_BLOCKS, 3)) if "lighting" in arrays else None,
     )
 
 
@@ -183,22 +183,19 @@ def _number(path: Path, arrays: Arrays, key: str) -> float:
 
 def _height_error(path: Path, arrays: Arrays, model: str) -> HeightError:
     key = f"cap_height_{model}"
-    mean, spread, presses = _finite(path, arrays, key, (3,), "mean, spread, number of presses")
+    accepted = "mean, spread, number of presses"
+    mean, spread, presses = _finite(path, arrays, key, (3,), accepted)
     if min(mean, spread, presses) < 0:
-        raise InputError(f"{path}: `{key}` has negative values: accepted is mean, spread, number of presses")
+        raise InputError(f"{path}: `{key}` has negative values: accepted is {accepted}")
     return HeightError(float(mean), float(spread), int(min(presses, 1e9)))
 
 
-def _lighting(path: Path, arrays: Arrays) -> np.ndarray:
-    shape = (*LIGHTING_BLOCKS, 3)
-    return _finite(path, arrays, "lighting", shape, f"float {shape}").astype(np.float64)
-
-
-def _finite(path: Path, arrays: Arrays, key: str, shape: tuple[int, ...], accepted: str) -> np.ndarray:
+def _finite(path: Path, arrays: Arrays, key: str, shape: tuple[int, ...], accepted: str = "") -> np.ndarray:
+    accepted = accepted or f"float {shape}"
     value = _checked(path, arrays, key, shape, "f", accepted)
     if not np.isfinite(value).all():
         raise InputError(f"{path}: `{key}` holds NaN or infinity: accepted is {accepted}")
-    return value
+    return value.astype(np.float64)
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> np.ndarray:

@@ -22,6 +22,7 @@ from itertools import product
 import numpy as np
 
 from tactile_depth import reference
+from tactile_depth.bounds import Responses, l1
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration, Format
 from tactile_depth.poisson import spectral_solver, tridiagonal_solver
@@ -106,23 +107,6 @@ def node_format(name: str, config: Configuration) -> Format:
     return Format(width, config.elimination.fraction - drop)
 
 
-class Responses(Monitor):
-    """Monitor that keeps the response of each node: (samples, words)."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.nodes: dict[str, np.ndarray] = {}
-
-    def linear(self, node: str, response: np.ndarray) -> None:
-        self.nodes[node] = response.reshape(len(response), -1)
-
-
-def l1(response: np.ndarray) -> np.ndarray:
-    """Return the L1 norm over samples, axis 0."""
-    norm: np.ndarray = np.abs(response).sum(axis=0)
-    return norm
-
-
 def steps(response: np.ndarray, neumann: bool, axis: int = 0) -> np.ndarray:
     """Return the response to slopes along an axis, from the response to the divergence.
 
@@ -162,10 +146,10 @@ class _Worst:
     slopes: float = -1.0
     depths: float = 0.0
     reached: float = -1.0
-    response: Callable[[], np.ndarray] = lambda: np.zeros(0)
+    response: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
-    def see(self, slopes: np.ndarray, depths: np.ndarray, response: Callable[[int], Callable[[], np.ndarray]]) -> None:
-        """Take the norms of words over both boxes; `response(index)` returns a function that computes a response."""
+    def see(self, slopes: np.ndarray, depths: np.ndarray, response: Callable[[int], np.ndarray]) -> None:
+        """Take the norms of words over both boxes; `response(index)` returns the response of a word."""
         self.depths = max(self.depths, float(np.minimum(slopes, depths).max()))
         best = int(np.argmax(slopes))
         if slopes[best] > self.slopes:
@@ -197,25 +181,13 @@ class _Survey:
     def at(self, node: str) -> _Worst:
         return self.worst.setdefault(node, _Worst())
 
-    def outer(self, column: np.ndarray, mode: int) -> Callable[[], np.ndarray]:
-        kept = column.copy()
-        return lambda: np.outer(kept, self.modes[:, mode])
+    def outer(self, column: np.ndarray, mode: int) -> np.ndarray:
+        return np.outer(column, self.modes[:, mode])
 
     # Row transform of a single row. Its gy counts twice, because it is subtracted again in the row below.
 
     def row_forward(self) -> None:
-        rows, columns = self.config.rows, self.config.columns
-
-        def alone(response: np.ndarray) -> Callable[[], np.ndarray]:
-            kept = response.copy()
-
-            def frame() -> np.ndarray:
-                full = np.zeros((rows, columns))
-                full[rows // 2] = kept
-                return full
-
-            return frame
-
+        middle = np.arange(self.config.rows) == self.config.rows // 2
         for name, response in self.forward.items():
             length = l1(response)
             slopes = _variation(response, self.neumann) + 2 * length
@@ -224,10 +196,10 @@ class _Survey:
             edge = length + l1(along - (1 if self.neumann else 3) * response)
             depths = np.maximum(inside, edge)
 
-            def pick(word: int, response: np.ndarray = response) -> Callable[[], np.ndarray]:
-                return alone(response[:, word])
+            def alone(word: int, response: np.ndarray = response) -> np.ndarray:
+                return np.outer(middle, response[:, word])
 
-            self.at(name).see(slopes * self.slope, depths * self.depth_in, pick)
+            self.at(name).see(slopes * self.slope, depths * self.depth_in, alone)
 
     def column_norm(self, response: np.ndarray, mode: int | slice | np.ndarray) -> np.ndarray:
         """Return the norms over slopes of words, from their responses to the column of a row mode: (rows, words)."""
@@ -249,10 +221,6 @@ class _Survey:
             seen = response(row, word)
             return float(sum(np.abs(steps(seen, self.neumann, axis)).sum() for axis in (0, 1))) * self.slope
 
-        def keep(row: int, word: np.ndarray) -> Callable[[], np.ndarray]:
-            kept = word.copy()
-            return lambda: response(row, kept)
-
         depths = {name: l1(self.from_row @ words) * self.depth_out for name, words in self.inverse.items()}
         deepest = {}  # norm of each position of a row
         for row in sources:
@@ -267,7 +235,7 @@ class _Survey:
                 row = max(sources, key=lambda row: float(deepest[row].max()))
                 column = int(np.argmax(deepest[row]))
                 worst.slopes = worst.reached = float(deepest[row][column])
-                worst.response = keep(row, self.to_row[:, column])
+                worst.response = response(row, self.to_row[:, column])
                 continue
             # A word is a sum over the depths of its row, and a sum over the modes of its row. Both give an upper bound.
             # The words with the largest bounds are tried first, until no other bound exceeds the value reached.
@@ -276,15 +244,16 @@ class _Survey:
             worst.depths = float(np.minimum(atmost.max(axis=0), depths[name]).max())
             order = np.argsort(atmost, axis=None)[::-1]
             rows = list(sources)
-            worst.reached, worst.response = 0.0, keep(0, np.zeros(size))
+            worst.reached, reaching = 0.0, (0, np.zeros(size))
             for tries, index in enumerate(order):
                 place, column = np.unravel_index(index, atmost.shape)
                 worst.slopes = max(worst.reached, float(atmost[place, column]))
                 if worst.reached >= atmost[place, column] or tries == most:
                     break
-                found = norm(rows[place], words[:, column])
-                if found > worst.reached:
-                    worst.reached, worst.response = found, keep(rows[place], words[:, column])
+                reached = norm(rows[place], words[:, column])
+                if reached > worst.reached:
+                    worst.reached, reaching = reached, (rows[place], words[:, column])
+            worst.response = response(*reaching)
             self.progress(1 / len(self.inverse) / 2)
 
 
@@ -309,11 +278,11 @@ class _Spectral(_Survey):
             second = l1(_second_difference(response, neumann))
             depths = np.outer(second, self.mode_l1) + np.outer(l1(response), mode_second)
 
-            def pick(index: int, response: np.ndarray = response) -> Callable[[], np.ndarray]:
+            def of_column(index: int, response: np.ndarray = response) -> np.ndarray:
                 word, mode = divmod(index, size)
                 return self.outer(response[:, word], mode)
 
-            self.at(name).see(slopes.ravel(), depths.ravel() * self.depth_in, pick)
+            self.at(name).see(slopes.ravel(), depths.ravel() * self.depth_in, of_column)
 
         inverse = Responses()
         # (mode's position, row in Makhoul order)
@@ -333,10 +302,10 @@ class _Spectral(_Survey):
             column = spectral_solver.column_inverse(divided, config, nodes)
             for name, response in {"spectral_divide": divided, **nodes.nodes}.items():
 
-                def pick_word(word: int, response: np.ndarray = response, mode: int = mode) -> Callable[[], np.ndarray]:
+                def of_mode(word: int, response: np.ndarray = response, mode: int = mode) -> np.ndarray:
                     return self.outer(response[:, word], mode)
 
-                self.at(name).see(self.column_norm(response, mode), lengths[name] * self.mode_depth[mode], pick_word)
+                self.at(name).see(self.column_norm(response, mode), lengths[name] * self.mode_depth[mode], of_mode)
             for row in rows:
                 sources[row][mode] = column[:, position[row]]
             self.progress(1 / size)
@@ -369,11 +338,11 @@ class _Tridiagonal(_Survey):
         columns = {node: np.zeros(rows) for node, _ in norms}
         for (node, row), slopes in norms.items():
 
-            def pick(mode: int, node: str = node, row: int = row) -> Callable[[], np.ndarray]:
+            def later(mode: int, node: str = node, row: int = row) -> np.ndarray:
                 wanted[node] = row, mode
-                return lambda: np.outer(columns[node], self.modes[:, mode])
+                return columns[node]
 
-            self.at(node).see(slopes, self.in_depths(node, row), pick)
+            self.at(node).see(slopes, self.in_depths(node, row), later)
 
         sources = {row: np.empty((size, rows)) for row in places(rows)}
         for first in starts:
@@ -388,6 +357,8 @@ class _Tridiagonal(_Survey):
 
             self.run(first, min(first + block, rows), collect)
             self.progress(1 / len(starts) / 2)
+        for node, (_, mode) in wanted.items():
+            self.at(node).response = self.outer(columns[node], mode)
         return sources
 
     def run(self, first: int, stop: int, hear: Callable[[str, int, np.ndarray], None]) -> None:
@@ -464,9 +435,6 @@ def certify(config: Configuration, progress: Callable[[float], None] = lambda sh
     nodes = []
     for name, worst in survey.worst.items():
         form = node_format(name, config)
-        nodes.append(
-            Node(
-                name, form, worst.slopes * form.lsb, worst.reached * form.lsb, worst.depths * form.lsb, worst.response()
-            )
-        )
+        slopes, reached, depths = (norm * form.lsb for norm in (worst.slopes, worst.reached, worst.depths))
+        nodes.append(Node(name, form, slopes, reached, depths, worst.response))
     return nodes

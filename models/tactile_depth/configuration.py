@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from tactile_depth.bounds import Bounds, bounds, difference_bounds
-from tactile_depth.errors import Argument, InputError, former_names, one_of, within
+from tactile_depth.errors import Argument, InputError, former_names, one_of, power_of_two, within
 from tactile_depth.poisson.transform.sdf_fft import twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 
@@ -148,11 +149,7 @@ class Configuration:
             raise InputError(model, " without a reference: it takes colours relative to one", remedy="give one")
         one_of(solver, COLUMNS)
         within(columns, *COLUMNS[self.solver])
-        if self.columns & (self.columns - 1):
-            lower = 1 << (self.columns.bit_length() - 1)
-            upper = min(2 * lower, COLUMNS[self.solver][1])
-            remedy = ("try ", Argument("columns", lower), " or ", Argument("columns", upper))
-            raise InputError(columns, " is not a power of two", remedy=remedy)
+        power_of_two(columns)
         if not self.rows:
             object.__setattr__(self, "rows", self.columns)
         if self.solver == "spectral" and self.rows != self.columns:
@@ -212,10 +209,7 @@ class Configuration:
             )
         if not 1 <= self.lanes <= most:
             raise InputError(lanes, " with ", Argument("columns", self.columns), accepted=range(1, most + 1))
-        if self.lanes & (self.lanes - 1):
-            lower = 1 << (self.lanes.bit_length() - 1)
-            remedy = ("try ", Argument("lanes", lower), " or ", Argument("lanes", 2 * lower))
-            raise InputError(lanes, " is not a power of two", remedy=remedy)
+        power_of_two(lanes)
 
     def _check_sums(self) -> None:
         """Refuse gains that a capture cannot sum blocks in."""
@@ -361,18 +355,12 @@ class Configuration:
         """Return the HDL parameters that both solvers share."""
         return {"Columns": self.columns, "Width": self.arithmetic_width, "CoeffWidth": self.coefficient_width}
 
-    def stream_parameters(self) -> dict[str, int]:
-        """Return the parameters of spectral_solver.sv; poisson/spectral_solver.py adds those of its divide."""
+    def transform_arguments(self) -> dict[str, Any]:
+        """Return the arguments of the models of the transforms that both solvers share."""
         return {
-            **self.transform_parameters(),
-            "InWidth": self.divergence.width,
-            "DataWidth": self.data_width,
-            "RowForwardOut": self.row_forward.fraction - self.row_modes.fraction,
-            "ColumnForwardIn": self.row_modes.fraction - self.column_forward.fraction,
-            "ColumnInverseOut": self.column_inverse.fraction - self.depth_modes.fraction,
-            "RowInverseIn": self.depth_modes.fraction - self.row_inverse.fraction,
-            "RowInverseOut": self.row_inverse.fraction - self.depth.fraction,
-            "StoreStyle": self.store_style,
+            "width": self.arithmetic_width,
+            "coefficient_width": self.coefficient_width,
+            "alternate": not self.neumann,
         }
 
     # Gain.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 from tactile_depth.common import td_node_map
@@ -60,7 +60,7 @@ class Memory:
     kind: str
     width: int
     words: int
-    core: str = ""
+    core: str
 
     @property
     def bits(self) -> int:
@@ -111,152 +111,136 @@ class Cost:
 
 def cost(config: Configuration) -> Cost:
     """Count the multipliers and memories in the RTL of a configuration."""
-    multipliers, memories = _pipeline(top_parameters(config))
+    parts = _pipeline(top_parameters(config))
     return Cost(
-        multipliers,
-        memories,
+        [part for part in parts if isinstance(part, Multiplier)],
+        [part for part in parts if isinstance(part, Memory)],
         first_depth_latency(config),
         last_pixel_to_first_depth(config),
         last_pixel_to_last_depth(config),
     )
 
 
-Parts = tuple[list[Multiplier], list[Memory]]
+Parts = list[Multiplier | Memory]
 
 
 def _pipeline(p: dict[str, int]) -> Parts:
     """Count the parts of hdl/tactile_depth.sv."""
-    size, slope, data = p["Columns"], p["GradientWidth"], p["DataWidth"]
-    divergence = slope + 2
-    rows = [
+    size, slope, data, lanes = p["Columns"], p["GradientWidth"], p["DataWidth"], p["Lanes"]
+    last_rows = "row_reorder" if lanes == 1 else "corner_turn"
+    return [
+        *_colours(p),
         Memory("row buffers", slope, size, "divergence"),  # the row above
-        Memory("row buffers", divergence, 2 * size, "row_reorder"),
+        Memory("row buffers", slope + 2, 2 * size, "row_reorder"),
+        *[Memory("row buffers", data, 2 * size, last_rows)] * lanes,
+        *(_tridiagonal(p) if p["Tridiagonal"] else _spectral(p)),
+        *_zero(p),
     ]
-    if p["Lanes"] == 1:
-        rows.append(Memory("row buffers", data, 2 * size, "row_reorder"))
-    else:
-        rows += [Memory("row buffers", data, 2 * size, "corner_turn")] * p["Lanes"]
-    solver = _tridiagonal(p) if p["Tridiagonal"] else _spectral(p)
-    return _joined(_colours(p), ([], rows), solver, _zero(p))
 
 
 def _colours(p: dict[str, int]) -> Parts:
     """Count the parts from pixels to slopes: flat_field.sv, and gradient_lookup.sv or quadratic_gradient.sv."""
-    multipliers, memories = [], []
+    parts: Parts = []
     if p["FlatField"]:
         gain, log2, core = p["GainWidth"], p["BlockLog2"], "flat_field"
         # The difference of two nodes times its row weight, and a colour times its gain: one bit more than a gain has.
-        multipliers += [Multiplier(gain + 1, log2 + 2, core), Multiplier(gain + 1, 9, core)] * 3
-        memories += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
-        memories += [Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core)]
+        parts += [Multiplier(gain + 1, log2 + 2, core), Multiplier(gain + 1, 9, core)] * 3
+        parts += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
+        parts.append(Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core))
     if p["Quadratic"]:
         core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
-        multipliers += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
-        memories += [Memory("tables", width, words // 6, core)] * 12
-    else:
-        memories += [Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2
-    return multipliers, memories
+        parts += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
+        return [*parts, *[Memory("tables", width, words // 6, core)] * 12]
+    return [*parts, *[Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2]
 
 
 def _zero(p: dict[str, int]) -> Parts:
     """Count the parts of zero_offset.sv and zero_capture.sv: row weights, two banks of nodes, sums, delayed depths."""
     if not p["ZeroOffset"]:
-        return [], []
+        return []
     log2, data, lanes = p["BlockLog2"], p["DataWidth"], p["Lanes"]
     side = td_node_map.side(lanes, log2)  # nodes that are written at once
     words = (p["Rows"] >> log2) * (p["Columns"] >> log2) // side
-    memories = [
+    return [
         *[Memory("tables", data, words, "zero_offset")] * (2 * side * td_node_map.tables(lanes, log2)),
         Memory("delay lines", lanes * data + DEPTH_MARKS, td_node_map.latency(lanes, log2), "zero_offset"),
         Memory("tables", side * (data + 2 * log2 + LARGEST_LOG2), words, "zero_capture"),
+        *[Multiplier(data + 1, log2 + 2, "zero_offset")] * side,
     ]
-    return [Multiplier(data + 1, log2 + 2, "zero_offset")] * side, memories
 
 
 def _spectral(p: dict[str, int]) -> Parts:
     size, data, width, coefficient = p["Columns"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["CoeffWidth"]
-    return _joined(
-        _forward(p),
-        ([], [Memory("frame stores", data, size * size, "transpose")] * 2),
-        _forward(p),
-        _in(
-            "spectral_divide",
-            [Multiplier(width, coefficient)],
-            [Memory("tables", p["DivideShiftWidth"] + coefficient, size * (size + 1) // 2)],
-        ),
-        _inverse(p, width),
-        _inverse(p, data),
-    )
+    return [
+        *_forward(p) * 2,
+        *[Memory("frame stores", data, size * size, "transpose")] * 2,
+        Multiplier(width, coefficient, "spectral_divide"),
+        Memory("tables", p["DivideShiftWidth"] + coefficient, size * (size + 1) // 2, "spectral_divide"),
+        *_inverse(p, width),
+        *_inverse(p, data),
+    ]
 
 
 def _tridiagonal(p: dict[str, int]) -> Parts:
     size, rows, data, width, lanes = p["Columns"], p["Rows"], p["DataWidth"], p["DataWidth"] + GUARD_BITS, p["Lanes"]
-    packed = p["WordsPerRow"]
+    packed, core = p["WordsPerRow"], "forward_elimination"
     row_number = (rows - 1).bit_length() + 2  # 1 to rows, signed
-    mean = [Multiplier(width, row_number), Multiplier(width, p["CoeffWidth"])] if p["Neumann"] else []
+    mean = [Multiplier(width, row_number, core), Multiplier(width, p["CoeffWidth"], core)] if p["Neumann"] else []
     bank = Memory("frame stores", data * packed, -(-rows // lanes) * -(-size // packed), "frame_stack")
-    return _joined(
-        _forward(p),
-        _in("forward_elimination", *_thomas(p, size)),
-        _in("forward_elimination", [], [Memory("tables", p["LastShiftWidth"] + p["CoeffWidth"], size)]),
-        _in("forward_elimination", mean, []),
-        ([], [bank] * lanes),
-        *[_in("back_substitution", *_thomas(p, size // lanes))] * lanes,
-        *[_inverse(p, width)] * lanes,
-    )
+    return [
+        *_forward(p),
+        *_thomas(p, size, core),
+        Memory("tables", p["LastShiftWidth"] + p["CoeffWidth"], size, core),
+        *mean,
+        *[bank] * lanes,
+        *_thomas(p, size // lanes, "back_substitution") * lanes,
+        *_inverse(p, width) * lanes,
+    ]
 
 
-def _thomas(p: dict[str, int], running: int) -> Parts:
+def _thomas(p: dict[str, int], running: int, core: str) -> Parts:
     """Count the parts of an elimination, or of a lane of the substitution, with so many words of the running row.
 
     The table of the last row is not among them: only the elimination has one.
     """
     width, coefficient, words = p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], p["TableWords"]
-    return (
-        [Multiplier(width, coefficient)],
-        [
-            Memory("row buffers", width, running),
-            Memory("tables", coefficient, words),
-            Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Columns"]),
-        ],
-    )
+    return [
+        Multiplier(width, coefficient, core),
+        Memory("row buffers", width, running, core),
+        Memory("tables", coefficient, words, core),
+        Memory("tables", (words - 1).bit_length() + p["SettledWidth"], p["Columns"], core),
+    ]
 
 
 def _forward(p: dict[str, int]) -> Parts:
     """Count the parts of dst_forward.sv, which forms only the real part of the product with the phase."""
-    phase = [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"])] * 2
-    phases = [Memory("tables", 3 * p["CoeffWidth"], p["Columns"])]
-    return _in("dst_forward", *_joined(_fft(p, inverse=False), (phase, phases)))
+    phase = Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], "dst_forward")
+    return [
+        *_fft(p, False, "dst_forward"),
+        *[phase] * 2,
+        Memory("tables", 3 * p["CoeffWidth"], p["Columns"], "dst_forward"),
+    ]
 
 
 def _inverse(p: dict[str, int], in_width: int) -> Parts:
     """Count the parts of hdl/poisson/transform/dst_inverse.sv with its mode_pairs."""
-    size = p["Columns"]
-    memories = [
-        Memory("delay lines", in_width, size // 2 + 1),
-        Memory("row buffers", in_width, size),
-        Memory("tables", 3 * p["CoeffWidth"], size),
+    size, core = p["Columns"], "dst_inverse"
+    return [
+        *[Multiplier(in_width, p["CoeffWidth"], core)] * 4,
+        Memory("delay lines", in_width, size // 2 + 1, core),
+        Memory("row buffers", in_width, size, core),
+        Memory("tables", 3 * p["CoeffWidth"], size, core),
+        *_fft(p, True, core),
     ]
-    phase = [Multiplier(in_width, p["CoeffWidth"])] * 4
-    return _in("dst_inverse", *_joined((phase, memories), _fft(p, inverse=True)))
 
 
-def _fft(p: dict[str, int], inverse: bool) -> Parts:
+def _fft(p: dict[str, int], inverse: bool, core: str) -> Parts:
     """Count the parts of hdl/poisson/transform/sdf_fft.sv: complex words in its delays, {-Im, Im, Re} in its tables."""
-    multipliers, memories = [], []
+    parts: Parts = []
     for stage in stages(p["Columns"], inverse):
         if stage.delay > LONGEST_SHIFT:
-            memories.append(Memory("delay lines", 2 * (p["DataWidth"] + GUARD_BITS + 1), stage.delay))
+            parts.append(Memory("delay lines", 2 * (p["DataWidth"] + GUARD_BITS + 1), stage.delay, core))
         elif not stage.delay:
-            multipliers += [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"])] * 4
-            memories.append(Memory("tables", 3 * p["CoeffWidth"], stage.block))
-    return multipliers, memories
-
-
-def _in(core: str, multipliers: list[Multiplier], memories: list[Memory]) -> Parts:
-    """Return parts of a core."""
-    return [replace(one, core=core) for one in multipliers], [replace(one, core=core) for one in memories]
-
-
-def _joined(*parts: Parts) -> Parts:
-    return [m for part in parts for m in part[0]], [m for part in parts for m in part[1]]
+            parts += [Multiplier(p["DataWidth"] + GUARD_BITS, p["CoeffWidth"], core)] * 4
+            parts.append(Memory("tables", 3 * p["CoeffWidth"], stage.block, core))
+    return parts

@@ -87,6 +87,14 @@ def within(argument: Argument, low: int, high: int) -> None:
         raise InputError(argument, " is out of range", accepted=range(low, high + 1))
 
 
+def power_of_two(argument: Argument) -> None:
+    """Raise InputError, which names the nearest ones, unless the value is a power of two."""
+    if argument.value & (argument.value - 1):
+        lower = 1 << (argument.value.bit_length() - 1)
+        remedy = ("try ", Argument(argument.name, lower), " or ", Argument(argument.name, 2 * lower))
+        raise InputError(argument, " is not a power of two", remedy=remedy)
+
+
 def former_names(**names: str) -> Callable[[type], type]:
     """Return a decorator that makes a class refuse arguments of these former names, and name the present ones."""
 

@@ -246,6 +246,19 @@ def read_pictures(
     raise InputError(f"{name or source}: no such file or folder: accepted is {accepted}")
 
 
+def read_stack(source: str | Path, name: str = "") -> np.ndarray:
+    """Return the pictures of `read_pictures` in one array, uint8 (pictures, rows, cols, 3).
+
+    Raises
+    ------
+    InputError
+    """
+    images = list(read_pictures(source, name)[1])
+    if len({image.shape for image in images}) > 1:
+        raise InputError(f"{name or source}: pictures of several sizes: give pictures of one camera")
+    return np.stack(images)
+
+
 def camera_scale(sensor: Sensor, config: Configuration) -> float:
     """Return the camera pixels per grid pixel, for full pictures of a sensor's camera.
 

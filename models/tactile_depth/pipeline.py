@@ -19,7 +19,7 @@ from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
 from tactile_depth.files import new_files
-from tactile_depth.frames import camera_scale, read_pictures
+from tactile_depth.frames import camera_scale, read_pictures, read_stack
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.poisson.divergence import divergence
@@ -336,7 +336,7 @@ class Pipeline:
     # Pictures.
 
     def _read_reference(self, reference: Pictures) -> np.ndarray:
-        images = _same_size(reference) if isinstance(reference, str | Path) else reference
+        images = read_stack(reference) if isinstance(reference, str | Path) else reference
         frames, _ = self._read(images, Argument("reference"))
         _power_of_two(len(frames), LARGEST_LOG2, Argument("reference"))
         self._camera_sensor.check_lighting(images.reshape(-1, *images.shape[-3:])[0])
@@ -377,14 +377,6 @@ class Pipeline:
 def is_whole(number: object) -> bool:
     """Return True for a whole number."""
     return isinstance(number, int | np.integer) and not isinstance(number, bool)
-
-
-def _same_size(source: str | Path) -> np.ndarray:
-    """Pictures of a path in one array, uint8 (pictures, rows, columns, 3)."""
-    images = list(read_pictures(source)[1])
-    if len({image.shape for image in images}) > 1:
-        raise InputError(f"{source}: pictures of several sizes: give pictures of one camera")
-    return np.stack(images)
 
 
 def _power_of_two(count: int, largest_log2: int, name: Argument = PICTURES) -> None:

@@ -133,30 +133,13 @@ def slopes_of(
         deviation -= 1
         if tables.dead is not None:
             deviation = hold_dark(deviation, np.broadcast_to(tables.dead, deviation.shape[:-1]), 0)
-        return _weighted(deviation, tables.coefficients)
+        return weighted(deviation, tables.coefficients)
     if tables.table_gains is not None:
         frames = flat_codes(frames, tables.table_gains, config)
     return slopes(frames, calibration)
 
 
-def quadratic_slopes(deviation: np.ndarray, calibration: Sensor, pixel_pitch_mm: float) -> np.ndarray:
-    """Return slopes by the calibration's quadratics.
-
-    Parameters
-    ----------
-    deviation : float array (..., rows, cols, 3), I / ref - 1: frames * gains - 1
-    pixel_pitch_mm : float
-        Millimetres per grid pixel.
-
-    Returns
-    -------
-    float64 array (..., rows, cols, 2): dz/dx along the columns, dz/dy down the rows, in pixels per pixel
-    """
-    rows, columns = deviation.shape[-3:-1]
-    return _weighted(deviation, quadratic_coefficients(rows, columns, calibration, pixel_pitch_mm))
-
-
-def _weighted(deviation: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+def weighted(deviation: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
     """Return weighted sums over the colours: (..., rows, cols, 3) by (2, 3, rows, cols) to (..., rows, cols, 2)."""
     red, green, blue = np.moveaxis(deviation, -1, 0)
     slopes = [red * of_red + green * of_green + blue * of_blue for of_red, of_green, of_blue in coefficients]

@@ -15,7 +15,7 @@ body that the edge cuts has correct slopes at the edge.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -213,6 +213,7 @@ FACET_ROUNDING = 0.02
 # docstring names the effects that the drawing leaves out, besides those of the sensor.
 
 Body = Callable[[np.ndarray, np.ndarray, float], np.ndarray]
+Strokes = Callable[[np.ndarray, np.ndarray], np.ndarray]  # the distance from lines
 
 
 def ball(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
@@ -262,16 +263,28 @@ def pyramid(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
 # Real gel cannot follow into narrow corners; the drawings leave this out.
 
 
-def _relief(distance: np.ndarray, depth: float) -> np.ndarray:
-    return _ridge(distance, depth, 0.055)
+def _relief(strokes: Strokes) -> Body:
+    """Return a body with raised strokes."""
+    return lambda x, y, depth: _ridge(strokes(x, y), depth, 0.055)
 
 
-def _intaglio(x: np.ndarray, y: np.ndarray, distance: np.ndarray, depth: float) -> np.ndarray:
-    disc = _ridge(np.maximum(np.hypot(x, y) - 0.34, 0), depth, 0.08)
-    return disc - _ridge(distance, 0.7 * depth, 0.055)
+def _intaglio(strokes: Strokes) -> Body:
+    """Return a disc with strokes cut into it."""
+
+    def body(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        disc = _ridge(np.maximum(np.hypot(x, y) - 0.34, 0), depth, 0.08)
+        return disc - _ridge(strokes(x, y), 0.7 * depth, 0.055)
+
+    return body
+
+
+def _outline(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the distance from the outline of a star."""
+    return _strokes(x, y, _star(0.23, 0.105))
 
 
 def _cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the distance from the two bars of a cross."""
     bars = ([(-0.2, -0.05), (0.2, 0.05)], [(0.05, -0.22), (-0.05, 0.22)])
     return np.minimum(*(_strokes(x, y, bar) for bar in bars))
 
@@ -283,43 +296,10 @@ def _letters(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.minimum(t, d)
 
 
-STAR = _star(0.23, 0.105)
-
-
 def seal(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
     """Draw a raised border around a slightly lower star."""
     border = _ridge(_circle(x, y, 0.34), depth, 0.055)
     return np.maximum(border, _ridge(_strokes(x, y, _star(0.25, 0.115)), 11 / 13 * depth, 0.048))
-
-
-def star_relief(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-    """Draw the raised outline of a star."""
-    return _relief(_strokes(x, y, STAR), depth)
-
-
-def star_intaglio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-    """Draw a disc with the outline of a star cut into it."""
-    return _intaglio(x, y, _strokes(x, y, STAR), depth)
-
-
-def cross_relief(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-    """Draw a raised cross."""
-    return _relief(_cross(x, y), depth)
-
-
-def cross_intaglio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-    """Draw a disc with a cross cut into it."""
-    return _intaglio(x, y, _cross(x, y), depth)
-
-
-def letters_relief(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-    """Draw two raised letters."""
-    return _relief(_letters(x, y), depth)
-
-
-def letters_intaglio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-    """Draw a disc with two letters cut into it."""
-    return _intaglio(x, y, _letters(x, y), depth)
 
 
 @dataclass(frozen=True)
@@ -332,25 +312,22 @@ class Contact:
     y: float = 0.0
 
 
-BENCH: dict[str, Contact] = {
-    contact.body.__name__: contact
-    for contact in (
-        Contact(ball, 0.09, 0.03, -0.02),
-        Contact(cylinder, 0.08, -0.01, 0.02),
-        Contact(cone, 0.11, 0.02, 0.03),
-        Contact(punch, 0.05, -0.03, 0.01),
-        Contact(ring, 0.05, -0.02, 0.02),
-        Contact(edge, 0.07, 0.01, -0.02),
-        Contact(two_balls, 0.06, -0.01, 0.01),
-        Contact(pyramid, 0.1, 0.02, -0.01),
-        Contact(seal, 0.026),
-        Contact(star_relief, 0.03),
-        Contact(star_intaglio, 0.03),
-        Contact(cross_relief, 0.03, 0.02, -0.01),
-        Contact(cross_intaglio, 0.03, 0.01, 0.01),
-        Contact(letters_relief, 0.03),
-        Contact(letters_intaglio, 0.03),
-    )
+BENCH = {
+    "ball": Contact(ball, 0.09, 0.03, -0.02),
+    "cylinder": Contact(cylinder, 0.08, -0.01, 0.02),
+    "cone": Contact(cone, 0.11, 0.02, 0.03),
+    "punch": Contact(punch, 0.05, -0.03, 0.01),
+    "ring": Contact(ring, 0.05, -0.02, 0.02),
+    "edge": Contact(edge, 0.07, 0.01, -0.02),
+    "two_balls": Contact(two_balls, 0.06, -0.01, 0.01),
+    "pyramid": Contact(pyramid, 0.1, 0.02, -0.01),
+    "seal": Contact(seal, 0.026),
+    "star_relief": Contact(_relief(_outline), 0.03),
+    "star_intaglio": Contact(_intaglio(_outline), 0.03),
+    "cross_relief": Contact(_relief(_cross), 0.03, 0.02, -0.01),
+    "cross_intaglio": Contact(_intaglio(_cross), 0.03, 0.01, 0.01),
+    "letters_relief": Contact(_relief(_letters), 0.03),
+    "letters_intaglio": Contact(_intaglio(_letters), 0.03),
 }
 """The 15 contacts of the bench by name: machined indenters, then seals."""
 
@@ -369,46 +346,45 @@ def deep(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
     return _ridge(np.hypot(x - tip, y - tip), depth, math.pi / 2 * depth / SLOPE_LIMIT)
 
 
-def _contacts() -> dict[str, Contact]:
-    """Return eight contacts, 3 to 18 pixels deep at N = 128, without motion between the frames."""
+def _round(places: Sequence[tuple[float, float]], depth: float, edge_slope: float) -> Contact:
+    """Return balls at places (x, y) whose contacts end with a slope at this depth."""
 
-    def shallow(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-        return _cap(np.hypot(x + 0.13, y - 0.16), depth, _cap_radius(depth, 0.5))
-
-    def letters(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-        strokes = np.minimum(
-            _strokes(x, y, [(-0.27, -0.16), (-0.05, -0.16), (-0.16, -0.16), (-0.16, 0.18)]),
-            _strokes(x, y, [(0.07, 0.17), (0.07, -0.16), (0.16, -0.14), (0.23, 0.0), (0.16, 0.15), (0.07, 0.17)]),
-        )
-        return _ridge(strokes, depth, 0.058)
-
-    def trio(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-        places = ((-0.2, -0.16), (0.21, -0.1), (-0.02, 0.22))
-        radius = _cap_radius(depth, 0.9)
+    def body(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+        radius = _cap_radius(depth, edge_slope)
         return np.maximum.reduce([_cap(np.hypot(x - at, y - down), depth, radius) for at, down in places])
 
-    def peg(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-        return _cap(_strokes(x, y, [(-0.16, 0.1), (0.14, -0.12)]), depth, _cap_radius(depth, 0.9))
+    return Contact(body, depth)
 
-    def deepest(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
-        return _cap(np.hypot(x - 0.04, y - 0.03), depth, _cap_radius(depth, 0.9))
 
-    return {
-        "contacts 0": Contact(shallow, 3 / 128),
-        "contacts 1": BENCH["seal"],
-        "contacts 2": Contact(letters, 4 / 128),
-        "contacts 3": BENCH["ring"],
-        "contacts 4": Contact(trio, 9 / 128),
-        "contacts 5": BENCH["ball"],
-        "contacts 6": Contact(peg, 14 / 128),
-        "contacts 7": Contact(deepest, 18 / 128),
-    }
+def large_letters(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """Draw the raised letters T and D."""
+    t = _strokes(x, y, [(-0.27, -0.16), (-0.05, -0.16), (-0.16, -0.16), (-0.16, 0.18)])
+    d = _strokes(x, y, [(0.07, 0.17), (0.07, -0.16), (0.16, -0.14), (0.23, 0.0), (0.16, 0.15), (0.07, 0.17)])
+    return _ridge(np.minimum(t, d), depth, 0.058)
+
+
+def peg(x: np.ndarray, y: np.ndarray, depth: float) -> np.ndarray:
+    """Draw a peg on its side."""
+    return _cap(_strokes(x, y, [(-0.16, 0.1), (0.14, -0.12)]), depth, _cap_radius(depth, 0.9))
+
+
+CONTACTS = {
+    "contacts 0": _round([(-0.13, 0.16)], 3 / 128, 0.5),
+    "contacts 1": BENCH["seal"],
+    "contacts 2": Contact(large_letters, 4 / 128),
+    "contacts 3": BENCH["ring"],
+    "contacts 4": _round([(-0.2, -0.16), (0.21, -0.1), (-0.02, 0.22)], 9 / 128, 0.9),
+    "contacts 5": BENCH["ball"],
+    "contacts 6": Contact(peg, 14 / 128),
+    "contacts 7": _round([(0.04, 0.03)], 18 / 128, 0.9),
+}
+"""Eight contacts, 3 to 18 pixels deep at N = 128, without motion between the frames."""
 
 
 SCENES: dict[str, dict[str, Contact]] = {
     **{name: {name: contact} for name, contact in BENCH.items()},
     "bench": BENCH,
-    "contacts": _contacts(),
+    "contacts": CONTACTS,
     "deep": {"deep 0": Contact(deep, 0.25)},
     "flat": {"flat 0": Contact(flat, 0.0)},
 }

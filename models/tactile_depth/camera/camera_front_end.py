@@ -13,6 +13,9 @@ from tactile_depth.camera_configuration import GAIN_WIDTH, CameraConfiguration
 SETTINGS = {"columns": 13, "rows": 13, "window_x": 13, "window_y": 13, "black_level": 12}
 SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN_WIDTH)
 """Members of `camera_settings_t` (hdl/td_types_pkg.sv) and their bits, the first on top."""
+RESETS = ("PictureColumns", "PictureRows", "WindowX", "WindowY", "BlackLevel", "RedGain", "GreenGain", "BlueGain")
+OF_RESET = dict(zip(SETTINGS, RESETS, strict=True))
+"""Parameters of hdl/camera/camera_registers.sv that give the settings after a reset."""
 
 
 def camera_front_end_parameters(camera: CameraConfiguration) -> dict[str, int]:
@@ -28,17 +31,14 @@ def camera_front_end_parameters(camera: CameraConfiguration) -> dict[str, int]:
 
 def camera_settings(camera: CameraConfiguration) -> dict[str, int]:
     """Return the settings of the core, by the members of `camera_settings_t`."""
-    red, green, blue = camera.gain_codes
-    return {
-        "columns": camera.picture[1],
-        "rows": camera.picture[0],
-        "window_x": camera.crop[0],
-        "window_y": camera.crop[1],
-        "black_level": camera.black_level,
-        "red_gain": red,
-        "green_gain": green,
-        "blue_gain": blue,
-    }
+    rows, columns = camera.picture
+    numbers = (columns, rows, *camera.crop[:2], camera.black_level, *camera.gain_codes)
+    return dict(zip(SETTINGS, numbers, strict=True))
+
+
+def reset_parameters(camera: CameraConfiguration) -> dict[str, int]:
+    """Return the parameters that give the settings after a reset."""
+    return {OF_RESET[name]: number for name, number in camera_settings(camera).items()}
 
 
 def camera_front_end(words: np.ndarray, camera: CameraConfiguration) -> np.ndarray:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
-from tactile_depth.camera.camera_front_end import camera_settings
+from tactile_depth.camera.camera_front_end import OF_RESET, reset_parameters
 from tactile_depth.camera.camera_window import FAULTS
 from tactile_depth.camera.pixel_format import pixel_format_parameters
 from tactile_depth.camera_configuration import FORMATS, CameraConfiguration
@@ -19,21 +19,14 @@ from tactile_depth.registers.setting_registers import SettingRegisters
 
 STATUS, CONTROL = CAMERA_REGISTERS["CAMERA_STATUS"], CAMERA_REGISTERS["CAMERA_CONTROL"]
 COUNTERS = ("CAMERA_DROPPED", "CAMERA_LOST")
-GAINS = ("red_gain", "green_gain", "blue_gain")
+NUMBERS = ("black_level", "red_gain", "green_gain", "blue_gain")
+"""Settings that are registers of their own."""
 
 
 def camera_registers_parameters(camera: CameraConfiguration) -> dict[str, int]:
     """Parameters of hdl/camera/camera_registers.sv."""
-    settings = camera_settings(camera)
     return {
-        "PictureColumns": settings["columns"],
-        "PictureRows": settings["rows"],
-        "WindowX": settings["window_x"],
-        "WindowY": settings["window_y"],
-        "BlackLevel": settings["black_level"],
-        "RedGain": settings["red_gain"],
-        "GreenGain": settings["green_gain"],
-        "BlueGain": settings["blue_gain"],
+        **reset_parameters(camera),
         "WindowColumns": camera.crop[2],
         "WindowRows": camera.crop[3],
         **pixel_format_parameters(camera),
@@ -74,10 +67,7 @@ class CameraRegisters:
         resets = {
             "CAMERA_PICTURE": named["CAMERA_PICTURE"].pack(columns=p["PictureColumns"], rows=p["PictureRows"]),
             "CAMERA_WINDOW": named["CAMERA_WINDOW"].pack(x=p["WindowX"], y=p["WindowY"]),
-            "CAMERA_BLACK_LEVEL": p["BlackLevel"],
-            "CAMERA_RED_GAIN": p["RedGain"],
-            "CAMERA_GREEN_GAIN": p["GreenGain"],
-            "CAMERA_BLUE_GAIN": p["BlueGain"],
+            **{f"CAMERA_{name.upper()}": p[OF_RESET[name]] for name in NUMBERS},
         }
         self._settings = SettingRegisters(resets, self.values, CAMERA_MAP)
         self._arrived: tuple[frozenset[str], int] = (frozenset(), 0)
@@ -97,8 +87,7 @@ class CameraRegisters:
             **picture,
             "window_x": window["x"],
             "window_y": window["y"],
-            "black_level": self.values["CAMERA_BLACK_LEVEL"],
-            **{gain: self.values[f"CAMERA_{gain.upper()}"] for gain in GAINS},
+            **{name: self.values[f"CAMERA_{name.upper()}"] for name in NUMBERS},
         }
 
     def read(self, name: str, setup: Setup = Setup()) -> int:

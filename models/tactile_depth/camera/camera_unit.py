@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from tactile_depth.camera.camera_front_end import camera_front_end_parameters, camera_settings
+from tactile_depth.camera.camera_front_end import camera_front_end_parameters, reset_parameters
 from tactile_depth.camera_configuration import CameraConfiguration
 
 OF_GRID = ("Rows", "Columns")
@@ -15,17 +15,8 @@ def camera_fields(camera: CameraConfiguration | None) -> dict[str, int]:
     """Return the fields of a camera; None: a pipeline without a camera."""
     if camera is None:
         return {"Camera": 0}
-    settings = camera_settings(camera)
-    front_end = camera_front_end_parameters(camera)
+    parameters = camera_front_end_parameters(camera) | reset_parameters(camera)
     return {
         "Camera": 1,
-        **{f"Camera{name}": number for name, number in front_end.items() if name not in OF_GRID},
-        "CameraPictureColumns": settings["columns"],
-        "CameraPictureRows": settings["rows"],
-        "CameraWindowX": settings["window_x"],
-        "CameraWindowY": settings["window_y"],
-        "CameraBlackLevel": settings["black_level"],
-        "CameraRedGain": settings["red_gain"],
-        "CameraGreenGain": settings["green_gain"],
-        "CameraBlueGain": settings["blue_gain"],
+        **{f"Camera{name}": number for name, number in parameters.items() if name not in OF_GRID},
     }

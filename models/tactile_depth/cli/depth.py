@@ -61,7 +61,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     InputError
     """
     out: Path = options.out or Path(f"{Path(options.pictures[0]).resolve().stem}-depth")
-    reference = read_reference(Path(options.reference))
+    reference = read_reference(options.reference)
     sensor = choose_sensor(options, reference)
     pipeline = make_pipeline(options, sensor, reference)
     with new_files(out, REPORT, "files") as folder:

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 import os
 import sys
+from contextlib import AbstractContextManager
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -42,7 +42,7 @@ def load_rerun() -> Any:
     return rerun
 
 
-class Display:
+class Display(AbstractContextManager["Display"]):
     """A viewer, a recording or both; use it in a `with` block, which closes the recording.
 
     Entities, at the time `frame`:
@@ -95,12 +95,7 @@ class Display:
         self._highest_mm = LEAST_RANGE_MM
         self._shape: tuple[int, ...] = ()
 
-    def __enter__(self) -> Display:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self._stream.flush()
         self._stream.disconnect()
 

@@ -63,7 +63,7 @@ def run(options: argparse.Namespace, warned: Sequence[str]) -> None:
     if options.frames is not None and options.frames < 1:
         raise InputError(f"--frames {options.frames}: accepted are 1 and more")
     load_rerun()  # its absence is told before anything is captured
-    reference = None if options.reference == CAPTURE else read_reference(Path(options.reference))
+    reference = None if options.reference == CAPTURE else read_reference(options.reference)
     with Source(options.source) as source, pressed_keys() as key:
         began = time.monotonic()
         try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import re
-from pathlib import Path
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from tactile_depth.built_in import identify, load
 from tactile_depth.calibration_file import BUILT_IN
 from tactile_depth.configuration import GRADIENT_MODELS
 from tactile_depth.errors import InputError
-from tactile_depth.frames import read_pictures
+from tactile_depth.frames import read_stack
 from tactile_depth.pipeline import ARITHMETICS, Pipeline
 from tactile_depth.sensor import Sensor
 
@@ -54,17 +53,9 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def read_reference(path: Path) -> np.ndarray:
-    """Read pictures without contact, uint8 (frames, rows, columns, 3).
-
-    Raises
-    ------
-    InputError
-    """
-    images = list(read_pictures(path, f"--reference {path}")[1])
-    if len({image.shape for image in images}) > 1:
-        raise InputError(f"--reference {path}: pictures of several sizes: give pictures of one camera")
-    return np.stack(images)
+def read_reference(path: str) -> np.ndarray:
+    """Read pictures without contact, uint8 (frames, rows, columns, 3); raise InputError if that is not possible."""
+    return read_stack(path, f"--reference {path}")
 
 
 def choose_sensor(options: argparse.Namespace, reference: np.ndarray) -> Sensor:

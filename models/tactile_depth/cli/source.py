@@ -8,9 +8,9 @@ import queue
 import sys
 import threading
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -83,7 +83,7 @@ class Counts:
             print(f"tactile-depth: a frame is left out; others are counted at the end: {reason}", file=sys.stderr)
 
 
-class Source:
+class Source(AbstractContextManager["Source"]):
     """Frames in the order of their arrival, for one consumer.
 
     A camera does not wait: when the queue is full the oldest frame is dropped. Files wait: none is dropped.
@@ -115,12 +115,7 @@ class Source:
         self._thread = threading.Thread(target=self._read, args=(items,), daemon=True)
         self._thread.start()
 
-    def __enter__(self) -> Source:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self._stopped.set()
         self._thread.join()
 

@@ -16,15 +16,10 @@ class Monitor:
     ----------
     saturations : Counter
         Node name to the number of values clipped at that node (integer models).
-    peak : dict
-        Node name to the largest row sum of absolute values at that node. A model that is run on a unit matrix of
-        floats returns its own linear map. Then the row sum is the L1 norm of the node's response, which is the
-        largest value that inputs bounded by 1 can produce at the node.
     """
 
     def __init__(self) -> None:
         self.saturations: Counter[str] = Counter()
-        self.peak: dict[str, float] = {}
 
     def clipped(self, node: str, count: int) -> None:
         if count:
@@ -34,8 +29,11 @@ class Monitor:
         """Take the values of an integer model at a node, before they are clipped."""
 
     def linear(self, node: str, response: np.ndarray) -> None:
-        norm = float(np.abs(response).sum(axis=0).max())
-        self.peak[node] = max(norm, self.peak.get(node, 0.0))
+        """Take the values of a model of floats at a node.
+
+        A model that is run on a unit matrix returns its own linear map. Then the sum of absolute values over axis 0 is
+        the L1 norm of the node's response, the largest value that inputs bounded by 1 can produce at the node.
+        """
 
 
 @cache
@@ -83,8 +81,8 @@ def round_saturate(
 ) -> np.ndarray:
     """Drop `drop` fraction bits with round half to even, then clip to `width` signed bits.
 
-    Floats are returned as x / 2**drop, neither rounded nor clipped, and `monitor` receives their L1 norm. So one
-    function serves both the integer model of a core and its ideal linear map.
+    Floats are returned as x / 2**drop, neither rounded nor clipped, and `monitor` receives them. So one function serves
+    both the integer model of a core and its ideal linear map.
     """
     if x.dtype.kind == "f":
         x = np.ldexp(x, -np.asarray(drop))  # exact; exp2 of some processors is not

@@ -8,15 +8,9 @@ import numpy as np
 from tactile_depth.common.td_block_sum import CYCLES_TO_SUM, block_sum
 from tactile_depth.common.td_round_saturate import round_half_even
 from tactile_depth.configuration import Configuration
-from tactile_depth.depth.zero_offset import zero_offset_parameters
 
 LARGEST_LOG2 = 8
 """Base-2 logarithm of the most frames in a capture; it equals that of reference_capture."""
-
-
-def zero_capture_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/depth/zero_capture.sv."""
-    return {**zero_offset_parameters(config), "MaxLog2": LARGEST_LOG2}
 
 
 def levels(lanes: int, block_log2: int) -> int:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
@@ -20,7 +18,15 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/poisson/spectral_solver.sv."""
     table = reciprocals(config)
     return {
-        **config.stream_parameters(),
+        **config.transform_parameters(),
+        "InWidth": config.divergence.width,
+        "DataWidth": config.data_width,
+        "RowForwardOut": config.row_forward.fraction - config.row_modes.fraction,
+        "ColumnForwardIn": config.row_modes.fraction - config.column_forward.fraction,
+        "ColumnInverseOut": config.column_inverse.fraction - config.depth_modes.fraction,
+        "RowInverseIn": config.depth_modes.fraction - config.row_inverse.fraction,
+        "RowInverseOut": config.row_inverse.fraction - config.depth.fraction,
+        "StoreStyle": config.store_style,
         "DivideShiftWidth": table.shift_width,
         "DivideDrop": table.drop,
         "Neumann": int(config.neumann),
@@ -50,15 +56,6 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
 # The four transforms. Each takes bursts (..., N).
 
 
-def _arithmetic(config: Configuration, monitor: Monitor | None) -> dict[str, Any]:
-    return {
-        "width": config.arithmetic_width,
-        "coefficient_width": config.coefficient_width,
-        "alternate": not config.neumann,
-        "monitor": monitor,
-    }
-
-
 def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
     """Return the modes of rows in natural order, for the first frame store."""
     return dst_forward(
@@ -67,7 +64,8 @@ def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None
         output_drop=config.row_forward.fraction - config.row_modes.fraction,
         output_width=config.row_modes.width,
         node="row_forward",
-        **_arithmetic(config, monitor),
+        monitor=monitor,
+        **config.transform_arguments(),
     )
 
 
@@ -79,7 +77,8 @@ def column_forward(columns: np.ndarray, config: Configuration, monitor: Monitor 
         output_drop=0,
         output_width=config.arithmetic_width,
         node="column_forward",
-        **_arithmetic(config, monitor),
+        monitor=monitor,
+        **config.transform_arguments(),
     )
 
 
@@ -91,7 +90,8 @@ def column_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | 
         output_drop=config.column_inverse.fraction - config.depth_modes.fraction,
         output_width=config.depth_modes.width,
         node="column_inverse",
-        **_arithmetic(config, monitor),
+        monitor=monitor,
+        **config.transform_arguments(),
     )
 
 
@@ -103,6 +103,7 @@ def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | Non
         output_drop=config.row_inverse.fraction - config.depth.fraction,
         output_width=config.depth.width,
         node="row_inverse",
-        **_arithmetic(config, monitor),
+        monitor=monitor,
+        **config.transform_arguments(),
     )
     return row_reorder(depth, to_burst=False)

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
@@ -81,7 +79,8 @@ def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None
         output_drop=row_forward_drop(config),
         output_width=config.arithmetic_width,
         node="row_forward",
-        **_arithmetic(config, monitor),
+        monitor=monitor,
+        **config.transform_arguments(),
     )
 
 
@@ -94,15 +93,7 @@ def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | Non
         output_drop=output_drop,
         output_width=config.depth.width,
         node="row_inverse",
-        **_arithmetic(config, monitor),
+        monitor=monitor,
+        **config.transform_arguments(),
     )
     return row_reorder(depth, to_burst=False)
-
-
-def _arithmetic(config: Configuration, monitor: Monitor | None) -> dict[str, Any]:
-    return {
-        "width": config.arithmetic_width,
-        "coefficient_width": config.coefficient_width,
-        "alternate": not config.neumann,
-        "monitor": monitor,
-    }
