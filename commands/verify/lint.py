@@ -55,7 +55,8 @@ class Structure:
             return self.top
         c = self.config
         colours = f"-{c.gradient_model}" if c.flat_field else ""
-        return f"{self.top}-{c.solver}-{'neumann' if c.neumann else 'dirichlet'}-{c.rows}x{c.columns}{colours}"
+        zero = "-zero" if c.zero_offset else ""
+        return f"{self.top}-{c.solver}-{'neumann' if c.neumann else 'dirichlet'}-{c.rows}x{c.columns}{colours}{zero}"
 
     @property
     def parameters(self) -> dict[str, str]:
@@ -80,10 +81,17 @@ def modules(files: Iterable[Path]) -> list[str]:
 
 
 def structures() -> list[Structure]:
-    """Return the top with both solvers and boundaries, at the smallest, the default and the largest square grid."""
+    """Return the top with both solvers and boundaries, at the smallest, the default and the largest square grid.
+
+    Three more have colours relative to a reference, and one of these a zero offset.
+    """
     flat = [
-        Structure(TOP, Configuration(columns=size, solver=solver, flat_field=True, gradient_model=model))
-        for size, solver, model in ((16, "spectral", "quadratic"), (128, "tridiagonal", "lut"))
+        Structure(TOP, Configuration(flat_field=True, **choices))
+        for choices in (
+            {"columns": 16, "gradient_model": "quadratic"},
+            {"solver": "tridiagonal"},
+            {"solver": "tridiagonal", "lanes": 4, "gradient_model": "quadratic", "zero_offset": True},
+        )
     ]
     return flat + [
         Structure(TOP, Configuration(columns=size, solver=solver, neumann=neumann))
