@@ -44,8 +44,17 @@ override PACKAGES := g++ git iverilog libpython3-dev perl python3-venv
 override need_icarus := command -v iverilog > /dev/null || { \
   echo 'Icarus Verilog is missing: run `apt-get install iverilog` as root, or `make system-tools`' >&2; exit 2; }
 
-.PHONY: help sim test quick live-test lint registers sweep tune coverage upsets formal regress mutate sign-off certify extremes report calibrate reflex baselines asic fpga synth wrap netlists system-tools setup clean
+# Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
+override WITH_ICARUS := lint mutate netlists quick regress test upsets
+override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes formal fpga reflex registers \
+  report sign-off sim sweep synth tune wrap
+
+.PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
+
+$(COMMANDS):
+	@$(if $(filter $@,$(WITH_ICARUS)),$(need_icarus))
+	@exec $(PY) -m commands $@ $(given)
 
 # Print this list. docs/commands.md explains the variables.
 help:
@@ -53,17 +62,12 @@ help:
 
 # Stream frames through the RTL, check every code against the model, print a table, draw pictures.
 sim: $(STAMP)
-	@exec $(PY) -m commands sim $(given)
 
 # Run the whole suite on both simulators. CORE=a,b SIM=icarus: only lint and tests of these cores.
 test: $(HARDWARE)
-	@$(need_icarus)
-	@exec $(PY) -m commands test $(given)
 
 # Test what differs from BASE=<commit>, by default origin/main, and run the whole once: 2 minutes.
 quick: $(TOOLS)
-	@$(need_icarus)
-	@exec $(PY) -m commands quick $(given)
 
 # Test `tactile-depth live` with its viewer, in an environment of its own (1.1 GB).
 live-test: $(LIVE)/complete
@@ -71,92 +75,66 @@ live-test: $(LIVE)/complete
 
 # Run in full what `make test` samples, and print a table: under an hour. PARTS=a,b JOBS=2
 regress: $(HARDWARE)
-	@$(need_icarus)
-	@exec $(PY) -m commands regress $(given)
 
 # Check cores with Verilator, slang, Yosys, verible and Icarus, and Python with ruff and mypy. CORE=a,b
 lint: $(TOOLS)
-	@$(need_icarus)
-	@exec $(PY) -m commands lint $(given)
 
 # Measure accuracy against latency, multipliers and memory with the models, into a CSV file.
 sweep: $(if $(scheduler),$(TOOLS),$(STAMP))
-	@exec $(PY) -m commands sweep $(given)
 
 # Find the cheapest configuration within TOLERANCE (% of the peak, RMS), and prove it in RTL.
 tune: $(STAMP)
-	@exec $(PY) -m commands tune $(given)
 
 # Count lines, branches, terms and toggles of hdl/ that the suite reaches, and bins of the fault list.
 coverage: $(TOOLS)
-	@exec $(PY) -m commands coverage $(given)
 
 # Flip bits of registers and memories while frames stream through, and count the damage.
 upsets: $(STAMP)
-	@$(need_icarus)
-	@exec $(PY) -m commands upsets $(given)
 
 # Compute the largest value of each node, and run the frames that cause it. RTL=0: model only.
 certify: $(STAMP)
-	@exec $(PY) -m commands certify $(given)
 
 # Run scenes at the edges of the input range: error, saturations, status. SHORT=1: short runs.
 extremes: $(STAMP)
-	@exec $(PY) -m commands extremes $(given)
 
 # Prove properties of the cores without a bound on time. CORE=a,b. LIST=1: print them, and prove nothing.
 formal: $(TOOLS)
-	@exec $(PY) -m commands formal $(given)
 
 # Run mutants of cores through their testbenches, and settle survivors by proof. CORE=a,b
 mutate: $(TOOLS)
-	@$(need_icarus)
-	@exec $(PY) -m commands mutate $(given)
 
 # Write docs/sign-off.md from the results of make formal and make mutate.
 sign-off: $(STAMP)
-	@exec $(PY) -m commands sign-off $(given)
 
 # Measure contact to command and to motion, with the RTL in the loop and through a host.
 reflex: $(STAMP)
-	@exec $(PY) -m commands reflex $(given)
 
 # Time the solve in software, frame by frame, against the clock cycles of the pipeline.
 baselines: $(BASELINES)
-	@exec $(PY) -m commands baselines $(given)
 
 # Write an HTML page with figures of latency, throughput, error, cost and extremes.
 report: $(STAMP)
-	@exec $(PY) -m commands report $(given)
 
 # Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
 calibrate: $(STAMP)
-	@exec $(PY) -m commands calibrate $(given)
 
 # Measure area, slack and power in standard cells of any Liberty file. LIB=file NODE_NM=180
 asic: $(HARDWARE)
-	@exec $(PY) -m commands asic $(given)
 
 # Place and route a board, write the bitstream, and report the clock it reaches. TARGET=ulx3s
 fpga: $(HARDWARE)
-	@exec $(PY) -m commands fpga $(given)
 
 # Count what a configuration takes of an FPGA, by Yosys. TARGET=xczu7ev GRIDS=64,128
 synth: $(TOOLS)
-	@exec $(PY) -m commands synth $(given)
 
 # Write a module with every parameter of a configuration inside, and its table files. NAME=finger OUT=folder
 wrap: $(TOOLS)
-	@exec $(PY) -m commands wrap $(given)
 
 # Run every core after synthesis through its testbench. CORE=a,b
 netlists: $(TOOLS)
-	@$(need_icarus)
-	@exec $(PY) -m commands netlists $(given)
 
 # Write everything that follows from registers/tactile_depth.rdl.
 registers: $(TOOLS)
-	@exec $(PY) -m commands registers $(given)
 
 # Install what the system lacks with apt-get: C++, git, Icarus, perl, venv and libpython.
 system-tools:

@@ -37,6 +37,7 @@ ACCEPTED = (
     *("REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
+WITH_CAMERA = (*ACCEPTED, *CAMERA)
 LARGEST_CONFIG = 65_536  # bytes of a configuration file
 
 
@@ -77,14 +78,24 @@ def parse(
     preset: str = "published",
     frames: str = DEFAULT_SCENE,
 ) -> Request:
-    """Return the Request of KEY=VALUE arguments. Raises InputError.
+    """Return the Request of KEY=VALUE arguments, as `of_values` does. Raises InputError."""
+    return of_values(variables.given(arguments, accepted), accepted, preset, frames)
+
+
+def of_values(
+    variables_given: Mapping[str, str],
+    accepted: tuple[str, ...] = ACCEPTED,
+    preset: str = "published",
+    frames: str = DEFAULT_SCENE,
+) -> Request:
+    """Return the Request of variables; those that are not accepted are the command's own. Raises InputError.
 
     Parameters
     ----------
     preset : name of the preset without PRESET
     frames : source without FRAMES; "" for a command that needs no frame
     """
-    values = variables.given(arguments, accepted)
+    values = {name: value for name, value in variables_given.items() if name in accepted}
     if "CONFIG" in values:
         values = from_file(Path(values.pop("CONFIG")), values, [name for name in accepted if name != "CONFIG"]) | values
 

@@ -67,8 +67,7 @@ class Options:
 def parse(arguments: list[str]) -> tuple[run_request.Request, Options]:
     """Return KEY=VALUE arguments as a request and options. Raises InputError."""
     values = variables.given(arguments, (*OWN, *run_request.ACCEPTED))
-    others = {key: value for key, value in values.items() if key not in OWN}
-    request = run_request.parse([f"{key}={value}" for key, value in others.items()], preset="sensor")
+    request = run_request.of_values(values, preset="sensor")
     node_nm = variables.number(values, "NODE_NM", 180.0, 1, 1000, float)
     clock_mhz = variables.number(values, "CLOCK_MHZ", 75.0, 0.001, 10_000, float)
     file = Path(values.get("LIB", DEFAULT_LIB))

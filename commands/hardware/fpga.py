@@ -93,25 +93,24 @@ class Request:
 def parse(arguments: list[str]) -> Request:
     """Return KEY=VALUE arguments as a Request. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "SEEDS", "CLOCK_MHZ", "SENSOR", *CHOICES, *run_request.CAMERA))
-    target = values.pop("TARGET", "")
+    target = values.get("TARGET", "")
     one_of(Argument("TARGET", target), BOARDS)
     numbers = variables.whole_numbers(values, "SEEDS", (1, 2, 3))
-    seeds = values.pop("SEEDS", "")
     if not numbers or not all(1 <= seed <= LARGEST_SEED for seed in numbers) or len(set(numbers)) < len(numbers):
-        raise InputError(f"SEEDS={seeds}: accepted are different whole numbers from 1 with commas between, as 1,2,3")
-    clock_mhz = values.pop("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
+        raise InputError(
+            f"SEEDS={values['SEEDS']}: accepted are different whole numbers from 1 with commas between, as 1,2,3"
+        )
+    clock_mhz = values.get("CLOCK_MHZ", str(DEFAULT_CLOCK_MHZ))
     if clock_mhz not in map(str, CLOCKS_MHZ):
         raise InputError(f"CLOCK_MHZ={clock_mhz}: accepted are {', '.join(map(str, CLOCKS_MHZ))}")
     sensor = _sensor(values)
-    accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
-    design = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted, "sensor", "")
+    design = run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
     return Request(target, numbers, int(clock_mhz), sensor, design)
 
 
 def _sensor(values: dict[str, str]) -> Camera | None:
-    """Take SENSOR out of the variables and return the camera; None without CAMERA. Raises InputError."""
+    """Return the camera of SENSOR, and set BAYER to its pattern; None without CAMERA. Raises InputError."""
     name = variables.choice(values, "SENSOR", ("", *CAMERAS))
-    values.pop("SENSOR", None)
     if not values.get("CAMERA"):
         if name:
             raise InputError(f"SENSOR={name} goes with CAMERA={SENSOR_FORMAT}")

@@ -132,14 +132,10 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Req
     """Return target, its name, grids and request; the grids are empty without GRIDS. Raises InputError."""
     values = variables.given(arguments, ("TARGET", "GRIDS", *CONFIGURING, *run_request.CAMERA, "OUT"))
     name = variables.choice(values, "TARGET", tuple(TARGETS))
-    values.pop("TARGET", None)
     sizes = list(variables.whole_numbers(values, "GRIDS", ()))
     if "GRIDS" in values and not sizes:
         raise InputError(f"GRIDS={values['GRIDS']}: accepted are whole numbers with commas, as 64,128,256")
-    values.pop("GRIDS", None)
-    accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
-    words = [f"{key}={value}" for key, value in values.items()]
-    return TARGETS[name], name, sizes, run_request.parse(words, accepted, "sensor", "")
+    return TARGETS[name], name, sizes, run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
 
 
 def configured(request: run_request.Request) -> tuple[Configuration, Sensor, Frames]:

@@ -11,7 +11,6 @@ camera_setup.
 
 import os
 import sys
-from pathlib import Path
 
 from commands.common import repository, run_request, variables, wrapper
 from commands.common.zero_offset import untouched, zero_of
@@ -24,15 +23,14 @@ from tactile_depth.tactile_depth import top_parameters, write_roms
 def main() -> None:
     with variables.reported("wrap"):
         values = variables.given(sys.argv[1:], ("NAME", "OUT", "TABLES", *synth.CONFIGURING, *run_request.CAMERA))
-        name = values.pop("NAME", "")
+        name = values.get("NAME", "")
         if not wrapper.NAME.fullmatch(name):
             raise InputError(f"NAME={name}: {wrapper.NAMES}")
-        out = Path(values.pop("OUT", repository.ROOT / "build" / "wrap" / name))
-        tables = values.pop("TABLES", "./")
+        tables = values.get("TABLES", "./")
         if not tables.endswith("/") or '"' in tables:
             raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
-        accepted = (*run_request.ACCEPTED, *run_request.CAMERA)
-        request = run_request.parse([f"{key}={value}" for key, value in values.items()], accepted, "sensor", "")
+        request = run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
+        out = request.out or repository.ROOT / "build" / "wrap" / name
         config, calibration, frames = synth.configured(request)
         zero = zero_of(untouched(request, frames), calibration, config)
         with files.workspace(out) as work:

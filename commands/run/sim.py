@@ -18,7 +18,7 @@ import numpy as np
 from commands.common import repository, run_request, variables
 from commands.common import simulator as simulation
 from commands.common.progress import following
-from commands.common.run_request import ACCEPTED, CAMERA, Request, announce, check_grid, configure, load_sensor, parse
+from commands.common.run_request import WITH_CAMERA, Request, announce, check_grid, configure, load_sensor, parse
 from commands.common.zero_offset import untouched, zero_of
 from commands.run import bench
 from commands.run.compare import compare, warnings
@@ -235,4 +235,4 @@ def earlier_dumps(out: Path) -> list[str]:
 
 def main() -> None:
     with variables.reported("sim"):
-        sys.exit(run(parse(sys.argv[1:], (*ACCEPTED, *CAMERA))))
+        sys.exit(run(parse(sys.argv[1:], WITH_CAMERA)))

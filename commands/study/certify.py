@@ -292,5 +292,4 @@ def main() -> None:
     with variables.reported("certify"):
         values = variables.given(sys.argv[1:], ("RTL", *run_request.ACCEPTED))
         rtl = bool(variables.number(values, "RTL", 1, 0, 1))
-        values.pop("RTL", None)
-        sys.exit(run(run_request.parse([f"{key}={value}" for key, value in values.items()]), rtl))
+        sys.exit(run(run_request.of_values(values), rtl))

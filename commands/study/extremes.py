@@ -338,6 +338,6 @@ def run(size: int, simulator: str, out: Path, short: bool) -> int:
 def main() -> None:
     with variables.reported("extremes"):
         values = {"N": "64", **variables.given(sys.argv[1:], ("N", "SIM", "SHORT", "OUT"))}
-        request = run_request.parse([f"{name}={values[name]}" for name in ("N", "SIM") if name in values])
-        out = Path(values.get("OUT", repository.ROOT / "build" / "extremes"))
+        request = run_request.of_values(values)
+        out = request.out or repository.ROOT / "build" / "extremes"
         sys.exit(run(request.columns, request.simulator, out, bool(variables.number(values, "SHORT", 0, 0, 1))))

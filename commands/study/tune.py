@@ -36,24 +36,8 @@ from tactile_depth.sensor import Sensor
 # In the order of `Limits`.
 OWN = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
 LIMITS = (1e-9, 1e9)  # of each
-OF_SIM = (
-    *(
-        "PRESET",
-        "N",
-        "ROWS",
-        "COLS",
-        "SOLVER",
-        "BOUNDARY",
-        "LANES",
-        "SIM",
-        "DEPTH_RANGE",
-        "FRAMES",
-        "PRESS",
-        "AT",
-        "NOISE",
-    ),
-    *("NOISE", "REFERENCE", "ZERO", "GRADIENT", "CALIBRATION", "CAMERA_SIZE", "SEED", "OUT"),
-)
+NOT_OF_SIM = ("DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH", "REPEAT", "GAPS", "STALLS", "WAVES", "CONFIG")
+OF_SIM = tuple(name for name in run_request.ACCEPTED if name not in NOT_OF_SIM)
 DEFAULT_OUT = repository.ROOT / "build" / "tune"
 DEFAULT_FRAMES = "bench"
 DEFAULT_TOLERANCE = 0.1  # % of peak
@@ -242,13 +226,11 @@ def split(frames: Frames, peaks: np.ndarray, seed: int) -> tuple[Frames, Frames,
 def parse(arguments: list[str]) -> tuple[run_request.Request, Limits, list[str]]:
     """Return the request of make sim, the limits and the solvers to choose from. Raises InputError."""
     values = variables.given(arguments, OWN + OF_SIM)
-    own = {key: value for key, value in values.items() if key in OWN}
-    passed = {"FRAMES": DEFAULT_FRAMES} | {key: value for key, value in values.items() if key not in OWN}
     defaults = dict.fromkeys(OWN, math.inf) | {"TOLERANCE": DEFAULT_TOLERANCE, "CLOCK_MHZ": published.CLOCK_MHZ}
-    limits = Limits(*(variables.number(own, name, default, *LIMITS, float) for name, default in defaults.items()))
-    request = run_request.parse([f"{key}={value}" for key, value in passed.items()], preset="sensor")
-    solvers = [request.solver] if "SOLVER" in passed else list(COLUMNS)
-    if "LANES" in passed:
+    limits = Limits(*(variables.number(values, name, default, *LIMITS, float) for name, default in defaults.items()))
+    request = run_request.of_values(values, OF_SIM, "sensor", DEFAULT_FRAMES)
+    solvers = [request.solver] if "SOLVER" in values else list(COLUMNS)
+    if "LANES" in values:
         run_request.check_grid(replace(request, solver=solvers[-1]))
     else:
         request = replace(request, lanes=CHOOSE)

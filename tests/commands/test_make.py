@@ -35,8 +35,7 @@ ODD_NAMES = ("FRAMES", "A'B", 'A"B', "A;B", "A$B", "A&B", "A`B", "A%B", "A(B", "
 
 
 def targets() -> Any:
-    line = next(line for line in (ROOT / "Makefile").read_text().splitlines() if line.startswith(".PHONY:"))
-    return sorted(line.split()[1:])
+    return sorted(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
 
 
 def _program(path: Path, text: str) -> None:
