@@ -37,6 +37,11 @@ class Core:
     test: Path | None
     proof: Path | None
 
+    @property
+    def bench_folder(self) -> Path:
+        """Return the folder of a testbench of several files."""
+        return ROOT / "tb" / self.block / self.name
+
 
 def _existing(path: Path) -> Path | None:
     return path if path.is_file() else None

@@ -43,7 +43,6 @@ OWN = ("LIB", "NODE_NM", "CLOCK_MHZ")
 SDC = repository.ROOT / "constraints" / "asic.sdc"
 TOOLS = {"sta": "opensta", "c++": "g++"}
 WINDOW_CLOCKS = 256  # cycles in the middle of the frame that are simulated with delays
-YOSYS_SECONDS = 3600.0
 METHOD = (
     f"Logic: cells by Yosys, toggles of all nets in one frame, effect of delays as in {WINDOW_CLOCKS} of its clocks, "
     f"energy tables of the library. Memories: {memory_model.METHOD}. Left out: wires, clock tree, leakage of memories, "
@@ -102,16 +101,6 @@ def memories(design: Mapping[str, Any]) -> dict[str, Macro]:
     return macros
 
 
-def run_yosys(folder: Path, name: str, lines: list[str]) -> dict[str, Any]:
-    """Run lines of Yosys and return the design that they leave."""
-    script = folder / f"{name}.ys"
-    script.write_text("\n".join([*lines, f"write_json {name}.json", ""]))
-    if fault := yosys.run(script, timeout_s=YOSYS_SECONDS):
-        raise RuntimeError(f"Yosys: {fault}")
-    design: dict[str, Any] = json.loads((folder / f"{name}.json").read_text())
-    return design
-
-
 def synthesise(
     folder: Path, reading: list[str], top: str, file: Path, library: Library, period_ns: float
 ) -> tuple[Netlist, list[Macro], dict[str, str]]:
@@ -123,12 +112,12 @@ def synthesise(
     load, _ = typical(library)
     constraint = f"set_driving_cell {library.inverter().name}\nset_load {load * library.farad * 1e15:.4g}\n"
     (folder / "abc.constr").write_text(constraint)
-    design = run_yosys(folder, "read", [*reading, "memory_collect", "opt_clean", "write_rtlil read.il"])
+    design = yosys.design(folder, "read", [*reading, "memory_collect", "opt_clean", "write_rtlil read.il"])
     large = memories(design)
     steps = ["read_rtlil read.il", *(f"blackbox {name}" for name in large), "opt_hier", "opt_clean"]
     steps += [f"synth -top {top} -booth -noabc", "dfflibmap -liberty cells.lib"]
     steps += [f"abc -liberty cells.lib -constr abc.constr -D {round(period_ns * 1000)}", "setundef -zero"]
-    mapped = run_yosys(folder, "mapped", [*steps, "opt_clean -purge", "flatten", "opt_clean -purge"])
+    mapped = yosys.design(folder, "mapped", [*steps, "opt_clean -purge", "flatten", "opt_clean -purge"])
     netlist = from_yosys(mapped, top, library)
     if unknown := {macro.kind for macro in netlist.macros} - set(large):
         raise RuntimeError(f"cells that the library does not hold were left: {', '.join(sorted(unknown)[:4])}")

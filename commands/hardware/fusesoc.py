@@ -16,7 +16,7 @@ try:
 
     from commands.common import run_request, variables, wrapper
     from commands.common.zero_offset import untouched, zero_of
-    from commands.hardware import synth
+    from commands.hardware import synth, synthesis
     from tactile_depth.errors import InputError
     from tactile_depth.tactile_depth import top_parameters, write_roms
 except ImportError as error:
@@ -34,7 +34,7 @@ def generate(description: Path, folder: Path) -> None:
         if key not in synth.CONFIGURING:
             raise InputError(f"{key}: unknown variable: accepted are NAME, {', '.join(synth.CONFIGURING)}")
     request = run_request.parse([f"{key}={value}" for key, value in values.items()], preset="sensor", frames="")
-    config, calibration, frames = synth.configured(request)
+    frames, calibration, config = synthesis.design(request)
     write_roms(folder, calibration, config, zero_of(untouched(request, frames), calibration, config))
     tables = [rom.name for rom in sorted(folder.glob("*.hex"))]
     path = wrapper.write(folder, module, top_parameters(config, calibration.pixel_pitch_mm), f"{module}/")

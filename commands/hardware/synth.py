@@ -36,12 +36,10 @@ from tactile_depth import files
 from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.configuration import COLUMNS, Configuration
 from tactile_depth.errors import InputError
-from tactile_depth.frames import Frames
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import hdl_parameters
 
 OUT = repository.ROOT / "build" / "synth"
-TIMEOUT_S = 3600
 UNITS = ("u_video", "u_gradient", "u_poisson", "u_depth", "u_contact")  # of hdl/tactile_depth.sv
 SOLVER = "u_poisson.u_solver"
 CAMERA_UNIT, CAMERA_PATH = "camera_unit", "u_camera"
@@ -138,22 +136,13 @@ def parse(arguments: list[str]) -> tuple[Target, str, list[int], run_request.Req
     return TARGETS[name], name, sizes, run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
 
 
-def configured(request: run_request.Request) -> tuple[Configuration, Sensor, Frames]:
-    """Return the configuration of a request, the calibration on its grid, and frames with its camera.
-
-    Raises InputError.
-    """
-    frames, calibration, config = synthesis.design(request)
-    return config, calibration, frames
-
-
 def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[run_request.Request, str]]:
     """Return the designs to build, each with the reason why it cannot be built, which is empty for most.
 
     Raises InputError: neither solver has a configuration for one of the grids.
     """
     if not grids:
-        configured(request)
+        synthesis.design(request)
         return [(request, "")]
     every: list[tuple[run_request.Request, str]] = []
     for size in grids:
@@ -161,7 +150,7 @@ def designs(request: run_request.Request, grids: Sequence[int]) -> list[tuple[ru
         for solver in COLUMNS:
             each = replace(request, rows=size, columns=size, solver=solver)
             try:
-                configured(each)
+                synthesis.design(each)
                 every.append((each, ""))
             except InputError as error:
                 reasons.append(error.text(variables.named))
@@ -182,11 +171,7 @@ def elaborate(
     top, parameters = (TOP, None) if camera is None else (CAMERA_UNIT, hdl_parameters(config, camera=camera))
     options = "--keep-hierarchy"
     lines = synthesis.read(folder, config, calibration=calibration, top=top, parameters=parameters, options=options)
-    script = folder / "elaborate.ys"
-    script.write_text("\n".join([*lines, "memory_collect", "write_json design.json"]) + "\n")
-    if fault := yosys.run(script, timeout_s=TIMEOUT_S):
-        raise RuntimeError(fault)
-    return lines, list(json.loads((folder / "design.json").read_text())["modules"])
+    return lines, list(yosys.design(folder, "design", [*lines, "memory_collect"])["modules"])
 
 
 def kept(modules: Sequence[str]) -> list[str]:
@@ -241,7 +226,7 @@ def mapped(
         script.write_text("\n".join([*lines, *keep, *commands, f"tee -q -o {name}.json stat -json"]) + "\n")
         scripts.append(script)
     with threads(len(scripts)) as pool:
-        runs = [pool.submit(yosys.run, script, timeout_s=TIMEOUT_S) for script in scripts]
+        runs = [pool.submit(yosys.run, script) for script in scripts]
         finished = tqdm(as_completed(runs), desc=label, total=len(runs), unit="mapping", leave=False, disable=None)
         faults = [fault for run in finished if (fault := run.result())]
     if faults:
@@ -404,13 +389,13 @@ def run(arguments: list[str]) -> int:
         if grids:
             print(f"preset {request.preset}", flush=True)
         else:
-            run_request.announce(request, configured(request)[0])
+            run_request.announce(request, synthesis.design(request)[2])
         for each, reason in requests:
             if reason:
                 grid = {"grid": [each.rows, each.columns], "solver": each.solver}
                 built.append(Design(grid, {}, {}, [], [], f"not built: {reason}", 0.0))
             else:
-                config, calibration, frames = configured(each)
+                frames, calibration, config = synthesis.design(each)
                 folder = work / f"{config.solver}-{config.columns}"
                 built.append(synthesize(config, calibration, target, folder, frames.camera))
                 if not grids:

@@ -14,7 +14,7 @@ import sys
 
 from commands.common import repository, run_request, variables, wrapper
 from commands.common.zero_offset import untouched, zero_of
-from commands.hardware import synth
+from commands.hardware import synth, synthesis
 from tactile_depth import files
 from tactile_depth.errors import InputError
 from tactile_depth.tactile_depth import top_parameters, write_roms
@@ -31,7 +31,7 @@ def main() -> None:
             raise InputError(f"TABLES={tables}: accepted is the folder of the table files, with a / at its end")
         request = run_request.of_values(values, run_request.WITH_CAMERA, "sensor", "")
         out = request.out or repository.ROOT / "build" / "wrap" / name
-        config, calibration, frames = synth.configured(request)
+        frames, calibration, config = synthesis.design(request)
         zero = zero_of(untouched(request, frames), calibration, config)
         with files.workspace(out) as work:
             parameters = top_parameters(config, calibration.pixel_pitch_mm, frames.camera)

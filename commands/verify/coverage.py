@@ -26,6 +26,7 @@ from typing import NamedTuple
 import tomllib
 
 from commands.common import markdown, repository, variables
+from tb import functional_coverage
 from tb.settings import RunSettings
 
 DATA = repository.ROOT / "build" / "coverage"
@@ -201,10 +202,6 @@ def run_tests() -> int:
 
 def functional() -> tuple[str, list[str]]:
     """Return the report of the bins of the fault list, and errors."""
-    for path in (repository.ROOT, repository.ROOT / "tb"):
-        sys.path.insert(0, str(path))
-    from tb import functional_coverage
-
     hits: Counter[str] = Counter()
     for path in DATA.glob(f"*/*/{BINS}"):
         hits.update(json.loads(path.read_text()))

@@ -15,6 +15,7 @@ solver works only on the logic that the mutant can reach. Each mutant goes throu
 A mutant that no step settles is open.
 """
 
+import itertools
 import json
 import re
 import subprocess
@@ -165,11 +166,8 @@ def graph(core: str, folder: Path, protocol: str, parameters: Mapping[str, int |
     rows = [[int(word) for word in next(lines).split()] for _ in range(int(latches))]
     out_literals = [int(next(lines)) for _ in range(int(outputs))]
     gates = [tuple(int(word) for word in next(lines).split()) for _ in range(int(ands))]
-    names = {}
-    for line in lines:
-        match = re.fullmatch(r"([io])(\d+) (\S+)", line)
-        if match:
-            names[match[1], int(match[2])] = match[3]
+    symbols = re.findall(r"^([io])(\d+) (\S+)$", "\n".join(lines), re.M)
+    names = {(kind, int(number)): name for kind, number, name in symbols}
     # Inputs without a name are undefined values, such as words beyond the end of a memory: any value, the same in both.
     inputs_by_name = {names.get(("i", n), f"undefined{n}"): literal for n, literal in enumerate(in_literals)}
 
@@ -230,23 +228,12 @@ class Miter(Gates):
         self.inputs = [literal for literal in source.inputs.values() if literal not in self.selector]
         free = [literal for literal, _, start in source.latches if start == literal]
         # Nodes: inputs, power-up values, `started`, latches of the first copy, as many for the second, gates.
-        count = 1
-        self.input_of: dict[int, int] = {}
-        self.power_up: dict[int, int] = {}
-        self.latch: dict[int, int] = {}
-        self.twin: dict[int, int] = {}
-        for table, literals in ((self.input_of, self.inputs), (self.power_up, free)):
-            for literal in literals:
-                table[literal] = 2 * count
-                count += 1
-        self.input_count = count - 1
-        self.started = 2 * count
-        count += 1
-        for table in (self.latch, self.twin):
-            for literal, _, _ in source.latches:
-                table[literal] = 2 * count
-                count += 1
-        super().__init__(count)
+        literals = itertools.count(2, 2)
+        self.input_of = {literal: next(literals) for literal in self.inputs}
+        self.power_up = {literal: next(literals) for literal in free}
+        self.started = next(literals)
+        self.latch, self.twin = ({latch[0]: next(literals) for latch in source.latches} for _ in range(2))
+        super().__init__(next(literals) // 2)
         self._build()
 
     def state(self, latch: int, literal: int, start: int) -> int:
@@ -341,7 +328,7 @@ class Miter(Gates):
             for literal, _, start in self.source.latches
         ]
         top = self.first - 1 + len(self.ands)
-        head = f"aig {top} {self.input_count} {len(latches)} {len(outputs)} {len(self.ands)}\n"
+        head = f"aig {top} {len(self.inputs) + len(self.power_up)} {len(latches)} {len(outputs)} {len(self.ands)}\n"
         text = head + "".join(
             f"{following} {start}\n" if start else f"{following}\n" for _, following, start in latches
         )

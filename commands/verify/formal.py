@@ -279,7 +279,3 @@ def prove(proofs: Sequence[Proof | Cone]) -> int:
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")
     return variables.MISMATCH if failed else variables.EQUAL
-
-
-if __name__ == "__main__":
-    main()

@@ -101,6 +101,11 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
             config = Configuration(**built.device["configuration"])
             parameters |= {"Rows": config.rows, "Columns": config.columns}
         graph = equivalence.graph(name, folder, core.protocol or name, parameters)
+
+        def survived(number: int, verdict: str, how: str, label: str = built.label, what: dict = what) -> None:
+            found = {"structure": label, "mutant": number, "what": what[number], "verdict": verdict, "how": how}
+            outcome.survivors.append(found)
+
         numbers = [mutant.number for mutant in lived]
         with ThreadPool(jobs) as pool:
             verdicts = pool.imap(partial(settle, graph, folder=folder, seconds=seconds), numbers)
@@ -108,24 +113,11 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
             for number, (verdict, how) in zip(numbers, shown, strict=True):
                 setattr(outcome, verdict, getattr(outcome, verdict) + 1)
                 outcome.settled_by[how] = outcome.settled_by.get(how, 0) + 1
-                survivor = {
-                    "structure": built.label,
-                    "mutant": number,
-                    "what": what[number],
-                    "verdict": verdict,
-                    "how": how,
-                }
-                outcome.survivors.append(survivor)
+                survived(number, verdict, how)
         for number in sorted(killed)[:: max(1, len(killed) // CONTROLS)][:CONTROLS]:
             if settle(graph, number, folder, 1)[0] == EQUIVALENT:
                 outcome.contradictions += 1
-                survivor = {
-                    "structure": built.label,
-                    "mutant": number,
-                    "what": what[number],
-                    "verdict": "contradiction",
-                }
-                outcome.survivors.append(survivor | {"how": "killed, but proven equivalent"})
+                survived(number, "contradiction", "killed, but proven equivalent")
     outcome.seconds = time.monotonic() - began
     (OUT / name / "outcome.json").write_text(json.dumps(asdict(outcome) | {"score": outcome.score}, indent=1) + "\n")
     return outcome

@@ -57,7 +57,7 @@ def affected(names: Iterable[str]) -> Affected:
     owner = {
         str(file.relative_to(ROOT)): core.name
         for core in repository.cores().values()
-        for file in (core.hdl, core.model, *bench_files(core), core.test, core.proof)
+        for file in (core.hdl, core.model, *core.benches, *core.bench_folder.glob("*.py"), core.test, core.proof)
         if file
     }
     cores, tests, shared = set(), set(), []
@@ -70,12 +70,6 @@ def affected(names: Iterable[str]) -> Affected:
         elif path.suffix in (".py", ".sv", ".vlt", ".toml", ".txt") or path.name == "Makefile":
             shared.append(name)
     return Affected(sorted(cores), sorted(tests - set(tests_of(sorted(cores)))), shared)
-
-
-def bench_files(core: repository.Core) -> list[Path]:
-    """Return the files of a core's testbench: one, or all of the folder that is named after the core."""
-    folders = {bench.parent for bench in core.benches if bench.parent.name == core.name}
-    return [file for folder in folders for file in folder.glob("*.py")] or list(core.benches)
 
 
 def test_of(path: Path) -> str | None:

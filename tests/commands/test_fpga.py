@@ -13,7 +13,7 @@ import pytest
 
 from commands.common import repository
 from commands.common import simulator as simulation
-from commands.hardware import crossing, ecp5, fpga, synthesis, yosys
+from commands.hardware import ecp5, fpga, synthesis, yosys
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
 
@@ -38,10 +38,7 @@ def netlist_of(core: str, parameters: Any, folder: Path) -> Any:
         parameters=parameters,
         extra=repository.TECHNOLOGY,
     )
-    script = folder / "synthesis.ys"
-    script.write_text("\n".join([*lines, f"synth_ecp5 -top {core} -json netlist.json"]))
-    assert not yosys.run(script, timeout_s=300)
-    return json.loads((folder / "netlist.json").read_text())
+    return yosys.design(folder, "netlist", [*lines, f"synth_ecp5 -top {core}"])
 
 
 def test_packed_multipliers_compute_the_same(tmp_path: Path) -> None:
@@ -201,11 +198,15 @@ def test_the_longest_delay_of_a_pointer_bit() -> None:
         *timing({bit.format("written", 7): 9.0}, SYSTEM, SYSTEM),
         *timing({"u_receive.u_fifo.read_data_TRELLIS_FF_Q": 9.0}),
     ]
-    report = {"detailed_net_timings": nets, "fmax": {"a": {"constraint": 100.0}, "b": {"constraint": 60.0}}}
-    assert crossing.longest(report, bits=6) == 3.0
-    assert crossing.source_period(report) == 10.0
+    camera, system = (clock.removeprefix("posedge ") for clock in (CAMERA, SYSTEM))
+    fmax = {camera: {"constraint": 60.0, "achieved": 61.0}, system: {"constraint": 100.0, "achieved": 101.0}}
+    report = {"detailed_net_timings": nets, "fmax": fmax}
+    assert fpga.longest_crossing(report, bits=6) == 3.0
     with pytest.raises(RuntimeError, match="nextpnr reports 6 bits of pointers between the clocks, the design has 10"):
-        crossing.longest(report, bits=10)
+        fpga.longest_crossing(report, bits=10)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fpga, "POINTER_BITS", 6)
+        assert fpga.crossing_report({1: report}, 1)["crossing_limit_ns"] == 10.0
 
 
 @pytest.mark.parametrize(
