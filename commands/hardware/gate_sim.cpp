@@ -38,6 +38,7 @@ struct Design {  // in the order of the input
   int32_t columns, frames;
   List pixels, codes;
   int32_t window_start, window_size, other_ps;  // other_ps: delay of memories and inputs
+  List high;                                    // registers that begin with 1
 };
 
 int32_t word() {
@@ -172,7 +173,7 @@ class Window {
 
 int main() {
   Design d{word(), gates(), gates(), memories(), word(), word(), word(), word(), list(), word(), word(), list(),
-           word(), word(), list(), list(), word(), word(), word()};
+           word(), word(), list(), list(), word(), word(), word(), list()};
   Window window(d);
   Values value(d.nets, 0), before;
   std::vector<uint32_t> toggles(d.nets, 0);
@@ -181,6 +182,7 @@ int main() {
     value[net] = bit;
   };
   value[1] = 1;
+  for (const int32_t net : d.high) value[net] = 1;
   const int64_t size = static_cast<int64_t>(d.pixels.size());
   int64_t sent = 0, received = 0, wrong = 0, clock_of_last = -1;
   for (int64_t clock = 0;; clock++) {

@@ -138,7 +138,7 @@ def simulate(
     words += encoder.bits(ports["m_axis_tdata"])
     words += [stimulus.columns, stimulus.frames, pixels.size, *map(int, pixels)]
     words += [codes.size, *(int(code) & mask for code in codes)]
-    words += [stimulus.window.start, len(stimulus.window), round(1000 * other_ns)]
+    words += [stimulus.window.start, len(stimulus.window), round(1000 * other_ns), *encoder.bits(netlist.high)]
     nets = max(encoder.net.values()) + 1
     content = np.array([nets, *words], dtype=np.int64).astype(np.uint32).tobytes()
     program = folder / "gate_sim"

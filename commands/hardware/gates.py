@@ -2,7 +2,7 @@
 """A mapped netlist: read from the JSON of Yosys, written as Verilog for OpenSTA."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -26,13 +26,17 @@ class Instance:
 
 @dataclass
 class Netlist:
-    """Gates and macros between ports, which have a direction and nets; instance number i is called c<i>."""
+    """Gates and macros between ports, which have a direction and nets; instance number i is called c<i>.
+
+    `high` are the nets of registers that begin with 1: small memories are registers, and have their contents.
+    """
 
     name: str
     ports: dict[str, tuple[str, list[Bit]]]
     instances: list[Instance]
     library: Library
     clock: Bit
+    high: list[Bit] = field(default_factory=list)
 
     @cached_property
     def gates(self) -> list[tuple[int, Instance, Cell]]:
@@ -58,7 +62,9 @@ def from_yosys(design: dict[str, Any], top: str, library: Library, clock: str = 
     module = design["modules"][top]
     ports = {name: (port["direction"], port["bits"]) for name, port in module["ports"].items()}
     instances = [Instance(cell["type"], path_of(name), cell["connections"]) for name, cell in module["cells"].items()]
-    netlist = Netlist(top, ports, instances, library, ports[clock][1][0])
+    starts = [(net["bits"], net["attributes"].get("init", "")) for net in module["netnames"].values()]
+    high = {bit for bits, words in starts for bit, start in zip(bits, reversed(words), strict=False) if start == "1"}
+    netlist = Netlist(top, ports, instances, library, ports[clock][1][0], [bit for bit in high if isinstance(bit, int)])
     for _, instance, cell in netlist.gates:
         if cell.flip_flop and instance.pins[clock_pin(cell)][0] != netlist.clock:
             raise RuntimeError(f"a flip-flop in {instance.path or top} has another clock than {clock}")

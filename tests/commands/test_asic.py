@@ -15,7 +15,7 @@ from commands.common import repository
 from commands.hardware import asic, estimate, gate_sim, memory_model, synthesis
 from commands.hardware.gate_power import CLOCK, INTERNAL, LEAKAGE, SWITCHING, power_of, typical
 from commands.hardware.gate_sim import Activity, Macro, Stimulus
-from commands.hardware.gates import Instance, Netlist, clock_pin, verilog
+from commands.hardware.gates import Instance, Netlist, clock_pin, from_yosys, verilog
 from commands.hardware.liberty import Cell, Pin, functions, groups_of, read, truth
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError
@@ -141,15 +141,16 @@ def test_estimate_at_45_nm(solver: str, logic: Any, bits: int, milliwatts: Any) 
 
 def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
     """Simulate a substitute with the ports of the design: green of a pixel goes through a memory and leaves two cycles
-    later."""
+    later. It takes pixels because a register begins with 1."""
     nets = iter(range(10, 200))
     bus = [next(nets) for _ in range(24)]
-    rst, valid, last, user, ready, out_valid, late = (next(nets) for _ in range(7))
+    rst, valid, last, user, ready, out_valid, late, held = (next(nets) for _ in range(8))
     read_data, out = [next(nets) for _ in range(8)], [next(nets) for _ in range(8)]
     inverse = [next(nets) for _ in range(8)]
     gates = [
         Instance("DFF", "", {"CK": [2], "D": [valid], "Q": [late]}),
         Instance("DFF", "", {"CK": [2], "D": [late], "Q": [out_valid]}),
+        Instance("DFF", "", {"CK": [2], "D": [held], "Q": [held]}),
         Instance("macro_0", "memory", {
             "clk": [2], "write_en": ["0"], "write_address": ["0"], "write_data": ["0"] * 8,
             "read_en": [valid], "read_address": bus[:4], "read_data": read_data}),  # type: ignore[dict-item]
@@ -160,13 +161,13 @@ def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
     ports: dict[str, Any] = {
         "clk": ("input", [2]), "rst": ("input", [rst]), "s_axis_tdata": ("input", bus),
         "s_axis_tvalid": ("input", [valid]),
-        "s_axis_tlast": ("input", [last]), "s_axis_tuser": ("input", [user]), "s_axis_tready": ("output", ["1"]),
+        "s_axis_tlast": ("input", [last]), "s_axis_tuser": ("input", [user]), "s_axis_tready": ("output", [held]),
         "m_axis_tready": ("input", [ready]), "m_event_tready": ("input", [next(nets)]),
         "s_axil_bready": ("input", [next(nets)]),
         "s_axil_rready": ("input", [next(nets)]),
         "m_axis_tvalid": ("output", [out_valid]), "m_axis_tdata": ("output", out),
     }  # fmt: skip
-    netlist = Netlist("design", ports, gates, library, 2)
+    netlist = Netlist("design", ports, gates, library, 2, [held])
     rng = np.random.default_rng(1)
     words = rng.integers(0, 256, 16)
     initial = "".join(f"{word:08b}" for word in reversed(words))
@@ -185,6 +186,12 @@ def test_whole_design_in_gates(library: Any, tmp_path: Path) -> None:
     assert activity.window_with_delays == activity.window  # no logic that could glitch
     wrong = np.where(np.arange(64) == 5, codes ^ 1, codes)
     assert gate_sim.simulate(netlist, [macro], Stimulus(pixels, wrong, 8, 3, range(0)), {}, 0.5, tmp_path).wrong == 3
+
+
+def test_registers_begin_as_yosys_has_them(library: Any) -> None:
+    names = {"words": {"bits": [7, 8, 9], "attributes": {"init": "1x1"}}, "wire": {"bits": [2, "0"], "attributes": {}}}
+    module = {"ports": {"clk": {"direction": "input", "bits": [2]}}, "cells": {}, "netnames": names}
+    assert sorted(from_yosys({"modules": {"core": module}}, "core", library).high) == [7, 9]
 
 
 def activity_of(toggles: Any, window: Any, window_with_delays: Any) -> Any:
@@ -311,7 +318,7 @@ def as_design(netlist: Any, operands: Any, widths: Any) -> tuple[Any, ...]:
         place += width
     unused = ("rst", "s_axis_tlast", "s_axis_tuser", "s_axis_tvalid", *gate_sim.ALWAYS_READY[1:])
     design: dict[str, Any] = {name: ("input", [10**6 + i]) for i, name in enumerate(unused)}
-    design |= {"s_axis_tready": ("output", ["1"]), "m_axis_tvalid": ("output", design["s_axis_tvalid"][1])}
+    design |= {"s_axis_tready": ("output", [held]), "m_axis_tvalid": ("output", design["s_axis_tvalid"][1])}
     design |= {"m_axis_tready": ("input", ports["en"]), "m_axis_tdata": ("output", ports["sum"])}
     design["s_axis_tdata"] = ("input", [bit for name in widths for bit in ports[name]])
     return Netlist("design", design, netlist.instances, netlist.library, netlist.clock), pixels
