@@ -318,7 +318,7 @@ def as_design(netlist: Any, operands: Any, widths: Any) -> tuple[Any, ...]:
         place += width
     unused = ("rst", "s_axis_tlast", "s_axis_tuser", "s_axis_tvalid", *gate_sim.ALWAYS_READY[1:])
     design: dict[str, Any] = {name: ("input", [10**6 + i]) for i, name in enumerate(unused)}
-    design |= {"s_axis_tready": ("output", [held]), "m_axis_tvalid": ("output", design["s_axis_tvalid"][1])}
+    design |= {"s_axis_tready": ("output", ["1"]), "m_axis_tvalid": ("output", design["s_axis_tvalid"][1])}
     design |= {"m_axis_tready": ("input", ports["en"]), "m_axis_tdata": ("output", ports["sum"])}
     design["s_axis_tdata"] = ("input", [bit for name in widths for bit in ports[name]])
     return Netlist("design", design, netlist.instances, netlist.library, netlist.clock), pixels
