@@ -366,7 +366,7 @@ def test_a_pipeline_that_cannot_be_is_refused(ball: Any, choices: Any, message: 
         (np.zeros((240, 320, 4), np.uint8), r"\(240, 320, 4\)"),
         (np.zeros((0, 240, 320, 3), np.uint8), r"\(0, 240, 320, 3\)"),
         (np.zeros((240, 240, 3), np.uint8), "240 x 240 pixels .* calibrated for pictures of 320 x 240"),
-        (np.zeros((12, 16, 3), np.uint8), "are fewer than the grid's 32 x 24"),
+        (np.zeros((12, 16, 3), np.uint8), "are smaller than the grid of 32 x 24"),
         ("none.png", "none.png: no such file or folder"),
         (None, "pictures are NoneType: accepted is a uint8 array or a path"),
     ],

@@ -41,47 +41,9 @@ SPECTRAL_NODES = {
 
 
 def cycles(config: Configuration) -> list[tuple[object, ...]]:
-    """Return unit, core and cycles on the way from the last pixel of a frame to its first depth value.
-
-    Raises AssertionError: they do not add up to the latency of the pipeline.
-    """
-    size = config.columns
-    forward, inverse = latency.dst_forward_latency(size), latency.dst_inverse_latency(size)
-    rows: list[tuple[str, str, int]] = [
-        ("video_unit", "td_axis_skid", latency.AXIS_SKID),
-        ("video_unit", "frame_guard", latency.FRAME_GUARD),
-        ("gradient_unit", "flat_field", latency.FLAT_FIELD if config.flat_field else 0),
-        ("gradient_unit", "quadratic_gradient", latency.QUADRATIC_GRADIENT)
-        if config.gradient_model == "quadratic"
-        else ("gradient_unit", "gradient_lookup", latency.GRADIENT_LOOKUP),
-        ("poisson_unit", "divergence", latency.DIVERGENCE),
-        ("poisson_unit", "row_reorder", latency.ROW_REORDER),
-        ("poisson_unit", "dst_forward, of the last row", forward),
-    ]
-    if config.solver == "tridiagonal":
-        rows += [
-            ("poisson_unit", "forward_elimination", latency.FORWARD_ELIMINATION),
-            ("poisson_unit", "frame_stack, turns the order of the rows", latency.FRAME_STACK),
-            ("poisson_unit", "back_substitution", latency.BACK_SUBSTITUTION),
-        ]
-    else:
-        rows += [
-            ("poisson_unit", "transpose, to columns", latency.TRANSPOSE),
-            ("poisson_unit", "dst_forward, of a column", forward),
-            ("poisson_unit", "spectral_divide", latency.SPECTRAL_DIVIDE),
-            ("poisson_unit", "dst_inverse, of a column", inverse),
-            ("poisson_unit", "all other columns", size * (size - 1)),
-            ("poisson_unit", "transpose, to rows", latency.TRANSPOSE),
-        ]
-    rows += [
-        ("poisson_unit", "dst_inverse, of the first row out", inverse),
-        ("poisson_unit", "row_reorder, waits for the whole row", size - 1 + latency.ROW_REORDER),
-        ("depth_unit", "zero_offset", latency.zero_latency(config)),
-        ("contact_unit", "depth_gate", latency.AXIS_SKID),
-    ]
-    total = sum(row[2] for row in rows)
-    assert total == latency.last_pixel_to_first_depth(config)
-    return [*(row for row in rows if row[2]), ("", "**sum**", f"**{total:,}**")]
+    """Return unit, core and cycles from the last pixel of a frame to its first depth value, and their sum."""
+    rows = [row for row in latency.by_core(config) if row[2]]
+    return [*rows, ("", "**sum**", f"**{sum(row[2] for row in rows):,}**")]
 
 
 def formats(config: Configuration, nodes: dict[str, str]) -> list[tuple[object, ...]]:

@@ -4,7 +4,7 @@
 //   five-point Laplacian of z = f; z = 0 half a pixel outside the frame, or (Neumann) zero slope at its edge, mean zero
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes in raster order,
-// one burst of Columns words a row. Latency: fixed; models/tactile_depth/latency.py. Formats:
+// one burst of Columns words a row. Latency: fixed, in the model. Formats:
 // models/tactile_depth/configuration.py.
 // Bit-accurate model: models/tactile_depth/poisson/spectral_solver.py.
 

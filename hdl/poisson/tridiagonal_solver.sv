@@ -5,7 +5,7 @@
 //
 // Stream in: divergence f in raster order, gaps anywhere, whole frames only. Stream out: depth codes, bottom row first,
 // one burst of Columns / Lanes cycles a row, Lanes codes a cycle, the first in the lowest bits. Latency: fixed, 3.5
-// Columns and a few registers behind the last pixel; models/tactile_depth/latency.py. Formats:
+// Columns and a few registers behind the last pixel; in the model. Formats:
 // models/tactile_depth/configuration.py. Bit-accurate model: models/tactile_depth/poisson/tridiagonal_solver.py.
 
 `default_nettype none

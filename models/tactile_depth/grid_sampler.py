@@ -59,10 +59,9 @@ def grid_sampler(
         The pictures are smaller than the grid, or the camera cannot be built.
     """
     if picture[0] < grid[0] or picture[1] < grid[1]:
-        raise InputError(
-            *(name, f": frames of {picture[0]} x {picture[1]} are smaller than the grid of {grid[0]} x {grid[1]}"),
-            remedy="give larger frames or a smaller grid",
-        )
+        (height, width), (rows, columns) = picture, grid
+        problem = f": {width} x {height} pixels (columns x rows) are smaller than the grid of {columns} x {rows}"
+        raise InputError(name, problem, remedy="give larger pictures or a smaller grid")
     if choice is not None:
         camera = choice.on(picture, grid)
         x, y = camera.crop[:2]

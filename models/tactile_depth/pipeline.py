@@ -22,9 +22,9 @@ from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale, read_pictures, read_stack
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
 from tactile_depth.gradient.reference_capture import largest_log2_frames
+from tactile_depth.grid_sampler import GridSampler, grid_sampler
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presets import SENSOR
-from tactile_depth.resampling import Resampling, resampling
 from tactile_depth.result import Result
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import (
@@ -142,7 +142,7 @@ class Pipeline:
         sensor.require_reference(reference is not None)
         rows, columns = self.grid = default_grid(sensor, solver) if grid is None else grid
         shape: dict[str, Any] = {"columns": columns, "rows": rows, "solver": solver, "neumann": boundary == "neumann"}
-        self._camera_sensor, self._plans = sensor, dict[tuple[int, int], Resampling]()
+        self._camera_sensor, self._samplers = sensor, dict[tuple[int, int], GridSampler]()
         self.pixel_pitch_mm = sensor.pixel_pitch_mm * camera_scale(sensor, Configuration(**shape))
         rest = None if reference is None else self._read_reference(reference)
         self.sensor = replace(sensor, pixel_pitch_mm=self.pixel_pitch_mm, reference=rest)
@@ -360,18 +360,14 @@ class Pipeline:
 
     def _on_grid(self, images: np.ndarray, name: Part) -> np.ndarray:
         size = (images.shape[1], images.shape[2])
-        if size not in self._plans:
+        if size not in self._samplers:
             self._camera_sensor.zoom(size, name)
-            shown = f": {size[1]} x {size[0]} pixels (columns x rows)"
-            if self._camera_sensor.camera is None and self._plans:
-                problem = f"{shown}, but the first picture had {next(iter(self._plans))[::-1]}"
+            if self._camera_sensor.camera is None and self._samplers:
+                first = next(iter(self._samplers))[::-1]
+                problem = f": {size[1]} x {size[0]} pixels (columns x rows), but the first picture had {first}"
                 raise InputError(name, problem, remedy="give pictures of one size")
-            if size[0] < self.grid[0] or size[1] < self.grid[1]:
-                problem = f"{shown} are fewer than the grid's {self.grid[1]} x {self.grid[0]}"
-                raise InputError(name, problem, remedy="give larger pictures or a smaller grid")
-            self._plans[size] = resampling(size, self.grid)
-        plan = self._plans[size]
-        return np.stack([np.rint(plan.average(image)).astype(np.uint8) for image in images])
+            self._samplers[size] = grid_sampler(name, size, self.grid)
+        return np.stack([self._samplers[size].frame(image) for image in images])
 
 
 def is_whole(number: object) -> bool:

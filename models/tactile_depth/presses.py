@@ -216,7 +216,9 @@ def gather(
         if background is None:
             remedy = "give a picture of the sensor without contact"
             raise InputError(BACKGROUND, " is missing", remedy=remedy)
-        listed, name = [_named(press, number) for number, press in enumerate(presses, 1)], "fitted"
+        name = "fitted"
+        numbered = [f"press {n}" if isinstance(p.image, np.ndarray) else str(p.image) for n, p in enumerate(presses, 1)]
+        listed = [replace(press, name=press.name or other) for press, other in zip(presses, numbered, strict=True)]
     names = [press.name for press in listed]
     if repeated := next((one for one in names if names.count(one) > 1), None):
         problem = f": the name {repeated} stands twice"
@@ -343,12 +345,6 @@ def _press_image(press: BallPress, background: np.ndarray) -> np.ndarray:
             f"{background.shape[0]} x {background.shape[1]}"
         )
     return image
-
-
-def _named(press: BallPress, number: int) -> BallPress:
-    if press.name:
-        return press
-    return replace(press, name=f"press {number}" if isinstance(press.image, np.ndarray) else str(press.image))
 
 
 def _picture(image: np.ndarray | str | Path, name: Part) -> np.ndarray:

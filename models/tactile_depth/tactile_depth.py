@@ -235,7 +235,8 @@ def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[
         "GradientFraction": config.gradient.fraction,
         "FrameLatency": frame_latency(config),
         **_colour_parameters(config),
-        **_zero_parameters(config),
+        "ZeroOffset": int(config.zero_offset),
+        **({"BlockLog2": config.reference_block_log2} if config.zero_offset else {}),
         **description_parameters(config, pixel_pitch_mm),
     }
 
@@ -249,10 +250,6 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     colour = {"FlatField": 1, "Quadratic": int(quadratic), "BlockLog2": flat["BlockLog2"]}
     colour |= {"ColourDrop": flat["Drop"], "GainWidth": flat["GainWidth"], "CaptureLog2": capture["MaxLog2"]}
     return colour | ({"SlopeDrop": gradient_parameters(config)["Drop"]} if quadratic else {})
-
-
-def _zero_parameters(config: Configuration) -> dict[str, int]:
-    return {"ZeroOffset": 1, "BlockLog2": config.reference_block_log2} if config.zero_offset else {"ZeroOffset": 0}
 
 
 def write_roms(

@@ -6,9 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.area_average import UNITY, area_average
+from tactile_depth.camera.area_average import LATENCY, UNITY, area_average
 from tactile_depth.camera_configuration import GAIN_WIDTH
-from tactile_depth.latency import AREA_AVERAGE
 from tb.camera.slots import Slot, Slots, Window, packed
 from tb.cases import on_bench
 from tb.stream import MANY, check_words, drive, parameters
@@ -82,19 +81,19 @@ class Bench:
     def reset(self) -> None:
         """A reset drops every block inside."""
         reset = len(self.stimuli)
-        self.expected = [word for word in self.expected if word[0] + AREA_AVERAGE <= reset]
+        self.expected = [word for word in self.expected if word[0] + LATENCY <= reset]
         self.append(self.slots.idle(rst=1))
         self.place = 0
 
     async def check(self, pause: float = 0.0) -> None:
-        for _ in range(AREA_AVERAGE + 1):
+        for _ in range(LATENCY + 1):
             self.append(self.slots.idle())
         outputs = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         aborts = {word[0] for word in self.expected if word[1] < 0}
         got = []
         for clock in range(len(self.stimuli)):
             if int(outputs["out_valid"][clock]):
-                slot, pixel = clock - AREA_AVERAGE, outputs["out_pixel"][clock]
+                slot, pixel = clock - LATENCY, outputs["out_pixel"][clock]
                 colours = [-1] * 3 if slot in aborts else [int(pixel) >> shift & 255 for shift in (16, 0, 8)]
                 got.append([slot, *colours, int(outputs["out_last"][clock]), int(outputs["out_user"][clock])])
         check_words(np.array(got), np.array(self.expected), self.columns, self.rows)
@@ -159,7 +158,7 @@ async def broken_frames(bench: Bench, gap: float) -> None:
 async def resets(bench: Bench) -> None:
     """Reset at random positions: no block inside leaves, and the next frame is right, also if it breaks at once."""
     pixels = bench.window.height * bench.window.width
-    for age in range(AREA_AVERAGE + 2):
+    for age in range(LATENCY + 2):
         if age % 2:
             bench.frame(bench.samples("picture"), pixels=pixels - bench.slots.random.randrange(2 * bench.columns))
         else:

@@ -6,8 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.black_level import black_level
-from tactile_depth.latency import BLACK_LEVEL
+from tactile_depth.camera.black_level import LATENCY, black_level
 from tb.camera.slots import Slot, Slots, packed, unpacked
 from tb.cases import on_bench
 from tb.stream import MANY, drive, parameters
@@ -58,9 +57,9 @@ class Bench:
         return out
 
     async def check(self, pause: float = 0.0) -> None:
-        self.stimuli += [self.slots.idle() for _ in range(BLACK_LEVEL + 1)]
+        self.stimuli += [self.slots.idle() for _ in range(LATENCY + 1)]
         pin_values = await drive(self.dut, self.stimuli, OUTPUTS, pause)
-        for clock, want in enumerate(self.expected(pin_values)[:-BLACK_LEVEL], BLACK_LEVEL):
+        for clock, want in enumerate(self.expected(pin_values)[:-LATENCY], LATENCY):
             got: Any = "abort" if int(pin_values["out_abort"][clock]) else None
             if int(pin_values["out_valid"][clock]):
                 samples = unpacked(pin_values["out_samples"][clock], self.width, self.channels)

@@ -6,9 +6,8 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.block_totals import block_areas, block_totals
+from tactile_depth.camera.block_totals import LATENCY, block_areas, block_totals
 from tactile_depth.camera.row_sums import sums_over_blocks
-from tactile_depth.latency import BLOCK_TOTALS
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
 from tb.cases import on_bench
 from tb.stream import drive, parameters
@@ -66,15 +65,15 @@ class Bench:
                 self.stimuli.append(self.slots.idle(**pins))
 
     async def check(self, pause: float = 0.0) -> None:
-        self.stimuli += [self.slots.idle() for _ in range(BLOCK_TOTALS + 1)]
+        self.stimuli += [self.slots.idle() for _ in range(LATENCY + 1)]
         outputs = await drive(self.dut, self.stimuli, OUTPUTS, pause)
         total_width, area_width = len(self.dut.out_totals) // 3, len(self.dut.out_areas) // 3
         got = []
-        for clock in range(BLOCK_TOTALS, len(self.stimuli)):
+        for clock in range(LATENCY, len(self.stimuli)):
             if int(outputs["out_valid"][clock]):
                 totals = unpacked(outputs["out_totals"][clock], total_width, 3)
                 areas = [area % (1 << area_width) for area in unpacked(outputs["out_areas"][clock], area_width, 3)]
-                got.append((clock - BLOCK_TOTALS, (totals, areas)))
+                got.append((clock - LATENCY, (totals, areas)))
         assert got == self.expected
 
 
@@ -91,11 +90,11 @@ async def frames(bench: Bench, gap: float, pause: float) -> None:
 @on_bench(Bench, milliseconds=2)
 async def resets(bench: Bench) -> None:
     """Reset inside a frame: every block inside is dropped, and the next frame is right."""
-    for age in range(1, BLOCK_TOTALS + 2):
+    for age in range(1, LATENCY + 2):
         bench.frame("random")
         del bench.stimuli[len(bench.stimuli) - age + 1 :]
         reset = len(bench.stimuli)
-        bench.expected = [(slot, word) for slot, word in bench.expected if slot + BLOCK_TOTALS <= reset]
+        bench.expected = [(slot, word) for slot, word in bench.expected if slot + LATENCY <= reset]
         bench.stimuli.append(bench.slots.idle(rst=1))
     bench.frame("random")
     await bench.check()

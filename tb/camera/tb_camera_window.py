@@ -12,8 +12,7 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge
 
-from tactile_depth.camera.camera_window import FAULTS, Settings, camera_window
-from tactile_depth.latency import CAMERA_WINDOW
+from tactile_depth.camera.camera_window import FAULTS, LATENCY, Settings, camera_window
 from tactile_depth.video.frame_guard import Word
 from tb.axis import BREAKS, SILENT, AxisSource, broken, positions, profile, spoiled, video
 from tb.cases import on_bench
@@ -101,7 +100,7 @@ class Bench:
             marks = [int(getattr(dut, f"out_{name}").value) for name in ("odd_row", "odd_column", "inside")]
             names = ("row_start", "frame_start") if marks[2] else ()
             starts = [int(getattr(dut, f"out_{name}").value) for name in names]
-            self.out.append((clock - CAMERA_WINDOW, int(dut.out_data.value), *marks, *starts))
+            self.out.append((clock - LATENCY, int(dut.out_data.value), *marks, *starts))
         if dut.s_valid.value and dut.s_ready.value:
             self.taken.append((Word(int(dut.s_data.value), int(dut.s_last.value), int(dut.s_user.value)), settings))
             self.clocks.append(clock)

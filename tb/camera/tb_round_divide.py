@@ -7,8 +7,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.round_divide import round_divide
-from tactile_depth.latency import ROUND_DIVIDE
+from tactile_depth.camera.round_divide import LATENCY, round_divide
 from tb.stream import MANY, drive, parameters
 
 
@@ -29,9 +28,9 @@ async def means(dut: Any, pause: float) -> None:
                 operands.append((mean * divisor + divisor // 2 + beside, weight))
         operands.append((chance.randint(-2 * divisor, 300 * divisor), weight))
     stimuli = [{"total": total, "weight": weight} for total, weight in operands if low <= total <= high]
-    stimuli += [{"total": 0, "weight": 1}] * ROUND_DIVIDE
+    stimuli += [{"total": 0, "weight": 1}] * LATENCY
     pins = await drive(dut, stimuli, ["mean"], pause)
     totals = np.array([word.to_signed() for word in pins["total"]])
     divisors = np.array([int(word) for word in pins["weight"]])
-    got = [int(word) for word in pins["mean"][ROUND_DIVIDE:]]
-    np.testing.assert_array_equal(got, round_divide(totals, divisors, drop)[:-ROUND_DIVIDE])
+    got = [int(word) for word in pins["mean"][LATENCY:]]
+    np.testing.assert_array_equal(got, round_divide(totals, divisors, drop)[:-LATENCY])

@@ -6,8 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.camera.row_sums import red_columns, row_sums
-from tactile_depth.latency import ROW_SUMS
+from tactile_depth.camera.row_sums import LATENCY, red_columns, row_sums
 from tb.camera.slots import Slot, Slots, Window, packed, unpacked
 from tb.stream import drive, extremes, parameters, uniform
 
@@ -39,12 +38,12 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
         if slots.random.random() < 0.2:  # a row that is cut short
             stimuli += slots.apart(words[: slots.random.randrange(1, len(words))], gap)
         stimuli += slots.apart(words, gap)
-    stimuli += [slots.idle() for _ in range(ROW_SUMS + 1)]
+    stimuli += [slots.idle() for _ in range(LATENCY + 1)]
     outputs = ["out_ends", "out_sums", "out_red_columns"]
     pins = await drive(dut, stimuli, outputs, pause)
 
     taken: list[Any] = []  # pixels of the row, as they came in
-    for clock in range(len(stimuli) - ROW_SUMS):
+    for clock in range(len(stimuli) - LATENCY):
         if pins["rst"][clock]:
             continue
         ends = False
@@ -53,7 +52,7 @@ async def rows(dut: Any, gap: float, pause: float) -> None:
                 taken = []
             ends = bool(window.column_ends[len(taken)])
             taken.append((unpacked(pins["in_samples"][clock], width, channels), int(pins["in_blue_column"][clock])))
-        after = clock + ROW_SUMS
+        after = clock + LATENCY
         assert bool(pins["out_ends"][after]) == ends, f"clock {clock}"
         if ends:
             row, columns = np.array([pixel for pixel, _ in taken]), np.array([blue for _, blue in taken]) == 1
@@ -73,7 +72,7 @@ async def a_reset_forgets_what_is_inside(dut: Any) -> None:
     row = [slots.idle(in_valid=1, in_row_start=int(place == 0)) for place in range(width)]
     stimuli: list[Slot] = []
     for length in range(1, width + 1):
-        stimuli += [*row[:length], slots.idle(rst=1), *[slots.idle() for _ in range(ROW_SUMS + 1)]]
+        stimuli += [*row[:length], slots.idle(rst=1), *[slots.idle() for _ in range(LATENCY + 1)]]
     pins = await drive(dut, stimuli, ["out_ends"])
     silent = 0  # clocks since a reset, without a pixel
     for clock in range(len(stimuli)):

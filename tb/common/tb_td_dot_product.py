@@ -8,8 +8,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_dot_product import dot_product
-from tactile_depth.latency import DOT_PRODUCT
+from tactile_depth.common.td_dot_product import LATENCY, dot_product
 from tb.stream import drive, parameters
 
 FACTORS = ("a0", "b0", "a1", "b1")
@@ -23,8 +22,8 @@ async def products(dut: Any, pause: float) -> None:
     limits = [(-(1 << (width - 1)), 0, (1 << (width - 1)) - 1) for width in widths]
     operands = [*itertools.product(*limits)]
     operands += [tuple(chance.randint(low, high) for low, _, high in limits) for _ in range(300)]
-    operands += [(0, 0, 0, 0)] * DOT_PRODUCT
+    operands += [(0, 0, 0, 0)] * LATENCY
     pins = await drive(dut, [dict(zip(FACTORS, words, strict=True)) for words in operands], ["sum"], pause)
     factors = [np.array([word.to_signed() for word in pins[pin]]) for pin in FACTORS]
-    got = [word.to_signed() for word in pins["sum"][DOT_PRODUCT:]]
-    np.testing.assert_array_equal(got, dot_product(*factors)[:-DOT_PRODUCT])
+    got = [word.to_signed() for word in pins["sum"][LATENCY:]]
+    np.testing.assert_array_equal(got, dot_product(*factors)[:-LATENCY])

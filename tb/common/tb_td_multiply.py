@@ -8,8 +8,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.common.td_multiply import multiply
-from tactile_depth.latency import MULTIPLY
+from tactile_depth.common.td_multiply import LATENCY, multiply
 from tb.stream import drive, parameters
 
 
@@ -20,8 +19,8 @@ async def products(dut: Any, pause: float) -> None:
     limits = [(-(1 << (width - 1)), (1 << (width - 1)) - 1) for width in parameters(dut, "AWidth", "BWidth")]
     operands = list(itertools.product(*((low, -1, 0, 1, high) for low, high in limits)))
     operands += [tuple(chance.randint(low, high) for low, high in limits) for _ in range(300)]
-    operands += [(0, 0)] * MULTIPLY
+    operands += [(0, 0)] * LATENCY
     pins = await drive(dut, [{"a": a, "b": b} for a, b in operands], ["product"], pause)
     factors = [np.array([word.to_signed() for word in pins[pin]]) for pin in ("a", "b")]
-    got = [word.to_signed() for word in pins["product"][MULTIPLY:]]
-    np.testing.assert_array_equal(got, multiply(*factors)[:-MULTIPLY])
+    got = [word.to_signed() for word in pins["product"][LATENCY:]]
+    np.testing.assert_array_equal(got, multiply(*factors)[:-LATENCY])

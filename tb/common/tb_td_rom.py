@@ -7,8 +7,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.common.td_rom import rom
-from tactile_depth.latency import MEMORY_READ
+from tactile_depth.common.td_rom import LATENCY, rom
 from tb.stream import drive, parameters
 
 
@@ -18,7 +17,7 @@ async def every_word(dut: Any, pause: float) -> None:
     (depth,) = parameters(dut, "Depth")
     words = [int(line, 16) for line in Path("rom.hex").read_text().split()]
     places = random.Random(cocotb.RANDOM_SEED).sample(range(depth), depth)
-    stimuli = [{"address": place} for place in (*range(depth), *places, *[0] * MEMORY_READ)]
+    stimuli = [{"address": place} for place in (*range(depth), *places, *[0] * LATENCY)]
     pins = await drive(dut, stimuli, ["data"], pause)
     addresses = [int(address) for address in pins["address"]]
-    assert [int(word) for word in pins["data"][MEMORY_READ:]] == rom(words, addresses)[:-MEMORY_READ]
+    assert [int(word) for word in pins["data"][LATENCY:]] == rom(words, addresses)[:-LATENCY]

@@ -10,8 +10,7 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.gradient.flat_field import dark_pixels, deviations, flat_codes, unit_gains
-from tactile_depth.latency import FLAT_FIELD
+from tactile_depth.gradient.flat_field import LATENCY, dark_pixels, deviations, flat_codes, unit_gains
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
@@ -108,12 +107,12 @@ class Field:
                 await send_apart(self.bench, self.driver, words[named:], self.gap)
 
     async def check(self) -> None:
-        await self.bench.clocks(FLAT_FIELD + 3)
+        await self.bench.clocks(LATENCY + 3)
         assert self.source.words == self.sent, "the driver sent other words than the test gave it"
         colours = np.concatenate([frame.reshape(-1, 3) for frame in self.expected]).astype(np.int64)
         want = np.column_stack((colours, [place for _, place in self.sent]))
         check_words(np.array(self.sink.words), want, self.config.columns, self.config.rows)
-        assert self.sink.starts == [clock + FLAT_FIELD for clock in self.source.starts]
+        assert self.sink.starts == [clock + LATENCY for clock in self.source.starts]
         assert self.darkened == self.dark, f"{self.darkened} dark pixels counted, the model has {self.dark}"
         clipped = self.monitor.saturations.total()
         assert self.bench.saturations == clipped, f"{self.bench.saturations} values clipped, {clipped} in the model"
@@ -227,7 +226,7 @@ async def resets(device: Field) -> None:
         await device.bench.reset()
         device.forget()
         if count % 3 == 0:
-            await device.bench.clocks(FLAT_FIELD + 2)
+            await device.bench.clocks(LATENCY + 2)
             assert not device.sink.starts, f"words left after a reset at {count}"
             assert not device.darkened
         await device.send()

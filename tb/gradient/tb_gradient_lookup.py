@@ -12,8 +12,7 @@ from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.built_in import synthetic
 from tactile_depth.common.td_banked_table import BankedTable
-from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
-from tactile_depth.latency import GRADIENT_LOOKUP
+from tactile_depth.gradient.gradient_lookup import LATENCY, gradient_codes, gradient_lookup
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.pixels import pack, unpack
@@ -141,11 +140,11 @@ class Lookup:
         await self.compare()
 
     async def compare(self) -> None:
-        await self.bench.clocks(GRADIENT_LOOKUP + 2)
+        await self.bench.clocks(LATENCY + 2)
         marks = [place for _, place in self.source.words]
         assert len(self.expected) == len(marks)
         np.testing.assert_array_equal(np.array(self.sink.words), np.column_stack((np.array(self.expected), marks)))
-        assert self.sink.starts == [clock + GRADIENT_LOOKUP for clock in self.source.starts]
+        assert self.sink.starts == [clock + LATENCY for clock in self.source.starts]
         self.source.forget()
         self.sink.forget()
         self.expected.clear()

@@ -13,8 +13,7 @@ import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.gradient.quadratic_gradient import coefficients, slope_codes
-from tactile_depth.latency import QUADRATIC_GRADIENT
+from tactile_depth.gradient.quadratic_gradient import LATENCY, coefficients, slope_codes
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart
@@ -184,8 +183,8 @@ class Gradient:
 
     async def compare(self, last: int = 0) -> Any:
         """Compare all pixels, or those of the last frame; return the number of values clipped."""
-        await self.bench.clocks(QUADRATIC_GRADIENT + 2)
-        assert self.sink.starts == [clock + QUADRATIC_GRADIENT for clock in self.source.starts]
+        await self.bench.clocks(LATENCY + 2)
+        assert self.sink.starts == [clock + LATENCY for clock in self.source.starts]
         if last:
             self.source.forget_but(last)
             self.sink.forget_but(last)
@@ -309,7 +308,7 @@ async def reset_keeps_the_words_and_takes_the_bank_over(device: Gradient) -> Non
             await device.bench.reset()
         device.forget()
         if pixels % 2:
-            await device.bench.clocks(QUADRATIC_GRADIENT + 2)
+            await device.bench.clocks(LATENCY + 2)
             assert not device.sink.starts, f"pixels left after a reset at {pixels}"
             assert device.bench.saturations == 0, f"clipped words were counted after a reset at {pixels}"
         await device.use(device.any_words())

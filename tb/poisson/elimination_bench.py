@@ -11,8 +11,9 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import BACK_SUBSTITUTION, FORWARD_ELIMINATION
+from tactile_depth.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
 from tactile_depth.poisson.back_substitution import back_substitution
+from tactile_depth.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
 from tactile_depth.poisson.forward_elimination import forward_elimination
 from tb.lanes import LanesMonitor, check_lanes
 from tb.stream import MANY, check_bursts, configuration, sample, uniform, with_and_without_en

@@ -6,8 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.latency import DIVERGENCE
-from tactile_depth.poisson.divergence import divergence
+from tactile_depth.poisson.divergence import LATENCY, divergence
 from tb.stream import (
     Bench,
     StreamDriver,
@@ -43,13 +42,13 @@ async def check(dut: Any, gradient: Any, gap: float = 0.0, pause: float = 0.0, i
     async def send(count: int) -> None:
         await send_apart(bench, driver, pixels(gradient)[:count], gap)
 
-    await interrupt(bench, send, interrupts, (source, sink), quiet=DIVERGENCE + 2)
+    await interrupt(bench, send, interrupts, (source, sink), quiet=LATENCY + 2)
     await send_apart(bench, driver, pixels(gradient), gap)
-    await bench.clocks(DIVERGENCE + 2)
+    await bench.clocks(LATENCY + 2)
     sent = np.array(source.words)[:, :2].reshape(gradient.shape)
     np.testing.assert_array_equal(sent, gradient, "the driver sent other words than the test gave it")
     check_maps(sink.words, divergence(sent, bool(neumann)))
-    assert sink.starts == [clock + DIVERGENCE for clock in source.starts]
+    assert sink.starts == [clock + LATENCY for clock in source.starts]
     check_frame_starts([sink], gradient[0, ..., 0].size)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.latency import FORWARD_ELIMINATION
+from tactile_depth.poisson.forward_elimination import LATENCY
 from tb.poisson.elimination_bench import a_frame_begins_afresh, check, frames, many_frames, reset_in_mid_frame
 from tb.stream import configuration, with_and_without_en
 
@@ -17,5 +17,5 @@ __all__ = ["a_frame_begins_afresh", "frames", "many_frames", "reset_as_the_mean_
 async def reset_as_the_mean_is_clipped(dut: Any) -> None:
     """Reset in each cycle after the addend of the last row but one: nothing is counted."""
     config = configuration()
-    last_addend = config.columns * (config.rows - 2) + FORWARD_ELIMINATION
+    last_addend = config.columns * (config.rows - 2) + LATENCY
     await check(dut, math.inf, interrupts=with_and_without_en(range(last_addend - 4, last_addend + 7)))

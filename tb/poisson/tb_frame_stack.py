@@ -5,8 +5,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.latency import FRAME_STACK
-from tactile_depth.poisson.frame_stack import frame_stack
+from tactile_depth.poisson.frame_stack import LATENCY, frame_stack
 from tb.lanes import LanesMonitor
 from tb.stream import check_frame_memory, parameters, places, sample
 
@@ -19,7 +18,7 @@ async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
     words = places(frames * (rows * columns + 1), width).reshape(frames, -1)[:, 1:]
     if lanes > 1:
         behaviour["sink"] = LanesMonitor(dut, "out", columns, lanes)
-    await check_frame_memory(dut, words, frame_stack, FRAME_STACK, rows=rows, lanes=lanes, **behaviour)
+    await check_frame_memory(dut, words, frame_stack, LATENCY, rows=rows, lanes=lanes, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

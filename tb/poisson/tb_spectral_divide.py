@@ -7,8 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import SPECTRAL_DIVIDE
-from tactile_depth.poisson.spectral_divide import spectral_divide
+from tactile_depth.poisson.spectral_divide import LATENCY, spectral_divide
 from tb.stream import MANY, check_bursts, configuration, extremes, parameters, sample, uniform
 
 
@@ -19,7 +18,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
         return spectral_divide(x.reshape(-1, config.columns, config.columns), config, monitor)
 
     behaviour |= {"in_fields": ["data"], "out_fields": ["data"], "frame": config.columns}
-    return await check_bursts(dut, x, model, SPECTRAL_DIVIDE, **behaviour)
+    return await check_bursts(dut, x, model, LATENCY, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")
@@ -51,7 +50,7 @@ async def reset_in_mid_frame(dut: Any, late: bool) -> None:
     """Reset as the first words enter and leave, and in the middle of the second frame."""
     columns, width = parameters(dut, "Columns", "Width")
     first = 3 * columns * columns // 2 + columns // 2 if late else 1
-    await check(dut, uniform((columns, columns, 1), width), interrupts=range(first, first + SPECTRAL_DIVIDE + 2))
+    await check(dut, uniform((columns, columns, 1), width), interrupts=range(first, first + LATENCY + 2))
 
 
 @cocotb.test(timeout_time=5, timeout_unit="ms")

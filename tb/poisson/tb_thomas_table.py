@@ -6,8 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.latency import THOMAS_TABLE
-from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.thomas_table import LATENCY, thomas_table
 from tb.stream import configuration, drive
 
 
@@ -18,9 +17,9 @@ async def every_entry(dut: Any, pause: float) -> None:
     table = thomas_table(config)
     places = [(row, position) for row in range(config.rows) for position in range(config.columns)]
     stimuli = [{"row": row, "position": position} for row, position in places]
-    stimuli += THOMAS_TABLE * stimuli[-1:]
+    stimuli += LATENCY * stimuli[-1:]
     pins = await drive(dut, stimuli, ["coefficient", "shift"], pause)
     coefficients = np.vstack((table.rows(config.rows - 1), table.last)).ravel()
     shifts = np.vstack((np.zeros((config.rows - 1, config.columns), np.int64), table.last_shift)).ravel()
-    np.testing.assert_array_equal([v.to_signed() for v in pins["coefficient"][THOMAS_TABLE:]], coefficients)
-    np.testing.assert_array_equal([int(v) for v in pins["shift"][THOMAS_TABLE:]], shifts)
+    np.testing.assert_array_equal([v.to_signed() for v in pins["coefficient"][LATENCY:]], coefficients)
+    np.testing.assert_array_equal([int(v) for v in pins["shift"][LATENCY:]], shifts)

@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import tridiagonal_solver_latency
+from tactile_depth.poisson.tridiagonal_solver import latency as tridiagonal_solver_latency
 from tactile_depth.poisson.tridiagonal_solver import tridiagonal_solver
 from tb.lanes import BeatMonitor
 from tb.stream import (

@@ -16,9 +16,10 @@ from tactile_depth.accuracy import errors
 from tactile_depth.built_in import load
 from tactile_depth.camera_configuration import FORMATS, CameraChoice, CameraConfiguration
 from tactile_depth.configuration import Configuration
+from tactile_depth.contact.threshold_comparator import LATENCY
 from tactile_depth.errors import InputError
 from tactile_depth.frames import SCENE_PICTURE, load_frames, on_grid
-from tactile_depth.latency import CONTACT, last_word_to_first_depth
+from tactile_depth.latency import last_word_to_first_depth
 from tactile_depth.scenes import render
 
 PICTURE = (36, 48)  # rows and columns
@@ -72,7 +73,7 @@ def test_the_cycles_from_the_last_word_are_those_of_the_model(
     assert report["expected_last_pixel_to_first_depth_cycles"] == expected
     codes = np.load(folder.parent / "out" / "depth.npy")[:, ::-1].reshape(report["frames"], -1)  # as they leave
     threshold = round(report["contact_threshold_mm"] / report["depth_lsb_mm"])
-    to_contact = [expected + int(place) + CONTACT for place in (codes > threshold).argmax(axis=1)]
+    to_contact = [expected + int(place) + LATENCY for place in (codes > threshold).argmax(axis=1)]
     assert report["last_pixel_to_contact_cycles"] == to_contact
 
 

@@ -13,7 +13,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_capture import captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero, zero_offset
-from tactile_depth.latency import zero_offset_latency
+from tactile_depth.depth.zero_offset import latency as zero_offset_latency
 from tactile_depth.rom_files import write_zero
 from tb.stream import places
 from tb.structures import ICARUS, VERILATOR, Structure

@@ -7,10 +7,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tactile_depth.camera.block_totals import LATENCY as BLOCK_TOTALS
 from tactile_depth.camera.block_totals import block_areas, block_totals
+from tactile_depth.camera.round_divide import LATENCY as ROUND_DIVIDE
 from tactile_depth.camera.round_divide import round_divide
+from tactile_depth.camera.row_sums import LATENCY as ROW_SUMS
 from tactile_depth.camera.row_sums import red_columns, row_sums
 from tactile_depth.camera_configuration import GAIN_FRACTION
+
+GAINS = 2  # cycles
+LATENCY = ROW_SUMS + BLOCK_TOTALS + GAINS + ROUND_DIVIDE
 
 FULL_SCALE = 8
 """Bits of a colour of the grid."""

@@ -7,6 +7,8 @@ import numpy as np
 
 from tactile_depth.camera.row_sums import sums_over_blocks
 
+LATENCY = 3
+
 
 def block_totals(sums: np.ndarray, blue_rows: np.ndarray | None, numerator: int, denominator: int) -> np.ndarray:
     """Return the totals of blocks from the sums of rows over blocks of columns.

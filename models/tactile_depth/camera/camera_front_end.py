@@ -5,10 +5,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.camera.area_average import LATENCY as AREA_AVERAGE
 from tactile_depth.camera.area_average import area_average
+from tactile_depth.camera.black_level import LATENCY as BLACK_LEVEL
 from tactile_depth.camera.black_level import black_level
+from tactile_depth.camera.camera_window import LATENCY as CAMERA_WINDOW
+from tactile_depth.camera.pixel_format import latency as pixel_format_latency
 from tactile_depth.camera.pixel_format import pixel_format, pixel_format_parameters
 from tactile_depth.camera_configuration import GAIN_WIDTH, CameraConfiguration
+from tactile_depth.common.td_axis_skid import LATENCY as AXIS_SKID
 
 SETTINGS = {"columns": 13, "rows": 13, "window_x": 13, "window_y": 13, "black_level": 12}
 SETTINGS |= dict.fromkeys(("red_gain", "green_gain", "blue_gain"), GAIN_WIDTH)
@@ -62,3 +67,11 @@ def camera_front_end(words: np.ndarray, camera: CameraConfiguration) -> np.ndarr
     ratio = camera.ratio
     means = area_average(samples, camera.bits, ratio.numerator, ratio.denominator, colour, camera.gain_codes)
     return means[:rows, :columns]
+
+
+def latency(camera: CameraConfiguration) -> int:
+    """Return the cycles from the camera's `last_word` to the last pixel of the grid, for any gaps."""
+    x, _, width, _ = camera.crop
+    first_of_pair = camera.format.is_yuyv and (x + width) % 2 == 1
+    cores = CAMERA_WINDOW + pixel_format_latency(camera) - first_of_pair + BLACK_LEVEL + AREA_AVERAGE
+    return AXIS_SKID + cores + AXIS_SKID

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from tactile_depth.video.frame_guard import Word
 
+LATENCY = 1
+
 FAULTS = ("row_short", "row_long", "start_missing", "start_early", "window_outside")
 
 

@@ -117,3 +117,8 @@ def photograph(picture: np.ndarray, camera: CameraConfiguration) -> np.ndarray:
             grey = np.take_along_axis(picture, colours(camera)[..., None], axis=-1)[..., 0].astype(np.int64)
             words = grey << camera.bits - GREY << raw_shift(camera)
     return words.astype(np.uint32)
+
+
+def latency(camera: CameraConfiguration) -> int:
+    """Return the latency; YUYV: of the second pixel of a pair, one more than of its first."""
+    return 4 if camera.format.is_yuyv else 1

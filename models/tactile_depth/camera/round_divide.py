@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+LATENCY = 10
+
 WHITE = 255
 
 

@@ -7,6 +7,8 @@ import numpy as np
 
 from tactile_depth.camera.block_weights import block_weights
 
+LATENCY = 3
+
 
 def sums_over_blocks(values: np.ndarray, numerator: int, denominator: int) -> np.ndarray:
     """Return weighted sums of integers over blocks of numerator / denominator values along the last axis.

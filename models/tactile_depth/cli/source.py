@@ -161,12 +161,9 @@ class Source(AbstractContextManager["Source"]):
                 return
             except queue.Full:
                 if self.is_camera:
-                    self._drop_oldest()
-
-    def _drop_oldest(self) -> None:
-        with contextlib.suppress(queue.Empty):  # the consumer was quicker
-            self._queue.get_nowait()
-            self.counts.dropped += 1
+                    with contextlib.suppress(queue.Empty):  # the consumer was quicker
+                        self._queue.get_nowait()  # the oldest
+                        self.counts.dropped += 1
 
 
 def load_opencv() -> Any:

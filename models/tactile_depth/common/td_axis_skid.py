@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field
 
+LATENCY = 1
+
 CAPACITY = 2
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+LATENCY = 1
+
 
 def rom(words: Sequence[int], addresses: Iterable[int]) -> list[int]:
     """Return the word at each address, which leaves one cycle later."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+LATENCY = 1  # from the depth value that raises contact
+
 
 @dataclass
 class ThresholdComparator:

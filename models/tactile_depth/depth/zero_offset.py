@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.common import td_node_map
 from tactile_depth.common.td_block_sum import block_sum
 from tactile_depth.common.td_node_map import interpolated, node_map
 from tactile_depth.common.td_round_saturate import Monitor, round_saturate
@@ -52,3 +53,8 @@ def exact_zero(depth: np.ndarray, untouched: np.ndarray, config: Configuration) 
     log2 = config.reference_block_log2
     sums = block_sum(untouched.reshape(-1, *untouched.shape[-2:]), log2).mean(axis=0)
     return depth - interpolated(sums, config) / (1 << 4 * log2 + 2)
+
+
+def latency(lanes: int, block_log2: int) -> int:
+    """Return the latency: td_node_map and the subtraction."""
+    return td_node_map.latency(lanes, block_log2) + 1

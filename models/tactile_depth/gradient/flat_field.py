@@ -21,12 +21,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactile_depth.common import td_node_map
 from tactile_depth.common.td_block_sum import block_sum
 from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
 from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, Configuration
 from tactile_depth.errors import Argument, InputError, Part
 from tactile_depth.sensor import Sensor
+
+LATENCY = td_node_map.latency(1, 1) + 3
 
 FLAT_CODE = 128
 CODE_WIDTH = 8

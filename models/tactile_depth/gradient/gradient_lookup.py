@@ -8,6 +8,8 @@ import numpy as np
 from tactile_depth.configuration import Configuration
 from tactile_depth.sensor import Sensor
 
+LATENCY = 4
+
 
 def gradient_codes(calibration: Sensor, config: Configuration) -> np.ndarray:
     """Return the slope codes gx, gy by bin {red, green, blue}, int64 (bins, 2); slope = code * config.gradient_lsb."""

@@ -24,6 +24,8 @@ from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, POLYNOMIA
 from tactile_depth.errors import InputError
 from tactile_depth.sensor import Sensor
 
+LATENCY = 11
+
 TERMS = ("A", "B", "D", "E", "F", "H")
 DROPPED = POLYNOMIAL.fraction - COLOUR_COEFFICIENT.fraction  # bits of a coefficient that are not multiplied
 

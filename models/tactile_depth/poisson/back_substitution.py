@@ -9,6 +9,8 @@ from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.thomas_table import thomas_table
 
+LATENCY = 8
+
 
 def back_substitution(
     d: np.ndarray, config: Configuration, monitor: Monitor | None = None, node: str = "back_substitution"

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+LATENCY = 2
+
 
 def divergence(gradient: np.ndarray, neumann: bool = False) -> np.ndarray:
     """Return the backward differences gx[i,j] - gx[i,j-1] + gy[i,j] - gy[i-1,j], exact, with zero outside the frame.

@@ -9,6 +9,8 @@ from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.thomas_table import thomas_table
 
+LATENCY = 9
+
 
 def mean_reciprocal(config: Configuration) -> tuple[int, int]:
     """Return mantissa and drop of 1 / rows = mantissa * 2**-drop; the mantissa has coefficient_width signed bits."""

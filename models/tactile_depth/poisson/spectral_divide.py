@@ -12,6 +12,8 @@ from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.transform.orders import eigenvalues
 
+LATENCY = 6
+
 
 @dataclass(frozen=True)
 class Reciprocals:

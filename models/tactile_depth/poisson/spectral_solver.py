@@ -7,10 +7,15 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.spectral_divide import LATENCY as SPECTRAL_DIVIDE
 from tactile_depth.poisson.spectral_divide import reciprocals, spectral_divide
 from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_forward import latency as forward_latency
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.dst_inverse import latency as inverse_latency
+from tactile_depth.poisson.transform.row_reorder import LATENCY as ROW_REORDER
 from tactile_depth.poisson.transform.row_reorder import row_reorder
+from tactile_depth.poisson.transform.transpose import LATENCY as TRANSPOSE
 from tactile_depth.poisson.transform.transpose import transpose
 
 
@@ -107,3 +112,26 @@ def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | Non
         **config.transform_arguments(),
     )
     return row_reorder(depth, to_burst=False)
+
+
+def latency_by_core(size: int, lanes: int = 1) -> list[tuple[str, int]]:
+    """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps; one lane."""
+    forward, inverse = forward_latency(size), inverse_latency(size)
+    return [
+        ("row_reorder", ROW_REORDER),
+        ("dst_forward, of the last row", forward),
+        ("transpose, to columns", TRANSPOSE),
+        ("dst_forward, of a column", forward),
+        ("spectral_divide", SPECTRAL_DIVIDE),
+        ("dst_inverse, of a column", inverse),
+        # The last column comes size - 1 bursts after the first and is the last row of the second transpose.
+        ("all other columns", size * (size - 1)),
+        ("transpose, to rows", TRANSPOSE),
+        ("dst_inverse, of the first row out", inverse),
+        ("row_reorder, waits for the whole row", size - 1 + ROW_REORDER),
+    ]
+
+
+def latency(size: int) -> int:
+    """Return the cycles from the last divergence word of a frame to its first depth, for any gaps in the frame."""
+    return sum(cycles for _, cycles in latency_by_core(size))

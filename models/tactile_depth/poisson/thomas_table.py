@@ -16,6 +16,8 @@ import numpy as np
 from tactile_depth.configuration import Configuration
 from tactile_depth.poisson.transform.orders import eigenvalues
 
+LATENCY = 5
+
 
 @dataclass(frozen=True)
 class ThomasTable:

@@ -7,12 +7,19 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tactile_depth.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
 from tactile_depth.poisson.back_substitution import back_substitution
+from tactile_depth.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
 from tactile_depth.poisson.forward_elimination import forward_elimination, mean_reciprocal
+from tactile_depth.poisson.frame_stack import LATENCY as FRAME_STACK
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.thomas_table import thomas_table
+from tactile_depth.poisson.transform.corner_turn import LATENCY as CORNER_TURN
 from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_forward import latency as forward_latency
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.dst_inverse import latency as inverse_latency
+from tactile_depth.poisson.transform.row_reorder import LATENCY as ROW_REORDER
 from tactile_depth.poisson.transform.row_reorder import row_reorder
 
 
@@ -97,3 +104,22 @@ def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | Non
         **config.transform_arguments(),
     )
     return row_reorder(depth, to_burst=False)
+
+
+def latency_by_core(size: int, lanes: int = 1) -> list[tuple[str, int]]:
+    """Return cores and cycles from the last divergence word of a frame to its first depth, for any gaps."""
+    last, cycles = ("row_reorder", ROW_REORDER) if lanes == 1 else ("corner_turn", CORNER_TURN)
+    return [
+        ("row_reorder", ROW_REORDER),
+        ("dst_forward, of the last row", forward_latency(size)),
+        ("forward_elimination", FORWARD_ELIMINATION),
+        ("frame_stack, turns the order of the rows", FRAME_STACK),
+        ("back_substitution", BACK_SUBSTITUTION),
+        ("dst_inverse, of the first row out", inverse_latency(size)),
+        (f"{last}, waits for the whole row", size - 1 + cycles),
+    ]
+
+
+def latency(size: int, lanes: int = 1) -> int:
+    """Return the cycles from the last divergence word of a frame to its first depth, for any gaps; rows of `size`."""
+    return sum(cycles for _, cycles in latency_by_core(size, lanes))

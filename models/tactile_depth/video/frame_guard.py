@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+LATENCY = 1
+
 FAULTS = ("row_short", "row_long", "start_missing", "start_early", "timed_out")
 
 

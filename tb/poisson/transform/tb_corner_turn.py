@@ -5,8 +5,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.latency import CORNER_TURN
-from tactile_depth.poisson.transform.corner_turn import corner_turn
+from tactile_depth.poisson.transform.corner_turn import LATENCY, corner_turn
 from tb.lanes import BeatMonitor, check_lanes
 from tb.stream import parameters, places, sample, with_and_without_en
 
@@ -17,7 +16,7 @@ async def check(dut: Any, rows: int = ROWS, **behaviour: Any) -> None:
     columns, width, lanes = parameters(dut, "Columns", "Width", "Lanes")
     frames = places(FRAMES * rows * columns, width).reshape(FRAMES, rows, columns)
     behaviour |= {"lanes": lanes, "sink": BeatMonitor(dut, "out", columns // lanes, lanes)}
-    await check_lanes(dut, frames, lambda rows, _: corner_turn(rows, lanes), columns - 1 + CORNER_TURN, **behaviour)
+    await check_lanes(dut, frames, lambda rows, _: corner_turn(rows, lanes), columns - 1 + LATENCY, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

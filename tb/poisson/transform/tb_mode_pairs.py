@@ -7,7 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import mode_pairs_latency
+from tactile_depth.poisson.transform.mode_pairs import latency as mode_pairs_latency
 from tactile_depth.poisson.transform.mode_pairs import mode_pairs
 from tb.stream import check_bursts, parameters, uniform
 

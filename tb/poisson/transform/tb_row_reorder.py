@@ -6,8 +6,7 @@ from typing import Any
 import cocotb
 import numpy as np
 
-from tactile_depth.latency import ROW_REORDER
-from tactile_depth.poisson.transform.row_reorder import row_reorder
+from tactile_depth.poisson.transform.row_reorder import LATENCY, row_reorder
 from tb.stream import (
     Bench,
     StreamDriver,
@@ -36,10 +35,10 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
     async def send(count: int) -> None:
         await send_apart(bench, driver, words[-count:], gap, FRAME * columns)
 
-    await interrupt(bench, send, interrupts, (source, sink), quiet=ROW_REORDER + 2)
+    await interrupt(bench, send, interrupts, (source, sink), quiet=LATENCY + 2)
     await send_apart(bench, driver, words[:strays], gap, FRAME * columns)
     await send_apart(bench, driver, words, gap, FRAME * columns)
-    await bench.clocks(ROW_REORDER + columns + 4)
+    await bench.clocks(LATENCY + columns + 4)
     source.forget_but(len(words))
     sink.forget_but(ROWS)
 
@@ -49,7 +48,7 @@ async def check(dut: Any, gap: Any = 0.0, pause: float = 0.0, interrupts: Any = 
     check_frame_starts([source], FRAME * columns)
     check_frame_starts([sink], FRAME)
     ends = source.starts[columns - 1 :: columns]
-    assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [ROW_REORDER] * ROWS
+    assert [start - end for start, end in zip(sink.starts, ends, strict=True)] == [LATENCY] * ROWS
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")

@@ -7,8 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import BUTTERFLY
-from tactile_depth.poisson.transform.sdf_butterfly import sdf_butterfly
+from tactile_depth.poisson.transform.sdf_butterfly import LATENCY, sdf_butterfly
 from tactile_depth.poisson.transform.sdf_fft import Stage
 from tb.stream import check_bursts, extremes, parameters, uniform
 
@@ -22,7 +21,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
     def model(x: Any, monitor: Monitor) -> Any:
         return np.stack(sdf_butterfly(x[..., 0], x[..., 1], stage, bool(inverse), width, monitor), axis=-1)
 
-    return await check_bursts(dut, x, model, delay + BUTTERFLY, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
+    return await check_bursts(dut, x, model, delay + LATENCY, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
@@ -50,5 +49,5 @@ async def limits_in_every_pairing(dut: Any) -> None:
 async def reset_in_mid_burst(dut: Any, late: bool) -> None:
     """Reset in each cycle in which a burst begins to enter, or to leave."""
     size, width, delay = parameters(dut, "Size", "Width", "Delay")
-    first = max(delay + BUTTERFLY, 4) - 3 if late else 1
+    first = max(delay + LATENCY, 4) - 3 if late else 1
     await check(dut, uniform((2, size, 2), width), interrupts=range(first, first + 8))

@@ -5,8 +5,7 @@ from typing import Any
 
 import cocotb
 
-from tactile_depth.latency import TRANSPOSE
-from tactile_depth.poisson.transform.transpose import transpose
+from tactile_depth.poisson.transform.transpose import LATENCY, transpose
 from tb.stream import check_frame_memory, parameters, places
 
 FRAMES = 4  # in place, rows and columns of the memory change roles with every frame
@@ -19,7 +18,7 @@ async def check(dut: Any, frames: Any = FRAMES, **behaviour: Any) -> None:
         return transpose(words, bool(makhoul_in), bool(makhoul_out))
 
     words = places(frames * columns * columns, width).reshape(frames, -1)
-    await check_frame_memory(dut, words, model, TRANSPOSE, rows=columns, **behaviour)
+    await check_frame_memory(dut, words, model, LATENCY, rows=columns, **behaviour)
 
 
 @cocotb.test(timeout_time=2, timeout_unit="ms")

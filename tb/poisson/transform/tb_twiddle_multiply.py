@@ -7,8 +7,7 @@ import cocotb
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.latency import TWIDDLE_MULTIPLY
-from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_factors, twiddle_multiply
+from tactile_depth.poisson.transform.twiddle_multiply import LATENCY, phase_factors, twiddle_factors, twiddle_multiply
 from tb.settings import RUN
 from tb.stream import check_bursts, extremes, parameters, uniform
 
@@ -29,7 +28,7 @@ async def check(dut: Any, x: Any, **behaviour: Any) -> Any:
         out = twiddle_multiply(x[..., 0], x[..., 1], factors, drop, width, monitor, real_only=bool(real_only))
         return np.stack(out, axis=-1)
 
-    return await check_bursts(dut, x, model, TWIDDLE_MULTIPLY, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
+    return await check_bursts(dut, x, model, LATENCY, in_fields=FIELDS, out_fields=FIELDS, **behaviour)
 
 
 @cocotb.test(timeout_time=1, timeout_unit="ms")
@@ -74,4 +73,4 @@ async def ties(dut: Any, part: Any) -> None:
 async def reset_in_mid_burst(dut: Any) -> None:
     """Reset in each cycle of a burst, as it enters and as it leaves."""
     size, width = parameters(dut, "Size", "InWidth")
-    await check(dut, uniform((2, size, 2), width), interrupts=range(1, size + TWIDDLE_MULTIPLY + 2))
+    await check(dut, uniform((2, size, 2), width), interrupts=range(1, size + LATENCY + 2))

@@ -11,8 +11,8 @@ from scipy.fft import dst
 
 from formal.entries import Proof
 from formal.tables import transform_roms
-from tactile_depth.latency import dst_forward_latency
 from tactile_depth.poisson.transform.dst_forward import dst_forward
+from tactile_depth.poisson.transform.dst_forward import latency as dst_forward_latency
 from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain

@@ -11,9 +11,9 @@ from scipy.fft import idst
 
 from formal.entries import Proof
 from formal.tables import transform_roms
-from tactile_depth.latency import dst_inverse_latency
 from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_inverse import dst_inverse
+from tactile_depth.poisson.transform.dst_inverse import latency as dst_inverse_latency
 from tactile_depth.poisson.transform.orders import bit_reversed, makhoul
 from tactile_depth.poisson.transform.sdf_fft import halvings, twiddle_stages
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain

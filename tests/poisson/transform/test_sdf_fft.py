@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from formal.entries import Proof
 from formal.tables import transform_roms
-from tactile_depth.latency import sdf_fft_latency
 from tactile_depth.poisson.transform.orders import bit_reversed
 from tactile_depth.poisson.transform.sdf_fft import halvings, sdf_fft, twiddle_stages
+from tactile_depth.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.poisson.transform.twiddle_multiply import coefficient_gain
 from tactile_depth.rom_files import write_transform
 from tb.structures import ICARUS, VERILATOR, Mutants, Structure

@@ -7,6 +7,8 @@ import numpy as np
 
 from tactile_depth.poisson.transform.row_reorder import row_reorder
 
+LATENCY = 3  # from the last word of a row
+
 
 def corner_turn(rows: np.ndarray, lanes: int) -> np.ndarray:
     """Return rows (..., N) in Makhoul order as clocks (..., N / lanes, lanes) of words in natural order."""

@@ -5,9 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_depth.common.td_rom import LATENCY as MEMORY_READ
 from tactile_depth.common.td_round_saturate import Monitor, round_saturate
+from tactile_depth.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
+
+SIGN = 2  # cycles of sign and rounding
 
 
 def alternate_sign(x: np.ndarray) -> np.ndarray:
@@ -54,3 +59,8 @@ def dst_forward(
     drop = coefficient_width - 1 + output_drop
     output = node + ".phase"
     return twiddle_multiply(re, im, factors, drop, output_width, monitor, output, real_only=True)[0]
+
+
+def latency(size: int) -> int:
+    """Return the latency of a transform: read of the memory at its input, sign, FFT, phase."""
+    return MEMORY_READ + SIGN + sdf_fft_latency(size) + TWIDDLE_MULTIPLY

@@ -6,9 +6,12 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor, round_saturate
-from tactile_depth.poisson.transform.dst_forward import alternate_sign
+from tactile_depth.poisson.transform.dst_forward import SIGN, alternate_sign
+from tactile_depth.poisson.transform.mode_pairs import latency as mode_pairs_latency
 from tactile_depth.poisson.transform.mode_pairs import mode_pairs
+from tactile_depth.poisson.transform.sdf_fft import latency as sdf_fft_latency
 from tactile_depth.poisson.transform.sdf_fft import sdf_fft
+from tactile_depth.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.poisson.transform.twiddle_multiply import phase_factors, twiddle_multiply
 
 
@@ -45,3 +48,8 @@ def dst_inverse(
     re, im = twiddle_multiply(mirrored, mode, factors, drop, width, monitor, node + ".phase")
     re, im = sdf_fft(re, im, True, width, coefficient_width, monitor, node + ".fft")
     return round_saturate(alternate_sign(re) if alternate else re, output_drop, output_width, monitor, node + ".output")
+
+
+def latency(size: int) -> int:
+    """Return the latency of a transform: pairs, phase, FFT, sign."""
+    return mode_pairs_latency(size) + TWIDDLE_MULTIPLY + sdf_fft_latency(size) + SIGN

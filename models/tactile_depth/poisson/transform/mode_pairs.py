@@ -13,3 +13,8 @@ def mode_pairs(modes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     mirrored = modes[..., mirror(modes.shape[-1])].copy()
     mirrored[..., 0] = 0
     return modes, mirrored
+
+
+def latency(size: int) -> int:
+    """Return the latency: half a burst, the position of the mirrored mode, and the memory read."""
+    return size // 2 + 2

@@ -7,6 +7,8 @@ import numpy as np
 
 from tactile_depth.poisson.transform.orders import makhoul, natural
 
+LATENCY = 2  # from the last word of a row
+
 
 def row_reorder(rows: np.ndarray, to_burst: bool) -> np.ndarray:
     """Reorder rows (..., N) from natural to Makhoul order, or back."""

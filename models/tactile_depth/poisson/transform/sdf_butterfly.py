@@ -9,6 +9,8 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 
+LATENCY = 2  # without its delay line
+
 
 @dataclass(frozen=True)
 class Stage:

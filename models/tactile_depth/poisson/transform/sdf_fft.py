@@ -11,7 +11,9 @@ from functools import cache
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
+from tactile_depth.poisson.transform.sdf_butterfly import LATENCY as BUTTERFLY
 from tactile_depth.poisson.transform.sdf_butterfly import Stage, sdf_butterfly
+from tactile_depth.poisson.transform.twiddle_multiply import LATENCY as TWIDDLE_MULTIPLY
 from tactile_depth.poisson.transform.twiddle_multiply import twiddle_factors, twiddle_multiply
 
 
@@ -87,3 +89,8 @@ def sdf_fft(
             factors = twiddle_factors(stage.block, inverse, coefficient_width)
             re, im = twiddle_multiply(re, im, factors, coefficient_width - 1, width, monitor, name)
     return re, im
+
+
+def latency(size: int) -> int:
+    """Return the latency of an FFT; the delay lines of all butterflies add up to size - 1."""
+    return size - 1 + (size.bit_length() - 1) * BUTTERFLY + twiddle_stages(size) * TWIDDLE_MULTIPLY

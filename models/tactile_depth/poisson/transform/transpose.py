@@ -7,6 +7,8 @@ import numpy as np
 
 from tactile_depth.poisson.transform.row_reorder import row_reorder
 
+LATENCY = 2  # from the first word of the last row
+
 
 def transpose(frames: np.ndarray, makhoul_in: bool, makhoul_out: bool) -> np.ndarray:
     """Return the columns of frames (..., N, N); rows in and columns out are in Makhoul or in natural order."""

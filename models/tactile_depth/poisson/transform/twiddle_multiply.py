@@ -10,6 +10,8 @@ import numpy as np
 from tactile_depth.common.td_round_saturate import Monitor, round_saturate
 from tactile_depth.poisson.transform.orders import bit_reversed, read_only
 
+LATENCY = 7
+
 
 def coefficient(x: np.ndarray, coefficient_width: int) -> np.ndarray:
     """Return factors in [-1, 1] as signed words; 1 is 2**(w-1) - 1, so every product has the same gain 1 - 2**(1-w).
