@@ -97,7 +97,7 @@ def mutate(name: str, count: int, seed: int, jobs: int, seconds: int) -> Outcome
         outcome.killed += len(killed)
         called = {"Rows": core.rows_are, "Columns": core.columns_are}
         parameters = {**built.parameters, **{name: built.parameters[own] for name, own in called.items() if own}}
-        if "Config" in built.parameters:  # the protocol needs the grid
+        if "configuration" in built.device:  # the protocol needs the grid
             config = Configuration(**built.device["configuration"])
             parameters |= {"Rows": config.rows, "Columns": config.columns}
         graph = equivalence.graph(name, folder, core.protocol or name, parameters)
