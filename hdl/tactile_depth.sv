@@ -89,15 +89,17 @@ module tactile_depth
   capture_status_t reference_status, zero_status;
   logic [7:0] dark_level;
   logic [3:0] table_bank, slope_in_use, zero_in_use;
-  logic [2:0] slope_saturations;
+  logic [3:0] slope_saturations;
+  light_command_t light_command;
+  logic [2:0][LightGainWidth-1:0] light_gains;
   logic slope_valid;
   position_t slope_position;
   logic signed [GradientWidth-1:0] slope_gx, slope_gy;
   gradient_unit #(.TableFolder(TableFolder), .Config(Config)) u_gradient (
     .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank, .table_in_use(slope_in_use), .dark_level,
     .capture_command(reference_command), .capture_status(reference_status), .dark(events.dark),
-    .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position, .pixel_bad, .slope_valid,
-    .slope_position, .slope_gx, .slope_gy
+    .light_command, .light_gains, .saturations(slope_saturations), .pixel_valid, .pixel_data, .pixel_position,
+    .pixel_bad, .slope_valid, .slope_position, .slope_gx, .slope_gy
   );
 
   logic burst_start, solved_frame_start;
@@ -140,7 +142,7 @@ module tactile_depth
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
-    .dark_level, .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer),
+    .dark_level, .light_command, .light_gains, .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer),
     .table_bank, .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command,
     .zero_status, .register_command, .register_answer
   );

@@ -11,15 +11,18 @@ package td_config_pkg;
   localparam int PolynomialWords = 36;  // of the quadratic model: slopes, colours, terms
   localparam int PolynomialWidth = 32;  // bits of such a word
   localparam int ColourCoeffWidth = 18;  // its upper bits, which are multiplied
-  localparam int DeviationWidth = 14;  // bits of a colour relative to the reference
-  localparam int DeviationFraction = 12;  // fraction bits of it
+  localparam int DeviationWidth = 17;  // bits of a colour relative to the reference
+  localparam int DeviationFraction = 15;  // fraction bits of it
+  localparam int RatioWidth = 17;  // bits of a colour relative to the reference, before the light gains
+  localparam int RatioFraction = 15;  // fraction bits of it
+  localparam int LightGainWidth = 16;  // bits of a light gain, one bit less of them is fraction
   localparam int CodeWidth = 8;  // bits of a colour that indexes the gradient table
   localparam int FlatCode = 128;  // code of a colour that equals the reference
   localparam int DarkestLog2 = 3;  // fraction bits of a gain beyond its width
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1664;
+  localparam int ConfigBits = 1696;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -41,37 +44,38 @@ package td_config_pkg;
   localparam int FrameLatencyField = 18;
   localparam int FlatFieldField = 19;
   localparam int QuadraticField = 20;
-  localparam int BlockLog2Field = 21;
-  localparam int ColourDropField = 22;
-  localparam int GainWidthField = 23;
-  localparam int CaptureLog2Field = 24;
-  localparam int SlopeDropField = 25;
-  localparam int ZeroOffsetField = 26;
-  localparam int DepthMantissaField = 27;
-  localparam int DepthExponentField = 28;
-  localparam int SlopeMantissaField = 29;
-  localparam int SlopeExponentField = 30;
-  localparam int PitchNmField = 31;
-  localparam int TableWordsField = 32;
-  localparam int SettledWidthField = 33;
-  localparam int LastShiftWidthField = 34;
-  localparam int MomentDropField = 35;
-  localparam int MeanReciprocalField = 36;
-  localparam int MeanDropField = 37;
-  localparam int WordsPerRowField = 38;
-  localparam int CameraField = 39;
-  localparam int CameraNumeratorField = 40;
-  localparam int CameraDenominatorField = 41;
-  localparam int CameraFormatField = 42;
-  localparam int CameraPhaseField = 43;
-  localparam int CameraPictureColumnsField = 44;
-  localparam int CameraPictureRowsField = 45;
-  localparam int CameraWindowXField = 46;
-  localparam int CameraWindowYField = 47;
-  localparam int CameraBlackLevelField = 48;
-  localparam int CameraRedGainField = 49;
-  localparam int CameraGreenGainField = 50;
-  localparam int CameraBlueGainField = 51;
+  localparam int LightGainsField = 21;
+  localparam int BlockLog2Field = 22;
+  localparam int ColourDropField = 23;
+  localparam int GainWidthField = 24;
+  localparam int CaptureLog2Field = 25;
+  localparam int SlopeDropField = 26;
+  localparam int ZeroOffsetField = 27;
+  localparam int DepthMantissaField = 28;
+  localparam int DepthExponentField = 29;
+  localparam int SlopeMantissaField = 30;
+  localparam int SlopeExponentField = 31;
+  localparam int PitchNmField = 32;
+  localparam int TableWordsField = 33;
+  localparam int SettledWidthField = 34;
+  localparam int LastShiftWidthField = 35;
+  localparam int MomentDropField = 36;
+  localparam int MeanReciprocalField = 37;
+  localparam int MeanDropField = 38;
+  localparam int WordsPerRowField = 39;
+  localparam int CameraField = 40;
+  localparam int CameraNumeratorField = 41;
+  localparam int CameraDenominatorField = 42;
+  localparam int CameraFormatField = 43;
+  localparam int CameraPhaseField = 44;
+  localparam int CameraPictureColumnsField = 45;
+  localparam int CameraPictureRowsField = 46;
+  localparam int CameraWindowXField = 47;
+  localparam int CameraWindowYField = 48;
+  localparam int CameraBlackLevelField = 49;
+  localparam int CameraRedGainField = 50;
+  localparam int CameraGreenGainField = 51;
+  localparam int CameraBlueGainField = 52;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
@@ -101,11 +105,12 @@ package td_config_pkg;
     -32'sd41,  // DepthExponent
     32'd9437184,  // DepthMantissa
     32'd0,  // ZeroOffset
-    32'd6,  // SlopeDrop
+    32'd9,  // SlopeDrop
     32'd8,  // CaptureLog2
     32'd24,  // GainWidth
     32'd20,  // ColourDrop
     32'd3,  // BlockLog2
+    32'd0,  // LightGains
     32'd0,  // Quadratic
     32'd0,  // FlatField
     32'd17221,  // FrameLatency

@@ -118,6 +118,14 @@ package td_types_pkg;
     logic done;
   } capture_status_t;
 
+  // From the registers to the light gains. Colours: red, green, blue from the lowest bit.
+  typedef struct packed {
+    logic        follow;
+    logic [2:0]  rate;
+    logic [2:0]  write;  // the gain of this colour becomes `gain`
+    logic [15:0] gain;   // 15 fraction bits
+  } light_command_t;
+
   // What the registers say of contact. Thresholds are signed depth codes.
   typedef struct packed {
     logic [31:0] threshold;

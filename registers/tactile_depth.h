@@ -375,6 +375,9 @@ extern "C" {
 #define TACTILE_DEPTH__DEVICE__ZERO_OFFSET_bm 0x10
 #define TACTILE_DEPTH__DEVICE__ZERO_OFFSET_bp 4
 #define TACTILE_DEPTH__DEVICE__ZERO_OFFSET_bw 1
+#define TACTILE_DEPTH__DEVICE__LIGHT_GAINS_bm 0x20
+#define TACTILE_DEPTH__DEVICE__LIGHT_GAINS_bp 5
+#define TACTILE_DEPTH__DEVICE__LIGHT_GAINS_bw 1
 #define TACTILE_DEPTH__DEVICE__LANES_bm 0xff00
 #define TACTILE_DEPTH__DEVICE__LANES_bp 8
 #define TACTILE_DEPTH__DEVICE__LANES_bw 8
@@ -402,6 +405,31 @@ extern "C" {
 #define TACTILE_DEPTH__PITCH__VALUE_bm 0xffffffff
 #define TACTILE_DEPTH__PITCH__VALUE_bp 0
 #define TACTILE_DEPTH__PITCH__VALUE_bw 32
+
+// reg - tactile_depth.LIGHT
+#define TACTILE_DEPTH__LIGHT__FOLLOW_bm 0x1
+#define TACTILE_DEPTH__LIGHT__FOLLOW_bp 0
+#define TACTILE_DEPTH__LIGHT__FOLLOW_bw 1
+#define TACTILE_DEPTH__LIGHT__FOLLOW_reset 0x1
+#define TACTILE_DEPTH__LIGHT__RATE_bm 0x70
+#define TACTILE_DEPTH__LIGHT__RATE_bp 4
+#define TACTILE_DEPTH__LIGHT__RATE_bw 3
+#define TACTILE_DEPTH__LIGHT__RATE_reset 0x0
+
+// reg - tactile_depth.LIGHT_GAIN_RED
+#define TACTILE_DEPTH__LIGHT_GAIN_RED__VALUE_bm 0xffff
+#define TACTILE_DEPTH__LIGHT_GAIN_RED__VALUE_bp 0
+#define TACTILE_DEPTH__LIGHT_GAIN_RED__VALUE_bw 16
+
+// reg - tactile_depth.LIGHT_GAIN_GREEN
+#define TACTILE_DEPTH__LIGHT_GAIN_GREEN__VALUE_bm 0xffff
+#define TACTILE_DEPTH__LIGHT_GAIN_GREEN__VALUE_bp 0
+#define TACTILE_DEPTH__LIGHT_GAIN_GREEN__VALUE_bw 16
+
+// reg - tactile_depth.LIGHT_GAIN_BLUE
+#define TACTILE_DEPTH__LIGHT_GAIN_BLUE__VALUE_bm 0xffff
+#define TACTILE_DEPTH__LIGHT_GAIN_BLUE__VALUE_bp 0
+#define TACTILE_DEPTH__LIGHT_GAIN_BLUE__VALUE_bw 16
 
 // addrmap - tactile_depth
 typedef struct __attribute__ ((__packed__)) {
@@ -452,10 +480,14 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t DEPTH_UNIT;
     uint32_t SLOPE_UNIT;
     uint32_t PITCH;
+    uint32_t LIGHT;
+    uint32_t LIGHT_GAIN_RED;
+    uint32_t LIGHT_GAIN_GREEN;
+    uint32_t LIGHT_GAIN_BLUE;
 } tactile_depth_t;
 
 
-static_assert(sizeof(tactile_depth_t) == 0xd0, "Packing error");
+static_assert(sizeof(tactile_depth_t) == 0xe0, "Packing error");
 
 #ifdef __cplusplus
 }

@@ -305,8 +305,8 @@ def test_real_presses_held_out_keep_their_height_through_the_bit_accurate_models
     evaluation = td.Evaluation(names, {model: scores_of(sensor, real_presses, held_out, model)})
     error = evaluation.height_error(model)
     assert error.presses >= 10
-    assert evaluation.slope_r2(model) >= r2  # measured: 0.943, 0.970
-    assert 0.93 <= error.mean <= 1.07  # measured: 1.017, 0.996
+    assert evaluation.slope_r2(model) >= r2  # measured: 0.943, 0.969
+    assert 0.93 <= error.mean <= 1.07  # measured: 1.017, 0.992
     assert error.spread <= spread  # measured: 0.071, 0.065
     stored = sensor.height_errors[model]
     assert (stored.mean, stored.spread, stored.presses) == pytest.approx((error.mean, error.spread, error.presses))
@@ -355,9 +355,9 @@ def test_real_presses_beside_the_middle_square_have_a_larger_error(real: Any) ->
     central, beside = np.array(ratios[True]), np.array(ratios[False])
     assert (len(central), len(beside)) == (22, 12)
     # docs/calibrate.md states these numbers.
-    assert (central.mean(), central.std()) == pytest.approx((0.990, 0.054), abs=0.001)
-    assert (beside.mean(), beside.std()) == pytest.approx((0.899, 0.087), abs=0.001)
-    assert (beside.min(), beside.max()) == pytest.approx((0.78, 1.09), abs=0.005)
+    assert (central.mean(), central.std()) == pytest.approx((0.985, 0.054), abs=0.001)
+    assert (beside.mean(), beside.std()) == pytest.approx((0.894, 0.087), abs=0.001)
+    assert (beside.min(), beside.max()) == pytest.approx((0.77, 1.09), abs=0.005)
 
 
 def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> None:

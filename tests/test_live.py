@@ -128,8 +128,8 @@ def test_every_picture_of_a_folder_is_shown_as_the_pipeline_computes_it(
     inputs: Any, live: Any, background: Any, images: Any, screen: Any
 ) -> None:
     printed = live(inputs / "presses", *background).out
-    expected = pipeline_of(inputs)
-    np.testing.assert_array_equal(Screen.last.heights, [expected(image).height_mm for image in images])
+    expected = pipeline_of(inputs).stream(images)
+    np.testing.assert_array_equal(Screen.last.heights, [result.height_mm for result in expected])
     assert Screen.last.indices == list(range(FRAMES))
     assert counted(printed) == {"read": FRAMES, "shown": FRAMES, "dropped": 0, "failed": 0}
 
@@ -141,7 +141,8 @@ def test_the_first_frames_become_the_reference(
     no_contact = np.array(Image.open(inputs / "background.png"))
     np.save(tmp_path / "frames.npy", np.stack([no_contact] * 8 + [images[5]]))
     printed = live(tmp_path / "frames.npy", *option).out
-    np.testing.assert_array_equal(Screen.last.heights, [pipeline_of(inputs)(images[5]).height_mm])
+    (first,) = pipeline_of(inputs).stream(images[5:6])
+    np.testing.assert_array_equal(Screen.last.heights, [first.height_mm])
     assert printed.startswith("do not touch the sensor: its first 8 frames become the reference\n")
     assert counted(printed) == {"read": 9, "captured": 8, "shown": 1, "dropped": 0, "failed": 0}
 
@@ -182,11 +183,13 @@ def test_keys_capture_from_the_frames_that_follow(
     press_keys(key)
     printed = live(tmp_path / "frames.npy", *background)
     expected = pipeline_of(inputs)
-    np.testing.assert_array_equal(Screen.last.heights[0], expected(no_contact[0]).height_mm)
+    light = expected.light_filter()
+    before = [expected(image, light).height_mm for image in no_contact]
+    np.testing.assert_array_equal(Screen.last.heights[:8], before)
     if key == "r":
         expected.capture_reference(no_contact)
     expected.capture_zero(no_contact)
-    np.testing.assert_array_equal(Screen.last.heights[8], expected(press).height_mm)
+    np.testing.assert_array_equal(Screen.last.heights[8], expected(press, light).height_mm)
     assert "captured the" in printed.out
 
 

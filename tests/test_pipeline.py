@@ -15,7 +15,7 @@ from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.pipeline import default_grid
 from tactile_depth.resampling import resampling
 from tactile_depth.rom_files import write_words
-from tactile_depth.tactile_depth import hdl_parameters, tactile_depth, top_parameters
+from tactile_depth.tactile_depth import hdl_parameters, light_of, slope_tables, tactile_depth, top_parameters
 from tactile_depth.tactile_depth import write_roms as write_tables
 
 SMALL = (24, 32)
@@ -96,8 +96,29 @@ def test_codes_are_those_of_the_model_in_picture_order(small: Any, ball: Any) ->
     frames = np.stack([ball.image, ball.reference])
     result = small(frames)
     on_grid = np.rint(frames.reshape(2, 24, 10, 32, 10, 3).mean(axis=(2, 4))).astype(np.uint8)
-    codes = tactile_depth(on_grid, small.sensor, small.config, gains=small._gains, zero=small._zero)
+    light = light_of(on_grid, slope_tables(small.sensor, small.config, small._gains), small.config)
+    codes = tactile_depth(on_grid, small.sensor, small.config, gains=small._gains, zero=small._zero, light=light)
     np.testing.assert_array_equal(result.codes, codes[:, ::-1])
+
+
+def test_a_stream_is_the_stream_of_the_hardware(small: Any, ball: Any) -> None:
+    frames = np.stack([ball.reference, ball.image, np.rint(ball.image * 0.9).astype(np.uint8), ball.image])
+    results = list(small.stream(iter(frames)))
+    on_grid = np.rint(frames.reshape(4, 24, 10, 32, 10, 3).mean(axis=(2, 4))).astype(np.uint8)
+    codes = tactile_depth(on_grid, small.sensor, small.config, gains=small._gains, zero=small._zero)
+    np.testing.assert_array_equal([result.codes for result in results], codes[:, ::-1])
+    assert results[0].light_gains.tolist() == [1, 1, 1]
+
+
+def test_another_light_changes_no_height(ball: Any, pipeline: Any) -> None:
+    before = pipeline(ball.image)
+    for light in (0.8, 1.05, (1.05, 1.0, 0.95)):
+        result = pipeline(np.rint(ball.image * np.array(light)).clip(0, 255).astype(np.uint8))
+        np.testing.assert_allclose(result.light_gains * light, before.light_gains, rtol=2e-3)
+        assert np.abs(result.height_mm - before.height_mm).max() < 0.01 * before.height_mm.max()
+    without = td.Pipeline(ball.sensor, ball.reference, light_gains=False)
+    assert without(ball.image).light_gains is None
+    assert without.light_filter() is None
 
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
@@ -173,6 +194,9 @@ def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
     np.testing.assert_array_equal(contact.mask, touched)
     assert contact.peak_mm == pytest.approx(result.depth_mm.max())
     assert result.depth_mm[contact.peak_px] == result.depth_mm.max()
+    pitch = result.pixel_pitch_mm
+    assert contact.peak_position_mm == pytest.approx([pitch * index for index in contact.peak_px])
+    assert contact.centroid_mm == pytest.approx([pitch * index for index in contact.centroid_px])
     assert contact.area_mm2 == pytest.approx(touched.sum() * pipeline.pixel_pitch_mm**2)
     assert contact.volume_mm3 == pytest.approx(result.depth_mm[touched].sum() * pipeline.pixel_pitch_mm**2)
     np.testing.assert_allclose(contact.centroid_px, np.argwhere(touched).mean(axis=0), atol=1 / 32)

@@ -19,6 +19,7 @@ FORMATS = "formats"  # tests that depend on formats and options of a build
 TRIDIAGONAL: dict[str, Any] = {"columns": 16, "rows": 8, "solver": "tridiagonal"}
 FLAT_QUADRATIC: dict[str, Any] = {"flat_field": True, "gradient_model": "quadratic"}
 SENSOR = TRIDIAGONAL | FLAT_QUADRATIC | {"rows": 9, "lanes": 4, "neumann": True, "zero_offset": True}
+SENSOR |= {"light_gains": True}
 
 
 def built(

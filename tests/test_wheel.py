@@ -24,7 +24,9 @@ from PIL import Image
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.run import bench
+from tactile_depth.configuration import LIGHT_GAIN_WIDTH
 from tactile_depth.frames import read_picture
+from tactile_depth.registers.axil_registers import GAINS
 from tactile_depth.resampling import resampling
 from tactile_depth.tactile_depth import hdl_parameters, top_parameters
 from tests import real_data
@@ -47,6 +49,7 @@ QUICK_START = """
     result = pipeline(image)
     assert (result.depth_mm == result.codes * pipeline.depth_lsb_mm).all()
     np.save("codes.npy", result.codes)
+    np.save("gains.npy", result.light_gains)
     pipeline.hardware("hardware")
     """
 
@@ -262,6 +265,7 @@ def test_the_rtl_has_the_codes_of_the_wheel(
         shutil.copy(file, tmp_path)
     run(environment, tmp_path, "-c", textwrap.dedent(QUICK_START.format(pictures=picture)))
     codes = np.load(tmp_path / "codes.npy")
+    gains = np.rint(np.load(tmp_path / "gains.npy") * 2 ** (LIGHT_GAIN_WIDTH - 1)).astype(int)
     if picture == REAL:
         sensor, names = td.load("gelsight-mini"), ("background.png", "press.png")
         reference, image = (read_picture(pictures / name) for name in names)
@@ -282,6 +286,7 @@ def test_the_rtl_has_the_codes_of_the_wheel(
         work,
         clocks=10 * rows * columns,
         total_frames=1,
+        registers=dict(zip(GAINS, gains.tolist(), strict=True)),
         zero=pipeline._zero,
     )
     np.testing.assert_array_equal(played.codes.reshape(rows, columns)[::-1], codes)  # the bottom row leaves first

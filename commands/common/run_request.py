@@ -33,8 +33,8 @@ BOUNDARIES = ("dirichlet", "neumann")
 CONTACT_THRESHOLD = 1 / 128  # of the shorter side: one pixel at 128
 ACCEPTED = (
     *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "SIM", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "ZERO", "CALIBRATION", "CAMERA_SIZE", "GRADIENT"),
-    *("REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
+    *("DEPTH_RANGE", "FRAMES", "PRESS", "AT", "NOISE", "REFERENCE", "ZERO", "LIGHT_GAINS", "CALIBRATION"),
+    *("CAMERA_SIZE", "GRADIENT", "REPEAT", "SEED", "GAPS", "STALLS", "WAVES", "CONFIG", "OUT"),
 )
 CAMERA = ("CAMERA", "BAYER", "WINDOW")  # variables of commands that convert pictures to the stream of a camera
 WITH_CAMERA = (*ACCEPTED, *CAMERA)
@@ -60,6 +60,7 @@ class Request:
     press: Press
     reference: str | None
     zero: str | None
+    light_gains: bool | None  # None: with the quadratic model
     calibration: str
     camera_size: tuple[int, int] | None  # rows, columns
     gradient: str  # a model; "": that of the calibration
@@ -135,6 +136,7 @@ def of_values(
         ),
         reference=values.get("REFERENCE"),
         zero=values.get("ZERO"),
+        light_gains=_light_gains(values, PRESETS[name]),
         calibration=_calibration(values),
         camera_size=_camera_size(values),
         gradient=choice("GRADIENT", ("", *GRADIENT_MODELS)),
@@ -176,6 +178,7 @@ def preset_values(preset: Preset, values: Mapping[str, str]) -> dict[str, str]:
 def announce(request: Request, config: Configuration) -> None:
     """Print the preset and what the variables made of it; the first line that a command prints."""
     options = [config.gradient_model, *["flat field"] * config.flat_field, *["zero offset"] * config.zero_offset]
+    options += ["light gains"] * config.light_gains
     shape = f"{config.rows} x {config.columns}"
     print(f"preset {request.preset}: {', '.join([config.solver, request.boundary, shape, *options])}", flush=True)
 
@@ -195,6 +198,13 @@ def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:
         x, y, width, height = map(int, numbers.groups())
         window = (x, y, width, height)
     return CameraChoice(values["CAMERA"], values.get("BAYER") or PHASES[0], window)
+
+
+def _light_gains(values: dict[str, str], preset: Preset) -> bool | None:
+    """Return LIGHT_GAINS, else the choice of the preset: none, or with the quadratic model (None)."""
+    if "LIGHT_GAINS" in values:
+        return bool(variables.number(values, "LIGHT_GAINS", 0, 0, 1))
+    return None if preset.light_gains else False
 
 
 def _calibration(values: dict[str, str]) -> str:
@@ -269,6 +279,7 @@ def described(config: Configuration) -> dict[str, Any]:
         "gradient_model": config.gradient_model,
         "flat_field": config.flat_field,
         "zero_offset": config.zero_offset,
+        "light_gains": config.light_gains,
     }
 
 
@@ -308,6 +319,7 @@ def configure(request: Request, calibration: Sensor) -> Configuration:
         depth_range_px = None if depth_range is None else calibration.depth_range_px(depth_range)
     return calibration.configuration(
         request.gradient,
+        request.light_gains,
         columns=request.columns,
         rows=request.rows,
         solver=request.solver,

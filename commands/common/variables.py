@@ -22,7 +22,7 @@ EQUAL, MISMATCH, BAD_INPUT, FAILURE = 0, 1, 2, 3  # exit status; 128 + the numbe
 # Arguments of the package, and the variables that a user of make gave.
 SAME = (
     *("rows", "solver", "data_width", "gain_width", "lanes", "reference", "calibration", "bits", "camera_size"),
-    *("exposure_us", "window", "boundary", "presses"),
+    *("exposure_us", "window", "boundary", "presses", "light_gains"),
 )
 VARIABLES = {name: name.upper() for name in SAME} | {
     "columns": "N",

@@ -12,7 +12,7 @@ from tactile_depth.errors import InputError
 from tactile_depth.frames import REST_SCENE, Frames, load_frames
 from tactile_depth.scenes import SCENES
 from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.tactile_depth import light_of, slope_tables, tactile_depth
 
 
 def untouched(request: Request, frames: Frames) -> np.ndarray | None:
@@ -32,4 +32,7 @@ def zero_of(no_contact: np.ndarray | None, calibration: Sensor, config: Configur
     """Return the zero offset that a capture of these frames measures, codes (node rows, node columns)."""
     if no_contact is None:
         return None
-    return captured_zero(tactile_depth(no_contact, calibration, replace(config, zero_offset=False)), config)
+    tables = slope_tables(calibration, config)
+    light = light_of(no_contact, tables, config)
+    as_read = replace(config, zero_offset=False)
+    return captured_zero(tactile_depth(no_contact, calibration, as_read, tables=tables, light=light), config)

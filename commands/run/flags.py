@@ -42,13 +42,22 @@ class Flags:
         return lines
 
 
-def flags(frames: np.ndarray, calibration: Sensor, config: Configuration, reference_name: str | None) -> Flags:
-    """Flag pixels of frames, uint8 (frames, rows, cols, 3). Raises InputError: the reference leaves nothing."""
+def flags(
+    frames: np.ndarray,
+    calibration: Sensor,
+    config: Configuration,
+    reference_name: str | None,
+    light: np.ndarray | None,
+) -> Flags:
+    """Flag pixels of frames, uint8 (frames, rows, cols, 3), with their light gains (frames, 3), if there are any.
+
+    Raises InputError: the reference leaves nothing.
+    """
     dark = np.zeros(frames.shape[:-1], bool)
     if config.flat_field:
         gains = reference_gains(calibration, config)
         require_light(gains, config, f"REFERENCE={reference_name}")
         dark = dark_pixels(frames, gains, config)
-    slopes = reference.slopes_of(frames, calibration, config)
+    slopes = reference.slopes_of(frames, calibration, config, light=light)
     steepest = calibration.fitted_slope.get(config.gradient_model, math.inf)
     return Flags(dark, ~dark & (np.hypot(slopes[..., 0], slopes[..., 1]) > steepest))

@@ -32,23 +32,45 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_offset import exact_zero
 from tactile_depth.frames import Frames, load_frames, on_grid
+from tactile_depth.gradient.flat_field import ratios
+from tactile_depth.gradient.light_gains import Light, LightFilter, settled
+from tactile_depth.registers.axil_registers import GAINS
 from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import tactile_depth
+from tactile_depth.tactile_depth import light_of, slope_tables, tactile_depth
 
 RESULTS = ("depth.npy", "depth.png", "report.json")
 DUMPS = (".vcd", ".fst")
 
 
 def exact_depth(
-    frames: np.ndarray, no_contact: np.ndarray | None, calibration: Sensor, config: Configuration
+    frames: np.ndarray,
+    no_contact: np.ndarray | None,
+    calibration: Sensor,
+    config: Configuration,
+    light: np.ndarray | None,
 ) -> np.ndarray:
-    """Return the depth in double precision, in grid pixels, rows from the top."""
-    depth = reference.depth_of(frames, calibration, config)
+    """Return the depth in double precision, in grid pixels, rows from the top; `light`: light gains of the frames."""
+    depth = reference.depth_of(frames, calibration, config, light=light)
     if no_contact is None:
         return depth
     down = -1 if config.solver == "tridiagonal" else 1  # blocks are counted as depth leaves
-    at_rest = reference.depth_of(no_contact, calibration, config)[..., ::down, :]
+    at_rest_light = light_of(no_contact, slope_tables(calibration, config), config)
+    at_rest = reference.depth_of(no_contact, calibration, config, light=at_rest_light)[..., ::down, :]
     return exact_zero(depth[..., ::down, :], at_rest, config)[..., ::down, :]
+
+
+def light_of_stream(frames: np.ndarray, calibration: Sensor, config: Configuration, repeat: int) -> np.ndarray | None:
+    """Return the light gains of frames that are streamed `repeat` times, int64 (repeat, frames, 3); None without.
+
+    The stream begins with the gains of its first picture, which the registers get, and goes on by the filter.
+    """
+    if not config.light_gains:
+        return None
+    gains = slope_tables(calibration, config).gains
+    assert gains is not None
+    relative, light = ratios(frames, gains, config), Light.of(config)
+    stream = LightFilter(light, settled(relative[0], light))
+    return np.array([[stream.take(picture) for picture in relative] for _ in range(repeat)])
 
 
 def simulate(
@@ -58,8 +80,9 @@ def simulate(
     calibration: Sensor,
     folder: Path,
     zero: np.ndarray | None = None,
+    light: np.ndarray | None = None,
 ) -> bench.Played:
-    """Run the bench in `folder` with a progress bar."""
+    """Run the bench in `folder` with a progress bar; `light` is that of `light_of_stream`."""
     total = len(frames.pixels) * request.repeat
     pixels = config.rows * config.columns
     if frames.camera is None or frames.words is None:
@@ -73,6 +96,7 @@ def simulate(
     profiles = [
         bench.entry(side, bench.chance(no)) for side, no in (("sink", request.stalls), ("source", request.gaps))
     ]
+    first = {} if light is None else dict(zip(GAINS, light[0, 0].tolist(), strict=True))
     bench.build(request.simulator, config, request.waves, frames.camera)
     with following("simulating", total, "frame", partial(bench.frames_left, folder, config)):
         return bench.play(
@@ -84,7 +108,7 @@ def simulate(
             clocks=clocks,
             passes=request.repeat,
             total_frames=total,
-            registers={"THRESHOLD": run_request.threshold_code(config)},
+            registers={"THRESHOLD": run_request.threshold_code(config), **first},
             seed=request.seed,
             waves=request.waves,
             zero=zero,
@@ -105,16 +129,17 @@ def run(request: Request, frames: Frames | None = None) -> int:
         frames = load_frames(request.frames, grid, request.reference, request.seed, request.press, request.camera)
     calibration = on_grid(calibration, frames)
     config = configure(request, calibration)
-    flagged = flags(frames.pixels, calibration, config, request.reference)
+    light = light_of_stream(frames.pixels, calibration, config, request.repeat)
+    light_once = None if light is None else light[0]
+    flagged = flags(frames.pixels, calibration, config, request.reference, light_once)
     no_contact = untouched(request, frames)
     zero = zero_of(no_contact, calibration, config)
     out = request.out or default_folder(request, config)
     with files.workspace(out, RESULTS) as work:
-        played = simulate(request, config, frames, calibration, work, zero)
-        monitor = Monitor()
-        codes = tactile_depth(frames.pixels, calibration, config, monitor, zero=zero)
-        reference_px = exact_depth(frames.pixels, no_contact, calibration, config)
-        rtl_codes = played.codes.reshape(request.repeat, *codes.shape)
+        played = simulate(request, config, frames, calibration, work, zero, light)
+        codes, clips = expected(frames.pixels, calibration, config, request.repeat, zero, light)
+        reference_px = exact_depth(frames.pixels, no_contact, calibration, config, light_once)
+        rtl_codes = played.codes.reshape(request.repeat, *codes.shape[-3:])
         if config.solver == "tridiagonal":  # the bottom row leaves first; results are in the order of the input
             rtl_codes, codes = rtl_codes[..., ::-1, :], codes[..., ::-1, :]
         difference = compare(rtl_codes, codes)
@@ -122,7 +147,6 @@ def run(request: Request, frames: Frames | None = None) -> int:
         result = work / "result"
         result.mkdir()
         dumps = take_dumps(request, config, frames, work, result)
-        clips = {node: count * request.repeat for node, count in sorted(monitor.saturations.items())}
         report = {
             **describe(request, config, calibration, frames),
             **measure(played),
@@ -166,12 +190,37 @@ def run(request: Request, frames: Frames | None = None) -> int:
     return variables.MISMATCH if difference.count or differences else variables.EQUAL
 
 
+def expected(
+    frames: np.ndarray,
+    calibration: Sensor,
+    config: Configuration,
+    repeat: int,
+    zero: np.ndarray | None,
+    light: np.ndarray | None,
+) -> tuple[np.ndarray, dict[str, int]]:
+    """Return the codes of frames that are streamed `repeat` times, by the model, and the values clipped by node.
+
+    Codes are (repeat, frames, rows, columns); without light gains every repetition has the same, and they are (frames,
+    rows, columns).
+    """
+    monitor = Monitor()
+    if light is None:
+        codes = tactile_depth(frames, calibration, config, monitor, zero=zero)
+    else:
+        tables = slope_tables(calibration, config)
+        every = np.broadcast_to(frames, (repeat, *frames.shape))
+        codes = tactile_depth(every, calibration, config, monitor, zero=zero, tables=tables, light=light)
+        repeat = 1
+    return codes, {node: count * repeat for node, count in sorted(monitor.saturations.items())}
+
+
 def default_folder(request: Request, config: Configuration) -> Path:
     """Return the default folder of results, one for each configuration."""
     widths = f"d{config.data_width}-c{config.coefficient_width}"
     widths += f"-g{config.gain_width}" if config.flat_field else ""
     colours = f"-{config.gradient_model}" if config.flat_field else ""
     colours += "-zero" if config.zero_offset else ""
+    colours += "-light" if config.light_gains else ""
     shape = f"{config.rows}x{config.columns}"
     camera = "" if request.camera is None else f"-{request.camera.pixel_format}"
     lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""
@@ -214,7 +263,9 @@ def camera_report(request: Request, config: Configuration, frames: Frames, codes
     size = (config.rows, config.columns)
     as_rgb = load_frames(request.frames, size, request.reference, request.seed, request.press, plain.camera)
     calibration = on_grid(load_sensor(request), as_rgb)
-    reference_px = exact_depth(as_rgb.pixels, untouched(plain, as_rgb), calibration, config)
+    light = light_of_stream(as_rgb.pixels, calibration, config, 1)
+    once = None if light is None else light[0]
+    reference_px = exact_depth(as_rgb.pixels, untouched(plain, as_rgb), calibration, config, once)
     percent = errors(codes * config.depth_lsb_px, reference_px)
     lost = {f"camera_{key}": values * request.repeat for key, values in percent.items()}
     return {**run_request.described_camera(camera), **lost}

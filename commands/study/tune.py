@@ -32,6 +32,7 @@ from tactile_depth.errors import InputError
 from tactile_depth.frames import Frames, load_frames, on_grid
 from tactile_depth.latency import last_pixel_to_last_depth
 from tactile_depth.sensor import Sensor
+from tactile_depth.tactile_depth import light_of, slope_tables
 
 # In the order of `Limits`.
 OWN = ("TOLERANCE", "MAX_LATENCY_US", "MAX_MAP_LATENCY_US", "CLOCK_MHZ", "MAX_DSP", "MAX_MEMORY_KBIT")
@@ -323,7 +324,7 @@ def run(request: run_request.Request, limits: Limits, solvers: list[str]) -> int
         raise refusals[-1]
     widest = build(Widths(solvers[0], DATA_WIDTHS[1], COEFFICIENT_WIDTHS[1], lanes[solvers[0]]))
     assert widest is not None
-    exact = reference.depth_of(frames.pixels, calibration, widest)
+    exact = reference.depth_of(frames.pixels, calibration, widest, light=_light(frames, calibration, widest))
     tuning, proving, how = split(frames, np.abs(exact).max(axis=(1, 2)), request.seed)
     files.check(out, ("config.json", "report.json"))
     run_request.announce(request, widest)
@@ -415,10 +416,15 @@ def _check_grid(request: run_request.Request, solvers: list[str]) -> None:
     raise refused[0]
 
 
+def _light(frames: Frames, calibration: Sensor, config: Configuration) -> np.ndarray | None:
+    return light_of(frames.pixels, slope_tables(calibration, config), config)
+
+
 def _measurement(
     tuning: Frames, calibration: Sensor, any_of_them: Configuration, bar: tqdm
 ) -> Callable[[Configuration], float]:
-    exact = reference.depth_of(tuning.pixels, calibration, any_of_them)
+    light = _light(tuning, calibration, any_of_them)  # the same for all: no width changes a gain
+    exact = reference.depth_of(tuning.pixels, calibration, any_of_them, light=light)
 
     def measure(config: Configuration) -> float:
         rms = errors(depth_px(tuning.pixels, config, calibration), exact)["rms_percent_of_peak"]

@@ -51,6 +51,7 @@ module fv_axil_registers
   input logic [31:0]             first_depth_latency,
   input logic                    first_depth_latency_valid,
   input logic [32*RecordWords-1:0] record,
+  input logic [2:0][LightGainWidth-1:0] light_gains,
   input logic                    frame_start,
   input table_answer_t           table_answer,
   input logic [Tables-1:0]       table_in_use,
@@ -69,6 +70,7 @@ module fv_axil_registers
   logic [Tables-1:0] table_bank;
   contact_settings_t contact_settings;
   table_command_t table_command;
+  light_command_t light_command;
   capture_command_t reference_command, zero_command;
   register_command_t register_command;
   function automatic logic [ConfigBits-1:0] configuration();
@@ -83,6 +85,7 @@ module fv_axil_registers
     configuration[32*BitsPerChannelField+:32] = BitsPerChannel;
     configuration[32*FlatFieldField+:32] = 1;
     configuration[32*QuadraticField+:32] = Quadratic;
+    configuration[32*LightGainsField+:32] = Quadratic;
     configuration[32*ZeroOffsetField+:32] = 1;
     configuration[32*BlockLog2Field+:32] = 1;
     configuration[32*DepthMantissaField+:32] = DepthMantissa;
@@ -147,6 +150,8 @@ module fv_axil_registers
         || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
         || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
         || offset == OffThresholdOffset || offset == MinimumAreaOffset || offset == DebounceOffset
+        || offset == LightOffset || offset == LightGainRedOffset || offset == LightGainGreenOffset
+        || offset == LightGainBlueOffset
         || (offset == ReferenceCaptureOffset && (ReferenceWords != 0 || !(data[ReferenceCaptureStartBit] && strobes[ReferenceCaptureStartBit/8])))
         || (offset == ZeroCaptureOffset
             && (ZeroWords != 0 && !waits[TableCommitZeroBit] && !zero_status.done
@@ -171,6 +176,11 @@ module fv_axil_registers
   endfunction
 
   logic hold, drop;
+  logic [31:0] light;
+  logic [2:0] writes_gain;
+  assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset), writes(LightGainRedOffset)};
+  logic [LightGainWidth-1:0] gain_before;
+  assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
   logic [31:0] dim, averaged, zero_averaged, off, area, frames_needed, dark, given_up, lost;
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
@@ -248,10 +258,14 @@ module fv_axil_registers
     else if (read_offset == DebounceOffset) word = frames_needed;
     else if (read_offset == InterruptStatusOffset) word = interrupts;
     else if (read_offset == InterruptMaskOffset) word = unmasked;
-    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 4) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
+    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
     else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
     else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
     else if (read_offset == PitchOffset) word = width_nm;
+    else if (read_offset == LightOffset) word = light;
+    else if (read_offset == LightGainRedOffset) word = Quadratic != 0 ? 32'(light_gains[0]) : '0;
+    else if (read_offset == LightGainGreenOffset) word = Quadratic != 0 ? 32'(light_gains[1]) : '0;
+    else if (read_offset == LightGainBlueOffset) word = Quadratic != 0 ? 32'(light_gains[2]) : '0;
     else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
       word = 32'(record >> 8 * (read_offset - RecordEventOffset));
     end
@@ -327,6 +341,7 @@ module fv_axil_registers
     interrupts <= (interrupts & ~(writes(InterruptStatusOffset) ? data & mask : '0)) | interrupts_happened;
     if (writes(InterruptMaskOffset)) unmasked <= written(unmasked) & 32'h3;
     if (writes(PitchOffset)) width_nm <= written(width_nm);
+    if (writes(LightOffset)) light <= written(light) & 32'h71;
     raised <= |(interrupts & unmasked);
     sticky <= (sticky & ~(writes(StatusOffset) ? data & mask : '0)) | happened;
     frames_in <= counted(clears ? '0 : frames_in, 32'(seen.frame_in));
@@ -348,6 +363,7 @@ module fv_axil_registers
       requested <= '0;
       {interrupts, unmasked, raised} <= '0;
       width_nm <= PitchNm;
+      light <= 32'd1;
       {silence, index, select, high, sticky, frames_in, frames_out, frames_dropped, clipped, latency} <= '0;
     end
     if (cold_rst) bank <= '0;
@@ -382,6 +398,9 @@ module fv_axil_registers
       stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
           && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
       interrupt: assert (irq == raised);
+      light_setting: assert (light_command.follow == light[0] && light_command.rate == light[6:4]);
+      light_written: assert (light_command.write == (rst ? '0 : writes_gain)
+          && (light_command.write == '0 || light_command.gain == 16'(written(32'(gain_before)))));
       captures: assert (reference_command.request
           == (writes_capture && data[ReferenceCaptureStartBit] && mask[ReferenceCaptureStartBit] && !rst));
       zero_captures: assert (zero_command.request

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // gradient_unit: the slopes of the gel from the colours of its pixels.
 //
-//   pixel --> [flat_field] --> gradient_lookup or quadratic_gradient --> slope
+//   pixel --> [flat_field] --> gradient_lookup or [light_gains] --> quadratic_gradient --> slope
 //         \-> [reference_capture]
 //
-// In brackets: with FlatField, which makes colours relative to a frame without contact. Without it colours are as the
-// camera sent them. Stream in: pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the
+// In brackets: with FlatField, which makes colours relative to a frame without contact; with LightGains, which follow
+// the light. Without FlatField colours are as the camera sent them. Stream in: pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the
 // row and gy down the column, signed codes of GradientWidth bits; the tables say how many are fraction bits. Latency:
 // models/tactile_depth/latency.py; a gap in, a gap out. Model: slope_codes in models/tactile_depth/tactile_depth.py.
 
@@ -24,6 +24,7 @@ module gradient_unit
   localparam int BitsPerChannel = value(Config, BitsPerChannelField),  // of a colour that index the table
   localparam int FlatField      = value(Config, FlatFieldField),
   localparam int Quadratic      = value(Config, QuadraticField),  // 1 needs FlatField
+  localparam int LightGains     = value(Config, LightGainsField),  // 1 needs Quadratic
   localparam int BlockLog2      = value(Config, BlockLog2Field),  // from here: FlatField
   localparam int GainWidth      = value(Config, GainWidthField),
   localparam int CaptureLog2    = value(Config, CaptureLog2Field),
@@ -42,7 +43,9 @@ module gradient_unit
   input  wire capture_command_t           capture_command,
   output capture_status_t                 capture_status,
   output logic                            dark,         // a pixel was held from its neighbour
-  output logic [2:0]                      saturations,  // clip count, delayed
+  input  wire light_command_t             light_command,
+  output logic [2:0][LightGainWidth-1:0]  light_gains,  // of red, green, blue from the lowest; 0 without LightGains
+  output logic [3:0]                      saturations,  // clip count, delayed
 
   input  wire                             pixel_valid,
   input  wire  [23:0]                     pixel_data,  // R in 23:16, B in 15:8, G in 7:0
@@ -69,17 +72,20 @@ module gradient_unit
   position_t colour_position;
   localparam int ColourWidth = Quadratic != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
-  logic [1:0] colour_saturations, slope_saturations;
-  assign saturations = 3'(colour_saturations) + 3'(slope_saturations);
+  logic [1:0] ratio_saturations, light_saturations, slope_saturations;
+  assign saturations = 4'(ratio_saturations) + 4'(light_saturations) + 4'(slope_saturations);
   if (FlatField != 0) begin : g_flat_field
     localparam int NodeWidth = $clog2(nodes(Rows, Columns, BlockLog2));
-    logic capture_write, capture_read;
+    localparam int RelativeWidth = LightGains != 0 ? RatioWidth : ColourWidth;
+    logic capture_write, capture_read, relative_valid;
+    logic [2:0][RelativeWidth-1:0] relative;  // to the reference: red, green, blue from the lowest
+    position_t relative_position;
     logic [NodeWidth-1:0] capture_write_node, capture_read_node;
     logic [3*GainWidth-1:0] capture_gains, capture_read_gains;
     flat_field #(
       .TableFolder(TableFolder),
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
-      .Offset(Quadratic != 0 ? 1 << DeviationFraction : 0), .OutWidth(ColourWidth),
+      .Offset(Quadratic != 0 && LightGains == 0 ? 1 << DeviationFraction : 0), .OutWidth(RelativeWidth),
       .Flat(Quadratic != 0 ? 0 : FlatCode)
     ) u_flat_field (
       .clk, .rst, .en, .dark_level,
@@ -87,9 +93,28 @@ module gradient_unit
       .table_in_use(reference_in_use), .capture_write, .capture_write_node, .capture_gains,
       .capture_read, .capture_read_node, .capture_read_gains,
       .in_valid(pixel_valid), .in_pixel(pixel_data), .in_position(pixel_position),
-      .out_valid(colour_valid), .out_position(colour_position), .out_red(red), .out_green(green), .out_blue(blue),
-      .dark, .saturations(colour_saturations)
+      .out_valid(relative_valid), .out_position(relative_position), .out_red(relative[0]), .out_green(relative[1]),
+      .out_blue(relative[2]), .dark, .saturations(ratio_saturations)
     );
+    if (LightGains != 0) begin : g_light
+      light_gains #(
+        .Rows(Rows), .Columns(Columns), .RatioWidth(RatioWidth), .RatioFraction(RatioFraction),
+        .GainWidth(LightGainWidth), .OutWidth(DeviationWidth), .OutFraction(DeviationFraction)
+      ) u_light (
+        .clk, .rst, .en, .follow(light_command.follow), .rate(light_command.rate), .write(light_command.write),
+        .write_gain(light_command.gain), .gains(light_gains),
+        .in_bad(pixel_valid & pixel_position.last_row & pixel_position.last_column & pixel_bad),
+        .in_valid(relative_valid), .in_position(relative_position), .in_red(relative[0]), .in_green(relative[1]),
+        .in_blue(relative[2]), .out_valid(colour_valid), .out_position(colour_position), .out_red(red),
+        .out_green(green), .out_blue(blue), .saturations(light_saturations)
+      );
+    end else begin : g_no_light
+      assign {blue, green, red} = relative;
+      assign {colour_valid, colour_position} = {relative_valid, relative_position};
+      assign {light_gains, light_saturations} = '0;
+      logic unused_light;
+      assign unused_light = ^light_command;
+    end
     reference_capture #(
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .Width(GainWidth),
       .GainFraction(GainWidth + DarkestLog2), .MaxLog2(CaptureLog2)
@@ -104,9 +129,10 @@ module gradient_unit
     assign {red, blue, green} = pixel_data;
     assign colour_valid = pixel_valid;
     assign colour_position = pixel_position;
-    assign {dark, colour_saturations, capture_status, reference_in_use, reference_answer} = '0;
+    assign {dark, ratio_saturations, light_saturations, light_gains} = '0;
+    assign {capture_status, reference_in_use, reference_answer} = '0;
     logic unused_reference;
-    assign unused_reference = ^{dark_level, capture_command, pixel_bad};
+    assign unused_reference = ^{dark_level, capture_command, light_command, pixel_bad};
   end
 
   // Their slopes.
@@ -137,11 +163,14 @@ module gradient_unit
   if (Quadratic != 0 && FlatField == 0) begin : g_refused_0
     Quadratic_needs_FlatField u_refused ();
   end
-  if ((FlatField | Quadratic) > 1 || (FlatField | Quadratic) < 0) begin : g_refused_1
-    FlatField_and_Quadratic_are_0_or_1 u_refused ();
+  if ((FlatField | Quadratic | LightGains) > 1 || (FlatField | Quadratic | LightGains) < 0) begin : g_refused_1
+    FlatField_Quadratic_and_LightGains_are_0_or_1 u_refused ();
   end
   if (FlatField != 0 && (GainWidth < 2 || GainWidth > 32)) begin : g_refused_2
     GainWidth_must_be_2_to_32 u_refused ();
+  end
+  if (LightGains != 0 && Quadratic == 0) begin : g_refused_3
+    LightGains_need_Quadratic u_refused ();
   end
 
 endmodule

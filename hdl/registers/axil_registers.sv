@@ -30,6 +30,7 @@ module axil_registers
   localparam int BitsPerChannel   = value(Config, BitsPerChannelField),
   localparam int FlatField        = value(Config, FlatFieldField),
   localparam int Quadratic        = value(Config, QuadraticField),
+  localparam int LightGains       = value(Config, LightGainsField),
   localparam int ZeroOffset       = value(Config, ZeroOffsetField),
   localparam int Lanes            = value(Config, LanesField),
   localparam int BlockLog2        = value(Config, BlockLog2Field),
@@ -75,6 +76,8 @@ module axil_registers
   output contact_settings_t         contact_settings,
   output logic [31:0]               timeout,
   output logic [7:0]                dark_level,
+  output light_command_t            light_command,
+  input  wire  [2:0][LightGainWidth-1:0] light_gains,  // ignored without LightGains
 
   input  wire                       frame_start,  // the first pixel of a frame passes the head of the pipeline
   output table_command_t            table_command,
@@ -95,7 +98,7 @@ module axil_registers
     | ((Quadratic != 0 ? 0 : BitsPerChannel) << FormatBitsPerChannelLsb);
   localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
     | (Quadratic << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (ZeroOffset << DeviceZeroOffsetBit)
-    | (Lanes << DeviceLanesLsb) | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
+    | (LightGains << DeviceLightGainsBit) | (Lanes << DeviceLanesLsb) | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
   localparam logic [31:0] DepthUnitWord =
     (DepthMantissa << DepthUnitMantissaLsb) | (DepthExponent << DepthUnitExponentLsb);
   localparam logic [31:0] SlopeUnitWord =
@@ -115,11 +118,7 @@ module axil_registers
   logic [31:0] write_offset, write_ones, write_mask, read_offset, read_data, late_data;
   register_answer_t camera_answer;
   assign camera_answer = Camera != 0 ? register_answer : '0;
-  assign register_command.write = write;
-  assign register_command.write_offset = write_offset;
-  assign register_command.write_ones = write_ones;
-  assign register_command.write_mask = write_mask;
-  assign register_command.read_offset = read_offset;
+  assign register_command = {write, write_offset, write_ones, write_mask, read_offset};
   axil_port u_port (
     .clk, .rst, .s_axil_awaddr, .s_axil_awvalid, .s_axil_awready, .s_axil_wdata, .s_axil_wstrb, .s_axil_wvalid,
     .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr, .s_axil_arvalid, .s_axil_arready,
@@ -144,6 +143,25 @@ module axil_registers
   assign contact_settings.drop_frames = settings[ControlSetting][ControlDropFramesBit];
   assign timeout = settings[TimeoutSetting];
   assign dark_level = settings[DarkLevelSetting][7:0];
+
+  // Light gains, which light_gains holds; a write replaces the bytes that are strobed.
+
+  logic [2:0] gain_writes;
+  logic [2:0][31:0] light_offsets;
+  logic [LightGainWidth-1:0] gain_before, gain_read;
+  assign light_offsets = {32'(LightGainBlueOffset), 32'(LightGainGreenOffset), 32'(LightGainRedOffset)};
+  assign light_command.follow = settings[LightSetting][LightFollowBit];
+  assign light_command.rate = settings[LightSetting][LightRateLsb+:3];
+  assign light_command.write = gain_writes;
+  assign light_command.gain = write_ones[LightGainWidth-1:0] | (gain_before & ~write_mask[LightGainWidth-1:0]);
+  always_comb begin
+    {gain_before, gain_read} = '0;
+    for (int c = 0; c < 3; c++) begin
+      gain_writes[c] = write && write_offset == light_offsets[c];
+      if (write_offset == light_offsets[c]) gain_before = light_gains[c];
+      if (LightGains != 0 && read_offset == light_offsets[c]) gain_read = light_gains[c];
+    end
+  end
 
   events_t events_q;  // so that no path from the pipeline ends in the logic of the counters
   always_ff @(posedge clk) events_q <= rst ? '0 : events;
@@ -193,7 +211,7 @@ module axil_registers
       if (read_offset == 32'(RecordEventOffset + 4 * n)) word = word | record[32*n+:32];
     end
   end
-  assign read_data = word | setting_data | event_data | bank_data | entry_data | camera_answer.data;
+  assign read_data = word | 32'(gain_read) | setting_data | event_data | bank_data | entry_data | camera_answer.data;
   assign read_refused = !(is_register(read_offset) || camera_answer.readable);
 
   logic unused_pins;

@@ -55,6 +55,10 @@ package td_register_map_pkg;
   localparam int DepthUnitOffset = 32'h0c4;
   localparam int SlopeUnitOffset = 32'h0c8;
   localparam int PitchOffset = 32'h0cc;
+  localparam int LightOffset = 32'h0d0;
+  localparam int LightGainRedOffset = 32'h0d4;
+  localparam int LightGainGreenOffset = 32'h0d8;
+  localparam int LightGainBlueOffset = 32'h0dc;
 
   // Words of a record of contact.
   localparam int RecordWords = 13;
@@ -65,6 +69,7 @@ package td_register_map_pkg;
   localparam int OffThresholdReset = 32'h7fffffff;
   localparam int MinimumAreaReset = 32'h00000001;
   localparam int DebounceReset = 32'h00000001;
+  localparam int LightReset = 32'h00000001;
 
   // Bits: number of a flag, lowest of a wider field.
   localparam int GridRowsLsb = 0;
@@ -109,12 +114,15 @@ package td_register_map_pkg;
   localparam int DeviceGradientModelBit = 2;
   localparam int DeviceFlatFieldBit = 3;
   localparam int DeviceZeroOffsetBit = 4;
+  localparam int DeviceLightGainsBit = 5;
   localparam int DeviceLanesLsb = 8;
   localparam int DeviceGainWidthLsb = 16;
   localparam int DepthUnitMantissaLsb = 0;
   localparam int DepthUnitExponentLsb = 24;
   localparam int SlopeUnitMantissaLsb = 0;
   localparam int SlopeUnitExponentLsb = 24;
+  localparam int LightFollowBit = 0;
+  localparam int LightRateLsb = 4;
 
   // Values of a field.
   localparam int TableSelectSelectCount = 4;
@@ -130,7 +138,7 @@ package td_register_map_pkg;
   localparam int DeviceQuadratic = 1;
 
   // Registers that software alone writes, by number, in words of 32 bits, the lowest first.
-  localparam int Settings = 12;
+  localparam int Settings = 13;
   localparam int ControlSetting = 0;
   localparam int ThresholdSetting = 1;
   localparam int TimeoutSetting = 2;
@@ -143,17 +151,19 @@ package td_register_map_pkg;
   localparam int ZeroCaptureSetting = 9;
   localparam int InterruptMaskSetting = 10;
   localparam int PitchSetting = 11;
+  localparam int LightSetting = 12;
   localparam logic [32*Settings-1:0] SettingOffsets = {
-    PitchOffset, InterruptMaskOffset, ZeroCaptureOffset, DebounceOffset, MinimumAreaOffset, OffThresholdOffset,
-    ReferenceCaptureOffset, DarkLevelOffset, TableSelectOffset, TimeoutOffset, ThresholdOffset, ControlOffset
+    LightOffset, PitchOffset, InterruptMaskOffset, ZeroCaptureOffset, DebounceOffset, MinimumAreaOffset,
+    OffThresholdOffset, ReferenceCaptureOffset, DarkLevelOffset, TableSelectOffset, TimeoutOffset, ThresholdOffset,
+    ControlOffset
   };
   localparam logic [32*Settings-1:0] SettingMasks = {
-    32'hffffffff, 32'h00000003, 32'h0000000f, 32'h000000ff, 32'hffffffff, 32'hffffffff, 32'h0000000f, 32'h000000ff,
-    32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
+    32'h00000071, 32'hffffffff, 32'h00000003, 32'h0000000f, 32'h000000ff, 32'hffffffff, 32'hffffffff, 32'h0000000f,
+    32'h000000ff, 32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
   };
   localparam logic [32*Settings-1:0] SettingResets = {
-    32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001, 32'h7fffffff, 32'h00000000, 32'h00000000,
-    32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
+    32'h00000001, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001, 32'h7fffffff, 32'h00000000,
+    32'h00000000, 32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
   };
 
   // Offsets that can be read, and those that can be written.
@@ -169,7 +179,8 @@ package td_register_map_pkg;
       RecordPeakPositionOffset, RecordLeastOffset, RecordGreatestOffset, RecordColumnSumOffset,
       RecordRowSumOffset, RecordVolumeLowOffset, RecordVolumeHighOffset, RecordCentroidOffset,
       ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, DeviceOffset,
-      DepthUnitOffset, SlopeUnitOffset, PitchOffset: is_register = 1'b1;
+      DepthUnitOffset, SlopeUnitOffset, PitchOffset, LightOffset, LightGainRedOffset,
+      LightGainGreenOffset, LightGainBlueOffset: is_register = 1'b1;
       default: is_register = 1'b0;
     endcase
   endfunction
@@ -178,7 +189,8 @@ package td_register_map_pkg;
       ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableSelectOffset,
       TableIndexOffset, TableHighOffset, TableLowOffset, TableCommitOffset, DarkLevelOffset,
       ReferenceCaptureOffset, OffThresholdOffset, MinimumAreaOffset, DebounceOffset,
-      ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, PitchOffset: is_writable = 1'b1;
+      ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, PitchOffset, LightOffset,
+      LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset: is_writable = 1'b1;
       default: is_writable = 1'b0;
     endcase
   endfunction

@@ -24,7 +24,7 @@ from tactile_depth.cost import cost
 from tactile_depth.errors import InputError
 from tactile_depth.scenes import render, scene_pixel_pitch_mm
 from tactile_depth.sensor import Sensor
-from tactile_depth.tactile_depth import slope_tables, tactile_depth
+from tactile_depth.tactile_depth import light_of, slope_tables, tactile_depth
 
 SMALLEST_PEAK_PX = 0.1  # the error in % of the peak is not defined below this peak
 PIXELS_AT_ONCE = 1 << 17  # pixels of a batch of frames, whose arrays stay in a cache
@@ -71,12 +71,12 @@ def depth_px(
     """Return the depth of frames by the bit-accurate model in grid pixels, rows in the order of the input."""
     step = max(1, PIXELS_AT_ONCE // (config.rows * config.columns))
     tables = slope_tables(calibration, config)
-    codes = np.concatenate(
-        [
-            tactile_depth(frames[i : i + step], calibration, config, monitor, tables=tables)
-            for i in range(0, len(frames), step)
-        ]
-    )
+    parts = []
+    for i in range(0, len(frames), step):
+        part = frames[i : i + step]
+        light = light_of(part, tables, config)
+        parts.append(tactile_depth(part, calibration, config, monitor, tables=tables, light=light))
+    codes = np.concatenate(parts)
     if config.solver == "tridiagonal":  # this solver puts the bottom row out first
         codes = codes[..., ::-1, :]
     return codes * config.depth_lsb_px

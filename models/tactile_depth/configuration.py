@@ -48,6 +48,8 @@ PIXEL_WIDTH = 8
 GAIN_WIDTHS = (16, 24)  # of an unsigned gain word
 DARKEST_LOG2 = 3  # a reference of 8 grey levels gives the full scale of a gain
 
+LIGHT_GAIN_WIDTH = 16  # of the gain of a colour that follows the light; one bit less of them is fraction
+
 
 def gain_fraction(gain_width: int) -> int:
     """Return the fraction bits of a gain, 1 / reference, of so many bits."""
@@ -81,8 +83,13 @@ class Format:
         return 2.0**-self.fraction
 
 
-DEVIATION = Format(14, 12)
-"""Format of a colour relative to the reference, I / ref - 1, finer than 8-bit pixels."""
+DEVIATION = Format(17, 15)
+"""Format of a colour relative to the reference, I / ref - 1.
+
+It is so fine that rounding does not tilt a gel of one colour, which has the same error in every pixel.
+"""
+RATIO = Format(17, 15)
+"""Format of a colour relative to the reference, I / ref, unsigned, before the light gains."""
 POLYNOMIAL = Format(32, 28)
 """Format of a coefficient of the quadratic model along the raster, as wide as a register of the AXI4-Lite map."""
 COLOUR_COEFFICIENT = Format(18, 14)
@@ -120,6 +127,8 @@ class Configuration:
         Bits of a gain of the flat field.
     gradient_model : str
         `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
+    light_gains : bool
+        A gain for each colour follows the light; needs the quadratic model.
     zero_offset : bool
         The depth that is read without contact is subtracted.
     lanes : int
@@ -140,6 +149,7 @@ class Configuration:
     zero_offset: bool = False
     lanes: int = 1
     gain_width: int = 24
+    light_gains: bool = False
 
     def __post_init__(self) -> None:
         model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
@@ -147,6 +157,12 @@ class Configuration:
         one_of(model, GRADIENT_MODELS)
         if self.gradient_model == "quadratic" and not self.flat_field:
             raise InputError(model, " without a reference: it takes colours relative to one", remedy="give one")
+        if self.light_gains and self.gradient_model != "quadratic":
+            raise InputError(
+                *(Argument("light_gains", True), " with ", model, ": they act on colours relative to a reference, "),
+                "which a table has as 8 bits",
+                remedy=("set ", Argument("gradient_model", "quadratic"), " or ", Argument("light_gains", False)),
+            )
         one_of(solver, COLUMNS)
         within(columns, *COLUMNS[self.solver])
         power_of_two(columns)

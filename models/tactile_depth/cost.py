@@ -13,7 +13,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from tactile_depth.common import td_node_map
-from tactile_depth.configuration import COLOUR_COEFFICIENT, DEVIATION, GUARD_BITS, POLYNOMIAL, Configuration
+from tactile_depth.configuration import (
+    COLOUR_COEFFICIENT,
+    DEVIATION,
+    GUARD_BITS,
+    LIGHT_GAIN_WIDTH,
+    POLYNOMIAL,
+    RATIO,
+    Configuration,
+)
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.poisson.transform.sdf_fft import stages
@@ -22,7 +30,7 @@ from tactile_depth.tactile_depth import top_parameters
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
-    *("flat_field", "gradient_lookup", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
+    *("flat_field", "gradient_lookup", "light_gains", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
     *("corner_turn", "zero_offset", "zero_capture"),
 )
@@ -139,7 +147,7 @@ def _pipeline(p: dict[str, int]) -> Parts:
 
 
 def _colours(p: dict[str, int]) -> Parts:
-    """Count the parts from pixels to slopes: flat_field.sv, and gradient_lookup.sv or quadratic_gradient.sv."""
+    """Count the parts from pixels to slopes: flat_field.sv, light_gains.sv, and one of the gradient models."""
     parts: Parts = []
     if p["FlatField"]:
         gain, log2, core = p["GainWidth"], p["BlockLog2"], "flat_field"
@@ -147,6 +155,8 @@ def _colours(p: dict[str, int]) -> Parts:
         parts += [Multiplier(gain + 1, log2 + 2, core), Multiplier(gain + 1, 9, core)] * 3
         parts += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
         parts.append(Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core))
+    if p["LightGains"]:
+        parts += [Multiplier(RATIO.width + 1, LIGHT_GAIN_WIDTH + 1, "light_gains")] * 3
     if p["Quadratic"]:
         core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
         parts += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6

@@ -23,7 +23,7 @@ from tactile_depth.presses import (
     to_grid,
 )
 from tactile_depth.sensor import HeightError, Sensor
-from tactile_depth.tactile_depth import slope_codes, solve
+from tactile_depth.tactile_depth import light_of, slope_codes, slope_tables, solve
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,8 @@ def slopes_and_depths(
     """
     on_grid = replace(sensor, pixel_pitch_mm=presses.grid_pitch_mm, reference=presses.background_on_grid)
     config = on_grid.configuration(model, columns=presses.size, neumann=True)
-    codes = slope_codes(np.stack([view.frame for view in views]), on_grid, config)
+    frames, tables = np.stack([view.frame for view in views]), slope_tables(on_grid, config)
+    codes = slope_codes(frames, on_grid, config, tables=tables, light=light_of(frames, tables, config))
     return codes * config.gradient_lsb, solve(divergence(codes, config.neumann), config) * config.depth_lsb_px
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,14 +14,15 @@ import numpy as np
 
 from tactile_depth import reference as exact
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import Configuration
+from tactile_depth.configuration import LIGHT_GAIN_WIDTH, Configuration
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale, read_pictures, read_stack
-from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
+from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, ratios, require_light, unit_gains
+from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import GridSampler, grid_sampler
 from tactile_depth.poisson.divergence import divergence
@@ -29,6 +31,7 @@ from tactile_depth.result import Result
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import (
     config_value,
+    light_of,
     slope_codes,
     slope_tables,
     solve,
@@ -86,6 +89,9 @@ class Pipeline:
         Depth that the formats are sized for; by default a quarter of the shorter side.
     zero_offset : bool
         Subtract the depth that is read without contact. It is first captured from `reference`.
+    light_gains : bool, optional
+        A gain for each colour undoes the difference of the light between picture and reference; by default with the
+        model `quadratic`, which alone can have them.
     arithmetic : str
         `chip`, bit-accurate as in the hardware, or `float`, double precision.
     threshold_mm : float
@@ -121,6 +127,7 @@ class Pipeline:
         gain_width: int = Configuration.gain_width,
         depth_range_mm: float | None = None,
         zero_offset: bool = SENSOR.zero_offset,
+        light_gains: bool | None = None,
         arithmetic: str = "chip",
         threshold_mm: float = 0.1,
     ) -> None:
@@ -152,6 +159,7 @@ class Pipeline:
             **dict(widths),
             depth_range_px=None if depth_range_mm is None else self.sensor.depth_range_px(depth_range_mm),
             zero_offset=zero_offset,
+            light_gains=light_gains,
         )
         self.arithmetic = arithmetic
         self.depth_lsb_mm = self.config.depth_lsb_px * self.pixel_pitch_mm
@@ -172,7 +180,7 @@ class Pipeline:
             if zero_offset:
                 self._use_zero(rest)
 
-    def __call__(self, pictures: Pictures) -> Result:
+    def __call__(self, pictures: Pictures, light: LightFilter | None = None) -> Result:
         """Return the depth of pictures.
 
         Parameters
@@ -180,6 +188,9 @@ class Pipeline:
         pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path
             Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. A path names a picture
             (PNG, JPEG), a `.npy` of frames or a folder of pictures.
+        light : LightFilter, optional
+            The light gains of a stream, `light_filter`, to which the pictures belong, in their order; by default each
+            picture has light gains of its own.
 
         Returns
         -------
@@ -192,23 +203,25 @@ class Pipeline:
         """
         frames, single = self._read(pictures, PICTURES)
         monitor = Monitor()
+        gains = self._light(frames, light)
         if self.arithmetic == "chip":
-            slopes, stream = self._chip(frames, monitor)
+            slopes, stream = self._chip(frames, monitor, gains)
             stream = zeroed(stream, self.config, monitor, self._zero)
         else:
-            slopes, stream = self._exact(frames)
+            slopes, stream = self._exact(frames, gains)
             stream = stream - self._exact_zero
         codes = np.rint(stream).astype(np.int32)
         settings = Settings(self._threshold, self._threshold, minimum_area=1, debounce=1)
         records = tuple(self._events.whole_frame(frame, settings, time=0) for frame in codes)
         codes, depth_mm = self._upright(codes), self._upright(stream) * self.depth_lsb_mm
-        gains = self._tables.gains
-        dark = np.zeros(codes.shape, bool) if gains is None else dark_pixels(frames, gains, self.config)
+        reference = self._tables.gains
+        dark = np.zeros(codes.shape, bool) if reference is None else dark_pixels(frames, reference, self.config)
         result = Result(
             codes,
             depth_mm,
             slopes,
             dark,
+            None if gains is None else gains / (1 << (LIGHT_GAIN_WIDTH - 1)),
             records,
             dict(monitor.saturations),
             self._threshold,
@@ -218,6 +231,25 @@ class Pipeline:
             self.sensor.height_errors.get(self.config.gradient_model),
         )
         return result[0] if single else result
+
+    def stream(self, pictures: Iterable[np.ndarray]) -> Iterator[Result]:
+        """Give the depth of the pictures of a stream, as the hardware does: its light gains act on the next picture.
+
+        Parameters
+        ----------
+        pictures : iterable of uint8 arrays (rows, columns, 3), RGB
+
+        Raises
+        ------
+        InputError
+        """
+        light = self.light_filter()
+        for picture in pictures:
+            yield self(picture, light)
+
+    def light_filter(self) -> LightFilter | None:
+        """Return the light gains of a new stream, all 1; None for a pipeline without light gains."""
+        return LightFilter(Light.of(self.config)) if self.config.light_gains else None
 
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
@@ -295,20 +327,28 @@ class Pipeline:
 
     # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
 
-    def _chip(self, frames: np.ndarray, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
+    def _light(self, frames: np.ndarray, light: LightFilter | None = None) -> np.ndarray | None:
+        """Return the light gains of frames, int64 (frames, 3), by a stream or each frame's own; None without."""
+        if light is None or not self.config.light_gains:
+            return light_of(frames, self._tables, self.config)
+        assert self._tables.gains is not None
+        return np.array([light.take(picture) for picture in ratios(frames, self._tables.gains, self.config)])
+
+    def _chip(self, frames: np.ndarray, monitor: Monitor, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Compute slopes and depth as the RTL does, bit for bit."""
         step = max(1, PIXELS_AT_ONCE // (self.config.rows * self.config.columns))
         slopes, depths = [], []
         for start in range(0, len(frames), step):
             part = frames[start : start + step]
-            codes = slope_codes(part, self.sensor, self.config, monitor, tables=self._tables)
+            gains = None if light is None else light[start : start + step]
+            codes = slope_codes(part, self.sensor, self.config, monitor, tables=self._tables, light=gains)
             slopes.append(codes * self.config.gradient_lsb)
             depths.append(solve(divergence(codes, self.config.neumann), self.config, monitor))
         return np.concatenate(slopes), np.concatenate(depths)
 
-    def _exact(self, frames: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _exact(self, frames: np.ndarray, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Compute slopes and depth in double precision."""
-        slopes = exact.slopes_of(frames, self.sensor, self.config, self._exact_tables)
+        slopes = exact.slopes_of(frames, self.sensor, self.config, self._exact_tables, light)
         depth = exact.solve(divergence(slopes, self.config.neumann), self.config.neumann)
         return slopes, self._upright(depth / self.config.depth_lsb_px)
 
@@ -330,8 +370,9 @@ class Pipeline:
         self._exact_tables = exact.slope_tables(self.sensor, self.config)
 
     def _use_zero(self, frames: np.ndarray) -> None:
-        self._zero = captured_zero(self._chip(frames, Monitor())[1], self.config)
-        self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames)[1], self.config)
+        light = self._light(frames)
+        self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
+        self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
 
     # Pictures.
 

@@ -18,6 +18,8 @@ class Preset:
     grid : (rows, columns)
     zero_offset : bool
         Colours are relative to a reference, and the depth without contact is subtracted.
+    light_gains : bool
+        A gain for each colour follows the light.
     """
 
     solver: str
@@ -26,6 +28,7 @@ class Preset:
     calibration: str
     grid: tuple[int, int]
     zero_offset: bool
+    light_gains: bool
 
 
 PUBLISHED = Preset(
@@ -35,8 +38,9 @@ PUBLISHED = Preset(
     calibration="synthetic",
     grid=(Configuration.columns, Configuration.columns),
     zero_offset=Configuration.zero_offset,
+    light_gains=Configuration.light_gains,
 )
 """The pipeline of the published design: colours as they are sent, and a table of slopes."""
-SENSOR = Preset("tridiagonal", "neumann", "quadratic", "gelsight-mini", (96, 128), zero_offset=True)
-"""A real sensor: colours relative to a reference, and the whole picture of a camera of 4:3."""
+SENSOR = Preset("tridiagonal", "neumann", "quadratic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
+"""A real sensor: colours relative to a reference and to its light, and the whole picture of a camera of 4:3."""
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR}

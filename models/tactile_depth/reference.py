@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
-from tactile_depth.configuration import DARKEST_LOG2, Configuration
+from tactile_depth.configuration import DARKEST_LOG2, LIGHT_GAIN_WIDTH, Configuration
 from tactile_depth.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.transform.orders import read_only
@@ -113,7 +113,11 @@ def slope_tables(calibration: Sensor, config: Configuration) -> Tables:
 
 
 def slopes_of(
-    frames: np.ndarray, calibration: Sensor, config: Configuration, tables: Tables | None = None
+    frames: np.ndarray,
+    calibration: Sensor,
+    config: Configuration,
+    tables: Tables | None = None,
+    light: np.ndarray | None = None,
 ) -> np.ndarray:
     """Return slopes by the gradient model of a configuration: from 8-bit colours, or from unrounded deviations.
 
@@ -121,6 +125,8 @@ def slopes_of(
     ----------
     tables : Tables
         `slope_tables` of the same calibration and configuration, for many calls; by default computed here.
+    light : int64 array (..., 3)
+        Light gains of each frame, as the hardware has them; by default 1.
 
     Returns
     -------
@@ -130,6 +136,8 @@ def slopes_of(
         tables = slope_tables(calibration, config)
     if tables.coefficients is not None:
         deviation = frames * tables.gains
+        if light is not None:
+            deviation *= light[..., None, None, :] * 2.0 ** (1 - LIGHT_GAIN_WIDTH)
         deviation -= 1
         if tables.dead is not None:
             deviation = hold_dark(deviation, np.broadcast_to(tables.dead, deviation.shape[:-1]), 0)
@@ -200,7 +208,11 @@ def depth(frames: np.ndarray, calibration: Sensor, neumann: bool = False) -> np.
 
 
 def depth_of(
-    frames: np.ndarray, calibration: Sensor, config: Configuration, tables: Tables | None = None
+    frames: np.ndarray,
+    calibration: Sensor,
+    config: Configuration,
+    tables: Tables | None = None,
+    light: np.ndarray | None = None,
 ) -> np.ndarray:
     """Return the depth of frames by the gradient model of a configuration, `slopes_of`."""
-    return solve(divergence(slopes_of(frames, calibration, config, tables), config.neumann), config.neumann)
+    return solve(divergence(slopes_of(frames, calibration, config, tables, light), config.neumann), config.neumann)

@@ -64,6 +64,27 @@ class Contact:
         return row / 2**FRACTION, column / 2**FRACTION
 
     @property
+    def peak_position_mm(self) -> tuple[float, float] | None:
+        """Row and column of the peak from the upper left corner of the picture, in mm; None without contact."""
+        return self._from_the_corner(self.peak_px)
+
+    @property
+    def centroid_mm(self) -> tuple[float, float] | None:
+        """Row and column of the centroid from the upper left corner of the picture, in mm; None without contact."""
+        return self._from_the_corner(self.centroid_px)
+
+    def _from_the_corner(self, index: tuple[float, float]) -> tuple[float, float] | None:
+        """Return a position on the depth map in mm.
+
+        The centre of a pixel is half a pixel from its corner, and depth lies half a pixel up and to the left of it: so
+        index 0 is on the edge of the picture.
+        """
+        if not self.touching:
+            return None
+        row, column = index
+        return row * self.pixel_pitch_mm, column * self.pixel_pitch_mm
+
+    @property
     def is_central(self) -> bool:
         """True if the contact lies wholly in the middle square, where `Result.height_error` was measured."""
         shape, side = self.mask.shape, min(self.mask.shape)
@@ -89,6 +110,8 @@ class Result:
         dz/dx along the columns and dz/dy down the rows, without unit.
     dark : bool array (rows, columns)
         Pixels without light, whose colour was taken from the pixel before them.
+    light_gains : float64 array (3,) or None
+        Light of the reference over that of the picture, of red, green and blue; None without light gains.
     records : tuple of Record
         One record per frame, from which `contact` is made.
     saturations : dict of str to int
@@ -107,6 +130,7 @@ class Result:
     depth_mm: np.ndarray
     slopes: np.ndarray
     dark: np.ndarray
+    light_gains: np.ndarray | None
     records: tuple[Record, ...]
     saturations: dict[str, int]
     threshold: int
@@ -126,7 +150,8 @@ class Result:
         if self.codes.ndim == 2:
             raise TypeError("the result of a single picture has no frames to choose from")
         arrays = {name: getattr(self, name)[index] for name in ("codes", "depth_mm", "slopes", "dark")}
-        return replace(self, records=(self.records[index],), **arrays)
+        gains = None if self.light_gains is None else self.light_gains[index]
+        return replace(self, records=(self.records[index],), light_gains=gains, **arrays)
 
     @property
     def threshold_mm(self) -> float:

@@ -189,13 +189,15 @@ class Sensor:
             )
             warnings.warn(warning, stacklevel=3)
 
-    def configuration(self, model: str = "", **choices: Any) -> Configuration:
+    def configuration(self, model: str = "", light_gains: bool | None = None, **choices: Any) -> Configuration:
         """Return the configuration that fits this sensor on its grid.
 
         Parameters
         ----------
         model : str
             A gradient model of the sensor; "": its better model if it has a reference, else `lut`.
+        light_gains : bool or None
+            A gain for each colour follows the light; None: if the model is `quadratic`.
         choices
             Arguments of `Configuration` that do not follow from the sensor.
 
@@ -213,6 +215,7 @@ class Sensor:
             bits_per_channel=self.bits_per_channel,
             flat_field=flat_field,
             gradient_model=model,
+            light_gains=model == "quadratic" if light_gains is None else light_gains,
             **choices,
         )
 

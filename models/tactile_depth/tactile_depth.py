@@ -21,13 +21,16 @@ from tactile_depth.configuration import (
     DARKEST_LOG2,
     DEVIATION,
     GUARD_BITS,
+    LIGHT_GAIN_WIDTH,
     POLYNOMIAL,
+    RATIO,
     Configuration,
 )
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.depth.zero_offset import no_zero, zero_offset
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.gradient.flat_field import (
+    CODE,
     CODE_WIDTH,
     FLAT_CODE,
     PixelGains,
@@ -35,9 +38,11 @@ from tactile_depth.gradient.flat_field import (
     flat_codes,
     flat_field_parameters,
     pixel_gains,
+    ratios,
     reference_gains,
 )
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
+from tactile_depth.gradient.light_gains import Light, LightFilter, settled
 from tactile_depth.gradient.quadratic_gradient import (
     coefficient_map,
     gradient_parameters,
@@ -59,6 +64,9 @@ CONSTANTS = {
     "ColourCoeffWidth": (COLOUR_COEFFICIENT.width, "its upper bits, which are multiplied"),
     "DeviationWidth": (DEVIATION.width, "bits of a colour relative to the reference"),
     "DeviationFraction": (DEVIATION.fraction, "fraction bits of it"),
+    "RatioWidth": (RATIO.width, "bits of a colour relative to the reference, before the light gains"),
+    "RatioFraction": (RATIO.fraction, "fraction bits of it"),
+    "LightGainWidth": (LIGHT_GAIN_WIDTH, "bits of a light gain, one bit less of them is fraction"),
     "CodeWidth": (CODE_WIDTH, "bits of a colour that indexes the gradient table"),
     "FlatCode": (FLAT_CODE, "code of a colour that equals the reference"),
     "DarkestLog2": (DARKEST_LOG2, "fraction bits of a gain beyond its width"),
@@ -120,6 +128,7 @@ def tactile_depth(
     dark_level: int = 0,
     zero: np.ndarray | None = None,
     tables: Tables | None = None,
+    light: np.ndarray | LightFilter | None = None,
 ) -> np.ndarray:
     """Return the depth codes of frames, rows in the order of the stream (tridiagonal solver: bottom row first).
 
@@ -134,12 +143,15 @@ def tactile_depth(
         Zero offset in use, for a configuration with `zero_offset`; by default nothing is subtracted.
     tables : Tables
         `slope_tables` of the same calibration, configuration and gains, for many calls; by default computed here.
+    light : int64 array (..., 3) or LightFilter
+        Light gains of each frame, or the filter of a stream, for a configuration with `light_gains`. By default a
+        filter at reset, whose gains follow the light from frame to frame.
 
     Returns
     -------
     int64 array (..., rows, columns); depth_px = code * config.depth_lsb_px
     """
-    slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level, tables)
+    slopes = slope_codes(frames, calibration, config, monitor, gains, dark_level, tables, light)
     return zeroed(solve(divergence(slopes, config.neumann), config, monitor), config, monitor, zero)
 
 
@@ -160,17 +172,47 @@ def slope_codes(
     gains: np.ndarray | None = None,
     dark_level: int = 0,
     tables: Tables | None = None,
+    light: np.ndarray | LightFilter | None = None,
 ) -> np.ndarray:
     """Return the slope codes of frames, int64 (..., rows, columns, 2), by the gradient model of the configuration."""
     if tables is None:
         tables = slope_tables(calibration, config, gains)
     if config.gradient_model == "quadratic":
         assert tables.gains is not None
-        deviation = deviations(frames, tables.gains, config, dark_level, monitor)
+        if config.light_gains:
+            deviation = _lit_deviations(frames, tables.gains, config, dark_level, monitor, light)
+        else:
+            deviation = deviations(frames, tables.gains, config, dark_level, monitor)
         return quadratic_gradient(deviation, tables.slopes, config, monitor)
     if tables.gains is not None:
         frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
     return gradient_lookup(frames, tables.slopes, config.bits_per_channel)
+
+
+def light_of(frames: np.ndarray, tables: Tables, config: Configuration) -> np.ndarray | None:
+    """Return the light gains of frames that are single pictures, int64 (..., 3); None without `light_gains`."""
+    if not config.light_gains:
+        return None
+    assert tables.gains is not None
+    return settled(ratios(frames, tables.gains, config), Light.of(config))
+
+
+def _lit_deviations(
+    frames: np.ndarray,
+    gains: PixelGains,
+    config: Configuration,
+    dark_level: int,
+    monitor: Monitor | None,
+    light: np.ndarray | LightFilter | None,
+) -> np.ndarray:
+    """Return the deviations of frames with their light gains; for `light` see `tactile_depth`."""
+    relative = ratios(frames, gains, config, dark_level, monitor)
+    if light is None:
+        light = LightFilter(Light.of(config))
+    if isinstance(light, LightFilter):
+        pictures = relative.reshape(-1, *relative.shape[-3:])
+        light = np.array([light.take(picture) for picture in pictures]).reshape(*relative.shape[:-3], 3)
+    return Light.of(config).deviations(relative, light[..., None, None, :], monitor)
 
 
 def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
@@ -245,9 +287,11 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     """Return the parameters of the cores from pixels to slopes."""
     quadratic = config.gradient_model == "quadratic"
     if not config.flat_field:
-        return {"FlatField": 0, "Quadratic": 0}
-    flat, capture = flat_field_parameters(config, quadratic), reference_capture_parameters(config)
-    colour = {"FlatField": 1, "Quadratic": int(quadratic), "BlockLog2": flat["BlockLog2"]}
+        return {"FlatField": 0, "Quadratic": 0, "LightGains": 0}
+    output = RATIO if config.light_gains else DEVIATION if quadratic else CODE
+    flat, capture = flat_field_parameters(config, output), reference_capture_parameters(config)
+    colour = {"FlatField": 1, "Quadratic": int(quadratic), "LightGains": int(config.light_gains)}
+    colour["BlockLog2"] = flat["BlockLog2"]
     colour |= {"ColourDrop": flat["Drop"], "GainWidth": flat["GainWidth"], "CaptureLog2": capture["MaxLog2"]}
     return colour | ({"SlopeDrop": gradient_parameters(config)["Drop"]} if quadratic else {})
 

@@ -10,7 +10,8 @@ from cocotb.triggers import RisingEdge
 
 from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.gradient.flat_field import LATENCY, dark_pixels, deviations, flat_codes, unit_gains
+from tactile_depth.configuration import DEVIATION, RATIO
+from tactile_depth.gradient.flat_field import CODE, LATENCY, dark_pixels, deviations, flat_codes, ratios, unit_gains
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.nodes import Grid, Nodes, reads_as_a_pause_ends
@@ -54,8 +55,8 @@ class Field:
     def __init__(self, dut: Any, gap: float = 0.0, pause: float = 0.0) -> None:
         self.dut, self.gap = dut, gap
         self.config = Grid.of(dut, "GainWidth")
-        self.quadratic = bool(parameters(dut, "Offset")[0])
-        self.model = deviations if self.quadratic else flat_codes
+        offset, width = parameters(dut, "Offset", "OutWidth")
+        self.model: Any = deviations if offset else flat_codes if width == CODE.width else ratios
         self.places = raster(self.config.rows, self.config.columns)
         self.frames = max(2, PIXELS // len(self.places))
         self.large = len(self.places) > PIXELS  # so that a large grid gets a few frames only
@@ -63,7 +64,7 @@ class Field:
         self.gains = Gains(dut, self.config, TABLES["reference"], channels=3)
         self.driver = StreamDriver(dut, "in", "valid", PIXEL)
         self.source = StreamMonitor(dut, "in", "valid", PIXEL, unsigned=PIXEL)
-        unsigned = ["position"] if self.quadratic else COLOURS
+        unsigned = ["position"] if self.model is deviations else COLOURS
         self.sink = StreamMonitor(dut, "out", "valid", COLOURS, unsigned=unsigned)
         self.monitor = Monitor()
         self.sent: list[Any] = []
@@ -126,7 +127,7 @@ class Field:
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def at_power_up(dut: Any) -> None:
-    """Use the gains at power-up, those of a reference of 128: codes equal the pixels, deviations are relative to
+    """Use the gains at power-up, those of a reference of 128: codes equal the pixels, the others are relative to
     128."""
     device = Field(dut, 0.0, 0.0)
     await device.start(written=False)
@@ -136,7 +137,9 @@ async def at_power_up(dut: Any) -> None:
     await device.send(level=0, pixels=pixels)
     await device.check()
     (codes,) = device.expected
-    np.testing.assert_array_equal(codes, (pixels.astype(int) - 128) * 32 if device.quadratic else pixels)
+    wide = pixels.astype(int)
+    relative = {flat_codes: wide, deviations: wide - 128 << DEVIATION.fraction - 7, ratios: wide << RATIO.fraction - 7}
+    np.testing.assert_array_equal(codes, relative[device.model])
 
 
 @on_bench(Field, milliseconds=60)

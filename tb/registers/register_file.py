@@ -9,6 +9,7 @@ from typing import Any
 
 from cocotb.triggers import RisingEdge
 
+from tactile_depth.configuration import LIGHT_GAIN_WIDTH
 from tactile_depth.registers.axil_port import LATE_CLOCKS, Response, response, strobed_bits
 from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.registers.event_registers import EVENTS, LEVELS
@@ -19,16 +20,16 @@ from tb.axil import OFFSET
 from tb.registers import axil_pins
 from tb.registers.axil_pins import PortChecker
 
-CONTROL = REGISTERS["CONTROL"]
+CONTROL, LIGHT = REGISTERS["CONTROL"], REGISTERS["LIGHT"]
 INPUTS = (
     *axil_pins.INPUTS,
-    *("s_axil_awprot", "s_axil_arprot", "cold_rst", "events", "levels", "record", "frame_start"),
+    *("s_axil_awprot", "s_axil_arprot", "cold_rst", "events", "levels", "record", "light_gains", "frame_start"),
     *("first_depth_latency", "first_depth_latency_valid", "table_answer", "table_in_use"),
     *(f"{table}_status" for table in CAPTURES),
 )
 PARAMETERS = (
     *("Tridiagonal", "Neumann", "Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
-    *("FlatField", "Quadratic", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
+    *("FlatField", "Quadratic", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
     *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
 )
 
@@ -70,13 +71,14 @@ class Checker(PortChecker):
 
     def live(self) -> Live:
         """Return the inputs that reads and writes of this cycle use."""
-        record = self.pin("record")
+        record, gains = self.pin("record"), self.pin("light_gains")
         return Live(
             **{name: bool(high) for name, high in structs.unpack("levels_t", self.pin("levels")).items()},
             capturing=self.status("busy"),
             ending=self.status("done"),
             in_use=self.pin("table_in_use"),
             record=tuple(record >> 32 * word & WORD for word in range(len(RECORD))),
+            light_gains=tuple(gains >> LIGHT_GAIN_WIDTH * c & (1 << LIGHT_GAIN_WIDTH) - 1 for c in range(3)),
         )
 
     def settings(self) -> dict[str, int]:
@@ -100,6 +102,7 @@ class Checker(PortChecker):
         outputs = axil_pins.expected(port, resets) | self.settings()
         outputs["table_bank"] = model.banks.wanted(starts and not resets)
         command = {"select": model.table, "index": model.values["TABLE_INDEX"], "high": model.values["TABLE_HIGH"]}
+        light = LIGHT.unpack(model.values["LIGHT"])
         log2 = {t: register.unpack(model.values[register.name])["log2_frames"] for t, register in CAPTURES.items()}
 
         # In this order: a table read in the previous cycle, a read, a write.
@@ -114,6 +117,7 @@ class Checker(PortChecker):
             self.asked = next((r.name for r in MAP if r.offset == offset), "")
             answer = answer if is_late else model.read(offset, self.live())
         written, started, refused = len(model.table_writes), len(model.captures), False
+        gains_before = len(model.gains_written)
         if writes is not None and not resets:
             assert port.data is not None
             refused = model.write(writes.offset, *port.data, live=self.live()) != Response.OKAY
@@ -125,6 +129,11 @@ class Checker(PortChecker):
         assert got == command, f"clock {self.clocks}: table_command is {got}, expected {command}"
         if self.low is not None:
             assert low == self.low, f"clock {self.clocks}: table_command.low is {low}, expected {self.low}"
+        got = structs.of(self.dut.light_command, "light_command_t")
+        gain, colours = got.pop("gain"), model.gains_written[gains_before:]
+        light["write"] = sum(1 << colour for colour, _ in colours)
+        assert got == light, f"clock {self.clocks}: light_command is {got}, expected {light}"
+        assert all(gain == written for _, written in colours), f"clock {self.clocks}: gain {gain}, expected {colours}"
         for table in CAPTURES:
             request = {"request": int(model.captures[started:] == [table]), "log2_frames": log2[table]}
             outputs[f"{table}_command"] = structs.pack("capture_command_t", request)
@@ -164,7 +173,7 @@ class Checker(PortChecker):
 class Tables:
     """Tables behind the table bus. The words of an entry arrive at the latest allowed cycle, after other words.
 
-    A table changes its bank `lag` cycles after the frame start.
+    A table changes its bank `lag` cycles after the frame start. Light gains hold what is written.
     """
 
     def __init__(self, dut: Any, lag: int = 0) -> None:
@@ -173,8 +182,14 @@ class Tables:
 
     async def run(self) -> None:
         dut, late, due = self.dut, 0, []
+        gains = [0, 0, 0]
         while True:
             await RisingEdge(dut.clk)
+            light = structs.of(dut.light_command, "light_command_t")
+            if light["write"]:
+                assert light["gain"] is not None
+                gains = [light["gain"] if light["write"] >> c & 1 else gain for c, gain in enumerate(gains)]
+                dut.light_gains.value = sum(gain << LIGHT_GAIN_WIDTH * c for c, gain in enumerate(gains))
             command = structs.of(dut.table_command, "table_command_t")
             if command["read"]:
                 assert command["select"] is not None

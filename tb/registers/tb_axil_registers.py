@@ -14,7 +14,7 @@ import cocotb
 from cocotb.triggers import ClockCycles, RisingEdge, gather
 
 from tactile_depth.registers.axil_port import BYTES, Response, strobed_bits
-from tactile_depth.registers.axil_registers import RECORD, Build
+from tactile_depth.registers.axil_registers import GAINS, RECORD, Build
 from tactile_depth.registers.event_registers import COUNTERS, EVENT_COUNTERS, EVENTS, INTERRUPT_STATUS, STATUS
 from tactile_depth.registers.register_map import ADDRESS_WIDTH, MAP, REGISTERS, TABLES, WORD
 from tactile_depth.registers.setting_registers import SETTINGS
@@ -76,6 +76,8 @@ async def access(checker: Checker, dut: Any, register: Any) -> None:
     held = register.mask("rw")
     if register.name == "TABLE_INDEX":
         held = (1 << checker.model.access.index_width) - 1
+    if register.name in GAINS and not build.parameters["LightGains"]:
+        held = 0
     await everything_happens(dut)
     before = await value_of(dut, register.name)
     if not register.writable:

@@ -32,7 +32,7 @@ from tb.tactile_depth.contact_watch import RECORD, ContactWatch
 from tb.tactile_depth.device_tables import Content, DeviceTables
 from tb.tactile_depth.scoreboard import STATUS, Checked, Scoreboard
 
-CONTROL, COMMIT = REGISTERS["CONTROL"], REGISTERS["TABLE_COMMIT"]
+CONTROL, COMMIT, LIGHT = REGISTERS["CONTROL"], REGISTERS["TABLE_COMMIT"], REGISTERS["LIGHT"]
 HEAD_CLOCKS = 2  # cycles from a pixel at the pins to the same pixel at the head of the pipeline
 SKID_WORDS = 2  # beats that a stalled output holds
 FLAT = (135, 135, 135)  # a colour without contact
@@ -157,6 +157,12 @@ class Pipeline:
         """Return the expected depth codes (frames, rows, columns) of whole frames."""
         words = [[word.data for word in frame if word is not None] for frame in frames]
         return self.scoreboard.model(words, self.tables.content)[0]
+
+    async def hold_light(self) -> None:
+        """Hold the light gains as they are, in a build with light gains."""
+        if self.scoreboard.light is not None:
+            await self.write("LIGHT", LIGHT.pack(follow=0))
+            self.scoreboard.light.follow = False
 
     # Traffic.
 

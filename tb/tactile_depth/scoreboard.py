@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -13,6 +14,8 @@ import numpy as np
 from tactile_depth.built_in import synthetic
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tactile_depth.gradient.flat_field import ratios
+from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.latency import last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.register_map import REGISTERS
@@ -65,6 +68,8 @@ class Scoreboard:
         Expected value of FIRST_DEPTH_LATENCY, as measured at the pins.
     dark_level : int
         Value of the register that the next frames use.
+    light : LightFilter or None
+        Light gains of the next frame, and how they follow; None in a build without.
     """
 
     def __init__(self, config: Configuration, watch: ContactWatch) -> None:
@@ -79,24 +84,45 @@ class Scoreboard:
         self.counters = dict.fromkeys(COUNTERS, 0)
         self.sticky: set[str] = set()
         self.latency = self.dark_level = 0
+        self.light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
 
-    def before_the_zero(self, words: Any, content: Content, monitor: Monitor | None = None) -> np.ndarray:
-        """Return the depth codes (frames, rows, columns) of pixel words before the zero offset is subtracted."""
+    def light_of(self, words: Any, content: Content, light: LightFilter | None, bad: bool = False) -> np.ndarray | None:
+        """Return the light gains, int64 (3,), of a frame of pixel words, and move them in `light`; None without."""
+        if light is None:
+            return None
+        assert content.slopes.gains is not None
+        rgb = unpack(words).reshape(self.rows, self.columns, 3)
+        return light.take(ratios(rgb, content.slopes.gains, self.config, self.dark_level), bad)
+
+    def before_the_zero(
+        self, words: Any, content: Content, monitor: Monitor | None = None, light: Any = None
+    ) -> np.ndarray:
+        """Return the depth codes (frames, rows, columns) of pixel words before the zero offset is subtracted.
+
+        `light` are their light gains (frames, 3), by default those of a filter at reset.
+        """
         rgb = unpack(words).reshape(-1, self.rows, self.columns, 3)
-        slopes = slope_codes(rgb, self.sensor, self.config, monitor, None, self.dark_level, content.slopes)
+        slopes = slope_codes(rgb, self.sensor, self.config, monitor, None, self.dark_level, content.slopes, light)
         return solve(divergence(slopes, self.config.neumann), self.config, monitor)
 
-    def model(self, words: Any, contents: Content | Sequence[Content]) -> tuple[np.ndarray, int]:
+    def model(
+        self, words: Any, contents: Content | Sequence[Content], lights: Sequence[Any] | None = None
+    ) -> tuple[np.ndarray, int]:
         """Return the depth codes (frames, rows, columns) of pixel words, and the number of values clipped.
 
-        `contents` is the content of the tables, one for all frames or one for each.
+        `contents` is the content of the tables, one for all frames or one for each. `lights` are the light gains of
+        each frame, by default those after a reset.
         """
         monitor = Monitor()
         each = [contents] * len(words) if isinstance(contents, Content) else contents
+        if lights is None:
+            light = None if self.light is None else LightFilter(self.light.light)
+            lights = [self.light_of(frame, content, light) for frame, content in zip(words, each, strict=True)]
         codes = [np.zeros((0, self.rows, self.columns), np.int64)]
-        for _, alike in groupby(zip(words, each, strict=True), key=lambda pair: id(pair[1])):
-            some, (content, *_) = zip(*alike, strict=True)
-            codes.append(zeroed(self.before_the_zero(some, content, monitor), self.config, monitor, content.zero))
+        for _, alike in groupby(zip(words, each, lights, strict=True), key=lambda frame: id(frame[1])):
+            some, (content, *_), gains = zip(*alike, strict=True)
+            before = self.before_the_zero(some, content, monitor, None if self.light is None else np.array(gains))
+            codes.append(zeroed(before, self.config, monitor, content.zero))
         return np.concatenate(codes), monitor.saturations.total()
 
     def frames(self, into: AxisMonitor, timeout: int) -> tuple[list[Frame], list[str]]:
@@ -125,14 +151,18 @@ class Scoreboard:
         """
         frames, _ = self.frames(into, timeout)
         left = iter(self.depth(out, sum(not frame.bad for frame in frames)))
-        chosen = []
+        chosen, light = [], copy(self.light)
         for frame, contents in zip(frames, candidates, strict=True):
             if not frame.bad:
                 depth = next(left)
                 if len(contents) > 1:
-                    models = ((content, self.model([frame.pixels], content)[0][0]) for content in contents)
-                    matching = [content for content, codes in models if np.array_equal(codes, depth)]
+                    matching = []
+                    for content in contents:
+                        gains = self.light_of(frame.pixels, content, copy(light))
+                        codes, _ = self.model([frame.pixels], content, [gains])
+                        matching += [content] if np.array_equal(codes[0], depth) else []
                     contents = matching or contents
+            self.light_of(frame.pixels, contents[0], light, frame.bad)
             chosen.append(contents[0])
         return chosen
 
@@ -145,7 +175,9 @@ class Scoreboard:
         it, and to the last depth of each frame of which no beat waited.
         """
         frames, faults = self.frames(into, timeout)
-        expected, clipped = self.model([frame.pixels for frame in frames], contents)
+        each = [contents] * len(frames) if isinstance(contents, Content) else contents
+        lights = [self.light_of(f.pixels, content, self.light, f.bad) for f, content in zip(frames, each, strict=True)]
+        expected, clipped = self.model([frame.pixels for frame in frames], each, lights)
         good = [index for index, frame in enumerate(frames) if not frame.bad]
         codes = self.depth(out, len(good))
         check_maps(codes, expected[good])

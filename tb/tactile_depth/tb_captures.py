@@ -73,6 +73,7 @@ async def zero(dut: Any) -> None:
     """
     pipeline = await started(dut, offers="random")
     tables, into = pipeline.tables, pipeline.into
+    await pipeline.hold_light()
     assert await pipeline.write("ZERO_CAPTURE", ZERO_CAPTURE.pack(start=1, log2_frames=1)) == Response.OKAY
     frames = [pipeline.pressed(slope) for slope in (0.25, 0.125, -0.25)]
     late = 3 + first_depth_latency(pipeline.config) // pipeline.pixels
@@ -92,7 +93,8 @@ async def zero(dut: Any) -> None:
     assert not await pipeline.read("TABLE_COMMIT")
 
     def measured(*words: Any) -> Any:
-        codes = pipeline.scoreboard.before_the_zero([[word.data for word in some] for some in words], tables.content)
+        frames = [[word.data for word in some] for some in words]
+        codes = pipeline.scoreboard.before_the_zero(frames, tables.content, light=pipeline.scoreboard.light)
         return one_word(captured_zero(codes, pipeline.config))
 
     old = tables.content

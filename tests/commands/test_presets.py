@@ -126,7 +126,7 @@ def test_the_module_of_a_reference_is_that_of_the_python_package(tmp_path: Path)
     command = [sys.executable, "-m", "commands", "wrap", *words]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=True)
     assert result.stdout.startswith(
-        "preset sensor: tridiagonal, neumann, 96 x 128, quadratic, flat field, zero offset\n"
+        "preset sensor: tridiagonal, neumann, 96 x 128, quadratic, flat field, zero offset, light gains\n"
     )
     with pytest.warns(InputWarning):
         pipeline = Pipeline(load("gelsight-mini"), reference=picture)

@@ -9,12 +9,14 @@ import pytest
 from formal.entries import ROUNDING, WORD_FREE, Proof
 from formal.tables import gain_rom
 from tactile_depth.common.td_node_map import node_map
-from tactile_depth.configuration import DEVIATION, Configuration, Format
+from tactile_depth.configuration import DEVIATION, RATIO, Configuration, Format
 from tactile_depth.gradient.flat_field import (
+    CODE,
     captured_gains,
     deviations,
     flat_codes,
     flat_field_parameters,
+    ratios,
     unit_gains,
 )
 from tactile_depth.rom_files import write_gains
@@ -23,24 +25,25 @@ from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 
 
-def built(columns: int, rows: int, block_log2: int, quadratic: Any, gain_width: int, **runs: Any) -> Structure:
+def built(columns: int, rows: int, block_log2: int, output: Format, gain_width: int, **runs: Any) -> Structure:
     config = Grid(rows, columns, block_log2, Format(gain_width, 0))
     return Structure(
-        flat_field_parameters(config, quadratic),  # type: ignore[arg-type]
+        flat_field_parameters(config, output),  # type: ignore[arg-type]
         roms=lambda folder: write_gains(folder, unit_gains(config), gain_width),  # type: ignore[arg-type]
         **runs,
     )
 
 
 STRUCTURES = (
-    built(16, 11, 2, False, 24, on=VERILATOR, mutants=True),
-    built(16, 8, 1, True, 17, on=ICARUS, late=VERILATOR),
-    built(16, 11, 2, True, 24, mutants=True),
-    built(32, 21, 1, False, 24),
-    built(128, 8, 3, False, 24),
-    built(64, 64, 2, True, 24),
-    built(16, 8, 1, True, 16),
-    built(128, 8, 3, True, 17),
+    built(16, 11, 2, CODE, 24, on=VERILATOR, mutants=True),
+    built(16, 8, 1, DEVIATION, 17, on=ICARUS, late=VERILATOR),
+    built(16, 11, 2, DEVIATION, 24, mutants=True),
+    built(32, 21, 1, CODE, 24),
+    built(128, 8, 3, CODE, 24),
+    built(64, 64, 2, DEVIATION, 24),
+    built(16, 8, 1, RATIO, 17, mutants=True),
+    built(16, 8, 1, DEVIATION, 16),
+    built(128, 8, 3, DEVIATION, 17),
 )
 REFUSED = {
     "Offset=1": "Offset_must_be_even_it_is_subtracted_before_rounding_to_even",
@@ -86,6 +89,8 @@ def test_gains_at_power_up_leave_pixels_as_they_are() -> None:
     np.testing.assert_array_equal(flat_codes(frames, unit_gains(CONFIG), CONFIG), frames)
     relative = frames.astype(int) - 128 << (DEVIATION.fraction - 7)
     np.testing.assert_array_equal(deviations(frames, unit_gains(CONFIG), CONFIG), relative)
+    wide = frames.astype(int) << (RATIO.fraction - 7)
+    np.testing.assert_array_equal(ratios(frames, unit_gains(CONFIG), CONFIG), wide)
 
 
 def test_interpolation_is_linear_between_the_centres_of_blocks() -> None:

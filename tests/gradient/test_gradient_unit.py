@@ -3,7 +3,8 @@
 
 REFUSED = {
     "Quadratic=1": "Quadratic_needs_FlatField",
-    "FlatField=2": "FlatField_and_Quadratic_are_0_or_1",
+    "FlatField=2": "FlatField_Quadratic_and_LightGains_are_0_or_1",
+    "LightGains=1": "LightGains_need_Quadratic",
     "BitsPerChannel=0": "BitsPerChannel_must_be_1_to_8",
     "FlatField=1 GainWidth=33": "GainWidth_must_be_2_to_32",
     "FlatField=1 ColourDrop=100": "Drop_must_leave_a_bit_of_the_input",

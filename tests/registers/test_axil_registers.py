@@ -26,6 +26,7 @@ EXTREMES = default_parameters() | {
     "BitsPerChannel": 1,
     "FlatField": 1,
     "Quadratic": 0,
+    "LightGains": 1,
     "ZeroOffset": 1,
     "Lanes": 32,
     "BlockLog2": 0,

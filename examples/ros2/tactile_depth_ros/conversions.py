@@ -84,18 +84,20 @@ def points(result: Result) -> dict[str, Any]:
 
 
 def contact(result: Result) -> list[float]:
-    """Return the contact record as numbers in the order of `CONTACT_FIELDS`; positions are NaN without contact."""
-    record, pitch = result.contact, result.pixel_pitch_mm * M_PER_MM
-    nowhere = (math.nan, math.nan)
-    peak_row, peak_column = record.peak_px if record.touching else nowhere
-    row, column = record.centroid_px if record.touching else nowhere
+    """Return the contact record as numbers in the order of `CONTACT_FIELDS`.
+
+    Positions count from the upper left corner of the picture; they are NaN without contact.
+    """
+    record, nowhere = result.contact, (math.nan, math.nan)
+    peak_row, peak_column = record.peak_position_mm or nowhere
+    row, column = record.centroid_mm or nowhere
     return [
         float(record.touching),
         record.peak_mm * M_PER_MM,
-        peak_column * pitch,
-        peak_row * pitch,
+        peak_column * M_PER_MM,
+        peak_row * M_PER_MM,
         record.area_mm2 * M_PER_MM**2,
         record.volume_mm3 * M_PER_MM**3,
-        column * pitch,
-        row * pitch,
+        column * M_PER_MM,
+        row * M_PER_MM,
     ]

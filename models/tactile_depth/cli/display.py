@@ -49,7 +49,7 @@ class Display(AbstractContextManager["Display"]):
 
         camera                the picture as sent, JPEG
         height                height_mm, float32
-        surface               a mesh in mm: x to the right, y up the picture, z the height
+        surface               a mesh in mm: x to the right, y up the picture from its upper left corner, z the height
         contact/touching      0 or 1
         contact/peak_mm, contact/area_mm2
         contact/centroid_mm   x and y as in `surface`; NaN without contact
@@ -127,8 +127,8 @@ class Display(AbstractContextManager["Display"]):
                 vertex_colors=colours(height, *depth_range).reshape(-1, 3),
             ),
         )
-        row, column = contact.centroid_px if contact.touching else (math.nan, math.nan)
-        centroid = [column * result.pixel_pitch_mm, -row * result.pixel_pitch_mm]
+        row, column = contact.centroid_mm or (math.nan, math.nan)
+        centroid = [column, -row]
         stream.log("contact/touching", rerun.Scalars(float(contact.touching)))
         stream.log("contact/peak_mm", rerun.Scalars(contact.peak_mm))
         stream.log("contact/area_mm2", rerun.Scalars(contact.area_mm2))

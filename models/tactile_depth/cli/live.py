@@ -123,13 +123,13 @@ def processed(frames: Iterator[Frame | None], pipeline: Pipeline, counts: Counts
     InputError
         The first frame cannot be processed. Later ones are counted as failed.
     """
-    is_first = True
+    is_first, light = True, pipeline.light_filter()
     for frame in frames:
         if frame is None:
             yield None
             continue
         try:
-            result = pipeline(frame.image)
+            result = pipeline(frame.image, light)
         except InputError as error:
             if is_first:
                 raise

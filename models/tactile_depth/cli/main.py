@@ -33,6 +33,7 @@ OPTIONS = {
     "folder": "--out {}",
     "gradient_model": "--model {}",
     "grid": "--grid {}",
+    "light_gains": "--no-light-gains",
     "reference": "--reference {}",
     "rows": "--grid ..x{}",
     "threshold_mm": "--threshold-mm {}",

@@ -51,6 +51,9 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-zero-offset", action="store_true", help="keep what depth reads without contact, do not subtract it"
     )
+    parser.add_argument(
+        "--no-light-gains", action="store_true", help="take the light of the pictures to be that of the reference"
+    )
 
 
 def read_reference(path: str) -> np.ndarray:
@@ -89,6 +92,7 @@ def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.nda
         grid=options.grid,
         model=options.model,
         zero_offset=not options.no_zero_offset,
+        light_gains=False if options.no_light_gains else None,
         arithmetic=options.arithmetic,
         threshold_mm=options.threshold_mm,
     )

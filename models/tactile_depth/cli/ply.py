@@ -9,7 +9,11 @@ import numpy as np
 
 
 def vertices_mm(height_mm: np.ndarray, pixel_pitch_mm: float) -> np.ndarray:
-    """Return the points of a surface, float32 (rows * columns, 3): x to the right, y up the picture, z the height."""
+    """Return the points of a surface, float32 (rows * columns, 3): x to the right, y up the picture, z the height.
+
+    x and y count from the upper left corner of the picture: depth (i, j) lies half a pixel up and to the left of the
+    centre of pixel (i, j).
+    """
     rows, columns = height_mm.shape
     y, x = np.mgrid[:rows, :columns].astype(np.float32) * np.float32(pixel_pitch_mm)
     return np.stack([x, -y, height_mm.astype(np.float32)], axis=-1).reshape(-1, 3)

@@ -8,11 +8,12 @@ visible error. A pixel takes one multiplication for each colour and no division.
     pixel       8 bits unsigned
     gain        unsigned, 2**(W + 3) / reference in a word of W bits, by default 24; at the nodes, and at the pixels
     code        8 bits unsigned, 128 I / ref, for the table: 128 equals the reference, saturated at 255
-    deviation   14 bits signed, 12 fraction bits, I / ref - 1, for the quadratic model, saturated at 2
+    deviation   17 bits signed, 15 fraction bits, I / ref - 1, for the quadratic model, saturated at 2
+    ratio       17 bits unsigned, 15 fraction bits, I / ref, for the light gains, saturated at 4
 
 A pixel is dark where all its colours are below `dark_level` (0: no pixel is), or where the reference of any colour is
 below 16 grey levels, which sets the top bit of its gain. The output of a dark pixel repeats the output of the pixel
-before it in its row; a dark first pixel of a row reads flat. Every dark pixel is counted.
+before it in its row; a dark first pixel of a row reads flat, or as ratios of 0. Every dark pixel is counted.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from tactile_depth.common import td_node_map
 from tactile_depth.common.td_block_sum import block_sum
 from tactile_depth.common.td_node_map import node_map
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, Configuration
+from tactile_depth.configuration import DARKEST_LOG2, DEVIATION, RATIO, Configuration, Format
 from tactile_depth.errors import Argument, InputError, Part
 from tactile_depth.sensor import Sensor
 
@@ -33,6 +34,8 @@ LATENCY = td_node_map.latency(1, 1) + 3
 
 FLAT_CODE = 128
 CODE_WIDTH = 8
+CODE = Format(CODE_WIDTH, FLAT_CODE.bit_length() - 1)
+"""Format of a code, unsigned."""
 REFERENCE = Argument("reference")
 
 
@@ -46,18 +49,17 @@ def unit_gains(config: Configuration) -> np.ndarray:
     return np.full((*config.reference_nodes, 3), (1 << config.gain_fraction) // FLAT_CODE, np.int64)
 
 
-def flat_field_parameters(config: Configuration, quadratic: bool) -> dict[str, int]:
-    """Parameters of hdl/gradient/flat_field.sv: deviations for the quadratic model, else codes for the table."""
-    fraction = DEVIATION.fraction if quadratic else FLAT_CODE.bit_length() - 1
+def flat_field_parameters(config: Configuration, output: Format) -> dict[str, int]:
+    """Parameters of hdl/gradient/flat_field.sv, whose output is `CODE`, `DEVIATION` or `RATIO`."""
     return {
         "Rows": config.rows,
         "Columns": config.columns,
         "BlockLog2": config.reference_block_log2,
         "GainWidth": config.gain_width,
-        "Drop": config.gain_fraction - fraction,
-        "Offset": 1 << fraction if quadratic else 0,
-        "OutWidth": DEVIATION.width if quadratic else CODE_WIDTH,
-        "Flat": 0 if quadratic else FLAT_CODE,
+        "Drop": config.gain_fraction - output.fraction,
+        "Offset": 1 << output.fraction if output == DEVIATION else 0,
+        "OutWidth": output.width,
+        "Flat": FLAT_CODE if output == CODE else 0,
     }
 
 
@@ -136,7 +138,7 @@ def _at_pixels(gains: np.ndarray | PixelGains, config: Configuration) -> PixelGa
     return gains if isinstance(gains, PixelGains) else pixel_gains(gains, config)
 
 
-# The two functions below take the gains of the nodes (node rows, node columns, 3) or the result of `pixel_gains`.
+# The functions below take the gains of the nodes (node rows, node columns, 3) or the result of `pixel_gains`.
 
 
 def flat_codes(
@@ -147,14 +149,37 @@ def flat_codes(
     monitor: Monitor | None = None,
 ) -> np.ndarray:
     """Return the codes 128 I / ref of frames: uint8 (..., rows, columns, 3) to uint8 of the same shape."""
+    return _relative(frames, gains, config, dark_level, monitor, CODE, FLAT_CODE).astype(np.uint8)
+
+
+def ratios(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int = 0,
+    monitor: Monitor | None = None,
+) -> np.ndarray:
+    """Return the codes of I / ref, `RATIO`, of frames: uint8 (..., rows, columns, 3) to int64, same shape."""
+    return _relative(frames, gains, config, dark_level, monitor, RATIO, 0)
+
+
+def _relative(
+    frames: np.ndarray,
+    gains: np.ndarray | PixelGains,
+    config: Configuration,
+    dark_level: int,
+    monitor: Monitor | None,
+    output: Format,
+    flat: int,
+) -> np.ndarray:
+    """Return unsigned codes of I / ref."""
     gains = _at_pixels(gains, config)
-    ratio = frames * gains.gains
-    code = round_half_even(ratio, config.gain_fraction - (FLAT_CODE.bit_length() - 1))
+    code = round_half_even(frames * gains.gains, config.gain_fraction - output.fraction)
     dark = dark_pixels(frames, gains, config, dark_level)
-    largest = (1 << CODE_WIDTH) - 1
+    largest = (1 << output.width) - 1
     if monitor is not None:
         monitor.clipped("flat_field", int(np.count_nonzero((code > largest) & ~dark[..., None])))
-    return hold_dark(np.minimum(code, largest), dark, FLAT_CODE).astype(np.uint8)
+    return hold_dark(np.minimum(code, largest), dark, flat)
 
 
 def deviations(

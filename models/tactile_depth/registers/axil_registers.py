@@ -22,6 +22,7 @@ from tactile_depth.sensor import COEFFICIENTS
 
 BY_OFFSET = {register.offset: register for register in MAP}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")
+GAINS = tuple(name for name in REGISTERS if name.startswith("LIGHT_GAIN_"))  # of red, green, blue
 RECORD = tuple(name for name in REGISTERS if name.startswith("RECORD_"))  # in the order of the words
 
 
@@ -76,6 +77,7 @@ class Build:
                 gradient_model=p["Quadratic"],
                 flat_field=p["FlatField"],
                 zero_offset=p["ZeroOffset"],
+                light_gains=p["LightGains"],
                 lanes=p["Lanes"],
                 gain_width=p["GainWidth"] if p["FlatField"] else 0,
             ),
@@ -121,6 +123,8 @@ class Live:
         Tables with a capture in progress, and those in the last cycle of their capture.
     record : tuple of int
         Words of the contact record.
+    light_gains : tuple of int
+        Gains of red, green, blue.
     """
 
     busy: bool = False
@@ -130,6 +134,7 @@ class Live:
     capturing: frozenset[str] = frozenset()
     ending: frozenset[str] = frozenset()
     record: tuple[int, ...] = (0,) * len(RECORD)
+    light_gains: tuple[int, ...] = (0,) * len(GAINS)
 
 
 @dataclass
@@ -144,6 +149,8 @@ class AxilRegisters:
         All entries written since the start.
     captures : list of str
         Tables whose capture was requested since the start, in order.
+    gains_written : list of (colour, gain)
+        All light gains written since the start.
     entry : callable
         Function from table and index to the words (high, low) of the entry.
     """
@@ -153,6 +160,7 @@ class AxilRegisters:
     values: dict[str, int] = field(default_factory=dict)
     table_writes: list[tuple[int, int, int, int]] = field(default_factory=list)
     captures: list[str] = field(default_factory=list)
+    gains_written: list[tuple[int, int]] = field(default_factory=list)
     _arrived: Events = Events()
     _mask: int = 0
 
@@ -198,6 +206,7 @@ class AxilRegisters:
             **{capture.name: capture.pack(busy=int(table in live.capturing)) for table, capture in CAPTURES.items()},
             COMMIT.name: self.banks.pending(live.in_use),
             SIZE: self.access.sizes.get(self.table, 0),
+            **(dict(zip(GAINS, live.light_gains, strict=True)) if self.build.parameters["LightGains"] else {}),
         }
         return self.values[register.name] | shown.get(register.name, 0), Response.OKAY
 
@@ -216,6 +225,10 @@ class AxilRegisters:
         self.table_writes += [entry] if entry else []
         self.captures += [capture] if capture else []
         self.banks.write(name, ones, live.in_use, live.capturing)
+        if name in GAINS:
+            colour = GAINS.index(name)
+            gain = (ones | live.light_gains[colour] & ~mask) & REGISTERS[name].mask()
+            self.gains_written.append((colour, gain))
         self.settings.write(name, ones, mask)
         self.events.write(name, ones)
         return Response.OKAY

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Light gains on the real presses: another light changes neither heights nor areas, and tilts no untouched gel."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tactile_depth as td
+from tactile_depth.frames import read_stack
+from tactile_depth.press_folder import read_presses
+from tactile_depth.presses import GridPress
+from tests.ball_presses import real_folder
+
+LIGHTS = ((0.8,) * 3, (0.9,) * 3, (0.95,) * 3, (1.05,) * 3, (1.1,) * 3, (1.05, 1.0, 0.95), (0.95, 1.0, 1.05))
+UNTOUCHED = 2.5  # contact radii from the centre
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Recovered over true height of the cap, area in mm2; RMS and largest value of the untouched gel, mean 0, in mm."""
+
+    cap: float
+    area: float
+    rms: float
+    largest: float
+
+
+@pytest.fixture(scope="module")
+def real() -> Any:
+    return real_folder()
+
+
+@pytest.fixture(scope="module")
+def presses(real: Any) -> list[Any]:
+    return read_presses(real)[0]
+
+
+def in_light(image: Any, light: Any) -> np.ndarray:
+    return np.rint(read_stack(image)[0] * np.array(light)).clip(0, 255).astype(np.uint8)
+
+
+def measured(pipeline: td.Pipeline, press: Any, result: td.Result) -> Measured:
+    rows, columns = pipeline.grid
+    scale = pipeline.sensor.camera.columns / columns  # type: ignore[union-attr]
+    first = np.array([0.5, 0.5, 0])  # centre of the first pixel
+    x, y, radius = (np.array(press.circle) + first) / scale - first
+    ball = GridPress(press.name, x, y, radius, press.ball_radius_px / scale)
+    down, along = np.indices((rows, columns))
+    untouched = result.depth_mm[np.hypot(down + 0.5 - y, along + 0.5 - x) > UNTOUCHED * radius]
+    untouched = untouched - untouched.mean()
+    height = ball.recovered(result.height_mm / pipeline.pixel_pitch_mm)
+    return Measured(height, result.contact.area_mm2, untouched.std(), np.abs(untouched).max())
+
+
+def mean(values: list[Measured], name: str) -> np.ndarray:
+    return np.array([getattr(value, name) for value in values])
+
+
+@pytest.fixture(scope="module")
+def pipeline(real: Any) -> td.Pipeline:
+    return td.Pipeline(td.load("gelsight-mini"), real / "background.png")
+
+
+def test_another_light_changes_no_press(pipeline: td.Pipeline, presses: Any) -> None:
+    """Measured: caps within 0.03 % on average, 1.6 % at worst, areas within 0.05 %."""
+    same = [measured(pipeline, press, pipeline(press.image)) for press in presses]
+    for light in LIGHTS:
+        values = [measured(pipeline, press, pipeline(in_light(press.image, light))) for press in presses]
+        caps = mean(values, "cap") / mean(same, "cap")
+        assert abs(caps.mean() - 1) < 0.001, light
+        assert np.abs(caps - 1).max() < 0.02, light
+        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.001), light
+
+
+def test_light_gains_take_the_tilt_off_untouched_gel(real: Any, pipeline: td.Pipeline, presses: Any) -> None:
+    """Measured: 0.0224 mm RMS and 0.122 mm at most, mean over presses; without light gains 0.048 and 0.157 mm."""
+    without = td.Pipeline(td.load("gelsight-mini"), real / "background.png", light_gains=False)
+    tilted, level = ([measured(each, press, each(press.image)) for press in presses] for each in (without, pipeline))
+    assert mean(level, "rms").mean() < 0.023
+    assert mean(level, "largest").mean() < 0.125
+    assert mean(level, "rms").mean() < 0.5 * mean(tilted, "rms").mean()
+
+
+@pytest.mark.parametrize(("light", "frames"), [(0.9, 2), (0.95, 2), (1.05, 2), (1.1, 2), (0.8, 4), (1.2, 4)])
+def test_a_step_of_the_light_is_followed_under_a_contact(
+    pipeline: td.Pipeline, presses: Any, light: float, frames: int
+) -> None:
+    """Caps are back within 3 % after two frames of the new light, or four beyond 10 %."""
+    ratios = []
+    for press in presses[::5]:
+        image, lit = read_stack(press.image)[0], in_light(press.image, light)
+        *_, before = pipeline.stream([image] * 6)
+        *_, after = pipeline.stream([*[image] * 6, *[lit] * frames, lit])
+        caps = [measured(pipeline, press, result).cap for result in (before, after)]
+        ratios.append(caps[1] / caps[0])
+    assert np.abs(np.array(ratios) - 1).max() < 0.03, ratios
+    assert np.mean(ratios) == pytest.approx(1, abs=0.015)
