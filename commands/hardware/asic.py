@@ -252,14 +252,15 @@ def measure(request: run_request.Request, options: Options, work: Path) -> dict[
     """Return the report of a configuration."""
     frames, calibration, config = synthesis.design(request)
     library, period_ns = options.library, 1000 / options.clock_mhz
-    codes = tactile_depth(frames.pixels[:1], calibration, config)
-    middle = codes.size // 2
+    size = config.rows * config.columns
+    middle, count = size // 2, first_depth_latency(config) // size + 2
+    codes = tactile_depth(np.repeat(frames.pixels[:1], count, axis=0), calibration, config)  # light gains may move
     stimulus = Stimulus(
         bench.frame_entries(frames.pixels[:1]) & 0xFFFFFF,
         codes,
         config.columns,
-        frames=first_depth_latency(config) // codes.size + 2,
-        window=range(middle, min(middle + WINDOW_CLOCKS, codes.size)),
+        frames=count,
+        window=range(middle, min(middle + WINDOW_CLOCKS, size)),
     )
     with tqdm(total=3, unit="step", desc="synthesis", leave=False, disable=None) as bar:
         reading = synthesis.read(work, config, calibration=calibration, options="--keep-hierarchy")

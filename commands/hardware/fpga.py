@@ -361,6 +361,7 @@ def run(request: Request, command: str) -> int:
     frames, _, config = synthesis.design(design)  # refuses bad input before anything is made
     camera_of(request, frames.camera)
     colours = f"-{config.gradient_model}-g{config.gain_width}" if config.flat_field else ""
+    colours += "-light" if config.light_gains else ""
     colours += "-zero" if config.zero_offset else ""
     colours += f"-{request.sensor.name}" if request.sensor else ""
     lanes = f"-{config.lanes}lanes" if config.lanes > 1 else ""

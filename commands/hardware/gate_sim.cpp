@@ -196,7 +196,7 @@ int main() {
     for (const auto& gate : d.logic) set(gate.out, evaluate(gate, value));
 
     if (!reset) {
-      if (value[d.depth_valid]) wrong += number(d.depth, value) != static_cast<uint32_t>(d.codes[received++ % size]);
+      if (value[d.depth_valid]) wrong += number(d.depth, value) != static_cast<uint32_t>(d.codes[received++ % d.codes.size()]);
       if (clock_of_last >= 0) {
         clock_of_last++;
       } else if (sent >= (d.frames - 1) * size) {  // the last frame begins: count from here

@@ -39,8 +39,8 @@ class Macro:
 class Stimulus:
     """A frame that enters `frames` times without a pause.
 
-    `pixels` are words of s_axis_tdata, `codes` the depth codes in the order in which they leave, and `window` the
-    clocks of the last frame, from 1, that are simulated with delays too.
+    `pixels` are words of s_axis_tdata, `codes` the depth codes in the order in which they leave (of one frame, if all
+    are equal), and `window` the clocks of the last frame, from 1, that are simulated with delays too.
     """
 
     pixels: np.ndarray

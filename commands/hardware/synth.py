@@ -45,7 +45,7 @@ SOLVER = "u_poisson.u_solver"
 CAMERA_UNIT, CAMERA_PATH = "camera_unit", "u_camera"
 CONFIGURING = (
     *("PRESET", "N", "ROWS", "COLS", "SOLVER", "BOUNDARY", "LANES", "DATA_WIDTH", "COEFF_WIDTH", "GAIN_WIDTH"),
-    *("DEPTH_RANGE", "REFERENCE", "ZERO"),
+    *("DEPTH_RANGE", "REFERENCE", "ZERO", "LIGHT_GAINS"),
     *("GRADIENT", "CALIBRATION", "CAMERA_SIZE", "CONFIG"),
 )
 RESOURCES = ("DSP48E2", "BRAM36", "UltraRAM", "LUT", "FF")
