@@ -188,7 +188,11 @@ class StreamMonitor(BusMonitor):
                 continue
             clock += 1
             frame_start = frame_pin is not None and bool(int(frame_pin.value))
-            if int(qualifier.value):
+            present = qualifier.value
+            assert present.is_resolvable, (
+                f"{qualifier._name} is {present}: is it reset, and is every driver made before Bench.start?"
+            )
+            if int(present):
                 assert left == 0, f"burst cut short at clock {clock}"
                 self.starts.append(clock)
                 self.frame_starts.append(frame_start)

@@ -264,6 +264,14 @@ def main() -> None:
             sys.exit(prove(proofs))
 
 
+def first_error(folder: Path) -> str:
+    """Return the first error of Yosys on a bench that it does not read, with file and line; empty if it reads it."""
+    for log in sorted(folder.glob("*/model/design.log")):
+        if error := re.search(r"^\S+:\d+: ERROR: .+", log.read_text(), re.MULTILINE):
+            return error[0]
+    return ""
+
+
 def prove(proofs: Sequence[Proof | Cone]) -> int:
     """Run proofs and print their table; return the exit status."""
     begun = time.monotonic()
@@ -278,4 +286,6 @@ def prove(proofs: Sequence[Proof | Cone]) -> int:
     print(f"\nformal: {len(proofs) - len(failed)} of {len(proofs)} proven in {time.monotonic() - begun:.0f} s")
     for name in failed:
         print(f"not proven: {name}, see {(BUILD / name).relative_to(ROOT)}")
+        if error := first_error(BUILD / name):
+            print(f"  {error}")
     return variables.MISMATCH if failed else variables.EQUAL

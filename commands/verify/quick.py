@@ -57,7 +57,10 @@ def affected(names: Iterable[str]) -> Affected:
     owner = {
         str(file.relative_to(ROOT)): core.name
         for core in repository.cores().values()
-        for file in (core.hdl, core.model, *core.benches, *core.bench_folder.glob("*.py"), core.test, core.proof)
+        for file in (
+            *(core.hdl, core.model, *core.benches, *core.bench_folder.glob("*.py"), core.test, core.proof),
+            ROOT / "formal" / core.block / f"protocol_{core.name}.sv",
+        )
         if file
     }
     cores, tests, shared = set(), set(), []

@@ -54,7 +54,11 @@ def record(core: str, kind: str, figures: Mapping[str, int]) -> None:
     """Write a result of a core whose RTL is committed, unless the file has one of more mutants on the same RTL."""
     file = repository.cores()[core].hdl
     commit = git("rev-parse", "--short=7", "HEAD")
-    if commit is None or git("diff", "--quiet", "HEAD", "--", str(file)) is None:
+    if commit is None:
+        return
+    tracked = git("ls-files", "--error-unmatch", "--", str(file))
+    if tracked is None or git("diff", "--quiet", "HEAD", "--", str(file)) is None:
+        print(f"no result is recorded for make sign-off: commit {file.relative_to(ROOT)} and run this again")
         return
     results = load()
     before = results.setdefault(core, {}).get(kind)

@@ -24,6 +24,19 @@ def test_comments_and_white_space_are_no_change() -> None:
     assert sign_off.fingerprint(text) != sign_off.fingerprint(text.replace("b", "c"))
 
 
+@pytest.mark.parametrize("refuses", ["ls-files", "diff"])
+def test_no_result_of_rtl_that_is_not_committed(
+    refuses: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = tmp_path / "sign-off.json"
+    results.write_text("{}")
+    monkeypatch.setattr(sign_off, "RESULTS", results)
+    monkeypatch.setattr(sign_off, "git", lambda *words: None if words[0] == refuses else b"1234567\n")
+    sign_off.record("td_ram", "proof", {"failed": 0, "not ended": 0})
+    assert results.read_text() == "{}"
+    assert "commit hdl/common/td_ram.sv" in capsys.readouterr().out
+
+
 def test_a_result_is_kept_unless_there_is_one_of_more_mutants(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     results = tmp_path / "sign-off.json"
     results.write_text("{}")
