@@ -142,7 +142,8 @@ module tactile_depth
     .s_axil_wstrb, .s_axil_wvalid, .s_axil_wready, .s_axil_bresp, .s_axil_bvalid, .s_axil_bready, .s_axil_araddr,
     .s_axil_arprot, .s_axil_arvalid, .s_axil_arready, .s_axil_rdata, .s_axil_rresp, .s_axil_rvalid, .s_axil_rready,
     .irq, .events, .levels, .first_depth_latency, .first_depth_latency_valid, .record, .contact_settings, .timeout,
-    .dark_level, .light_command, .light_gains, .frame_start(en & pixel_frame_start), .table_command, .table_answer(slope_answer | zero_answer),
+    .dark_level, .light_command, .light_gains, .frame_start(en & pixel_frame_start), .table_command,
+    .table_answer(slope_answer | zero_answer),
     .table_bank, .table_in_use(slope_in_use | zero_in_use), .reference_command, .reference_status, .zero_command,
     .zero_status, .register_command, .register_answer
   );

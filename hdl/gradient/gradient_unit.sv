@@ -5,9 +5,10 @@
 //         \-> [reference_capture]
 //
 // In brackets: with FlatField, which makes colours relative to a frame without contact; with LightGains, which follow
-// the light. Without FlatField colours are as the camera sent them. Stream in: pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the
-// row and gy down the column, signed codes of GradientWidth bits; the tables say how many are fraction bits. Latency:
-// models/tactile_depth/latency.py; a gap in, a gap out. Model: slope_codes in models/tactile_depth/tactile_depth.py.
+// the light. Without FlatField colours are as the camera sent them. Stream in: pixels R in 23:16, B in 15:8,
+// G in 7:0, raster order. Stream out: slopes gx along the row and gy down the column, signed codes of GradientWidth
+// bits; the tables say how many are fraction bits. Latency: models/tactile_depth/latency.py; a gap in, a gap out.
+// Model: slope_codes in models/tactile_depth/tactile_depth.py.
 
 `default_nettype none
 

@@ -98,7 +98,8 @@ module axil_registers
     | ((Quadratic != 0 ? 0 : BitsPerChannel) << FormatBitsPerChannelLsb);
   localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
     | (Quadratic << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (ZeroOffset << DeviceZeroOffsetBit)
-    | (LightGains << DeviceLightGainsBit) | (Lanes << DeviceLanesLsb) | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
+    | (LightGains << DeviceLightGainsBit) | (Lanes << DeviceLanesLsb)
+    | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
   localparam logic [31:0] DepthUnitWord =
     (DepthMantissa << DepthUnitMantissaLsb) | (DepthExponent << DepthUnitExponentLsb);
   localparam logic [31:0] SlopeUnitWord =
