@@ -54,6 +54,14 @@ def measured(pipeline: td.Pipeline, press: Any, result: td.Result) -> Measured:
     return Measured(height, result.contact.area_mm2, untouched.std(), np.abs(untouched).max())
 
 
+def peak(result: td.Result) -> float:
+    return float(result.height_mm.max())
+
+
+def area(result: td.Result) -> float:
+    return result.contact.area_mm2
+
+
 def mean(values: list[Measured], name: str) -> np.ndarray:
     return np.array([getattr(value, name) for value in values])
 
@@ -72,6 +80,21 @@ def test_another_light_changes_no_press(pipeline: td.Pipeline, presses: Any) -> 
         assert abs(caps.mean() - 1) < 0.001, light
         assert np.abs(caps - 1).max() < 0.02, light
         assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.001), light
+
+
+def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: Any) -> None:
+    """Compare peak and area, mean over presses, with 5 % more light. docs/depth-map.md states these numbers."""
+    sensor, found = td.load("gelsight-mini"), {}
+    for on in (False, True):
+        pipeline = td.Pipeline(sensor, real / "background.png", light_gains=on)
+        for light in (1, 1.05):
+            results = [pipeline(in_light(press.image, light)) for press in presses]
+            peaks, areas = ([each(result) for result in results] for each in (peak, area))
+            found[on, light] = np.mean(peaks), np.mean(areas)
+    assert found[False, 1] == pytest.approx((0.85, 19.2), rel=0.01)
+    assert found[False, 1.05] == pytest.approx((1.09, 117), rel=0.01)
+    assert found[True, 1] == pytest.approx((0.84, 18.5), rel=0.01)
+    assert found[True, 1.05] == pytest.approx(found[True, 1], rel=0.001)
 
 
 def test_light_gains_take_the_tilt_off_untouched_gel(real: Any, pipeline: td.Pipeline, presses: Any) -> None:

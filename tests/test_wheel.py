@@ -24,7 +24,7 @@ from PIL import Image
 import tactile_depth as td
 from commands.common.repository import ROOT
 from commands.run import bench
-from tactile_depth.configuration import LIGHT_GAIN_WIDTH
+from tactile_depth.configuration import LIGHT_GAIN
 from tactile_depth.frames import read_picture
 from tactile_depth.registers.axil_registers import GAINS
 from tactile_depth.resampling import resampling
@@ -265,7 +265,7 @@ def test_the_rtl_has_the_codes_of_the_wheel(
         shutil.copy(file, tmp_path)
     run(environment, tmp_path, "-c", textwrap.dedent(QUICK_START.format(pictures=picture)))
     codes = np.load(tmp_path / "codes.npy")
-    gains = np.rint(np.load(tmp_path / "gains.npy") * 2 ** (LIGHT_GAIN_WIDTH - 1)).astype(int)
+    gains = np.rint(np.load(tmp_path / "gains.npy") / LIGHT_GAIN.lsb).astype(int)
     if picture == REAL:
         sensor, names = td.load("gelsight-mini"), ("background.png", "press.png")
         reference, image = (read_picture(pictures / name) for name in names)

@@ -32,8 +32,7 @@ from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_offset import exact_zero
 from tactile_depth.frames import Frames, load_frames, on_grid
-from tactile_depth.gradient.flat_field import ratios
-from tactile_depth.gradient.light_gains import Light, LightFilter, settled
+from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.registers.axil_registers import GAINS
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import light_of, slope_tables, tactile_depth
@@ -66,11 +65,10 @@ def light_of_stream(frames: np.ndarray, calibration: Sensor, config: Configurati
     """
     if not config.light_gains:
         return None
-    gains = slope_tables(calibration, config).gains
-    assert gains is not None
-    relative, light = ratios(frames, gains, config), Light.of(config)
-    stream = LightFilter(light, settled(relative[0], light))
-    return np.array([[stream.take(picture) for picture in relative] for _ in range(repeat)])
+    tables = slope_tables(calibration, config)
+    first = light_of(frames[0], tables, config)
+    stream = LightFilter(Light.of(config), first)
+    return np.array([light_of(frames, tables, config, stream) for _ in range(repeat)])
 
 
 def simulate(

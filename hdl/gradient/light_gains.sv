@@ -22,11 +22,11 @@ module light_gains
 #(
   parameter int Rows          = 128,
   parameter int Columns       = 128,
-  parameter int RatioWidth    = 16,
-  parameter int RatioFraction = 14,
+  parameter int RatioWidth    = 17,
+  parameter int RatioFraction = 15,
   parameter int GainWidth     = 16,  // one bit less of them is fraction
-  parameter int OutWidth      = 14,
-  parameter int OutFraction   = 12
+  parameter int OutWidth      = 17,
+  parameter int OutFraction   = 15
 ) (
   input  wire                         clk,
   input  wire                         rst,         // the gains become 1
@@ -60,7 +60,7 @@ module light_gains
   localparam int Pixels = (Rows - 1) * Columns;
   localparam int CountWidth = $clog2(Pixels + 1);
   localparam int SumWidth = OutFraction - NearLog2 + CountWidth + 1;
-  localparam int SumLog2 = $clog2((2 * Pixels + 2) / 3);  // so that a gain moves by 1/4 to 3/2 of the mean
+  localparam int SumLog2 = $clog2((2 * Pixels + 2) / 3);  // so that a gain moves by 3/16 to 3/2 of the mean
   localparam int SumDrop = SumLog2 + OutFraction - GainFraction;
   localparam int MoveWidth = GainWidth + 1;
   localparam logic [GainWidth-1:0] One = GainWidth'(1) << GainFraction;

@@ -19,10 +19,10 @@ module quadratic_gradient
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
   parameter int Width          = 21,  // of a slope
-  parameter int DeviationWidth = 14,
+  parameter int DeviationWidth = 17,
   parameter int CoeffWidth     = 18,
   parameter int WordWidth      = 32,
-  parameter int Drop           = 6,   // negative: shift left, exact
+  parameter int Drop           = 9,   // negative: shift left, exact
   localparam int Terms = 6,
   localparam int Words = 6 * Terms,
   localparam int IndexWidth = $clog2(Words)

@@ -48,8 +48,6 @@ PIXEL_WIDTH = 8
 GAIN_WIDTHS = (16, 24)  # of an unsigned gain word
 DARKEST_LOG2 = 3  # a reference of 8 grey levels gives the full scale of a gain
 
-LIGHT_GAIN_WIDTH = 16  # of the gain of a colour that follows the light; one bit less of them is fraction
-
 
 def gain_fraction(gain_width: int) -> int:
     """Return the fraction bits of a gain, 1 / reference, of so many bits."""
@@ -90,6 +88,8 @@ It is so fine that rounding does not tilt a gel of one colour, which has the sam
 """
 RATIO = Format(17, 15)
 """Format of a colour relative to the reference, I / ref, unsigned, before the light gains."""
+LIGHT_GAIN = Format(16, 15)
+"""Format of the gain of a colour that follows the light, unsigned."""
 POLYNOMIAL = Format(32, 28)
 """Format of a coefficient of the quadratic model along the raster, as wide as a register of the AXI4-Lite map."""
 COLOUR_COEFFICIENT = Format(18, 14)

@@ -17,7 +17,7 @@ from tactile_depth.configuration import (
     COLOUR_COEFFICIENT,
     DEVIATION,
     GUARD_BITS,
-    LIGHT_GAIN_WIDTH,
+    LIGHT_GAIN,
     POLYNOMIAL,
     RATIO,
     Configuration,
@@ -156,7 +156,7 @@ def _colours(p: dict[str, int]) -> Parts:
         parts += [Memory("tables", gain, (p["Rows"] >> log2) * (p["Columns"] >> log2), core)] * 6
         parts.append(Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core))
     if p["LightGains"]:
-        parts += [Multiplier(RATIO.width + 1, LIGHT_GAIN_WIDTH + 1, "light_gains")] * 3
+        parts += [Multiplier(RATIO.width + 1, LIGHT_GAIN.width + 1, "light_gains")] * 3
     if p["Quadratic"]:
         core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
         parts += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6

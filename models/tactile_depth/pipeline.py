@@ -14,14 +14,14 @@ import numpy as np
 
 from tactile_depth import reference as exact
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.configuration import LIGHT_GAIN_WIDTH, Configuration
+from tactile_depth.configuration import LIGHT_GAIN, Configuration
 from tactile_depth.contact.contact_events import ContactEvents, Settings
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
 from tactile_depth.files import new_files
 from tactile_depth.frames import camera_scale, read_pictures, read_stack
-from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, ratios, require_light, unit_gains
+from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
 from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
 from tactile_depth.grid_sampler import GridSampler, grid_sampler
@@ -203,7 +203,7 @@ class Pipeline:
         """
         frames, single = self._read(pictures, PICTURES)
         monitor = Monitor()
-        gains = self._light(frames, light)
+        gains = light_of(frames, self._tables, self.config, light)
         if self.arithmetic == "chip":
             slopes, stream = self._chip(frames, monitor, gains)
             stream = zeroed(stream, self.config, monitor, self._zero)
@@ -221,7 +221,7 @@ class Pipeline:
             depth_mm,
             slopes,
             dark,
-            None if gains is None else gains / (1 << (LIGHT_GAIN_WIDTH - 1)),
+            None if gains is None else gains * LIGHT_GAIN.lsb,
             records,
             dict(monitor.saturations),
             self._threshold,
@@ -327,13 +327,6 @@ class Pipeline:
 
     # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
 
-    def _light(self, frames: np.ndarray, light: LightFilter | None = None) -> np.ndarray | None:
-        """Return the light gains of frames, int64 (frames, 3), by a stream or each frame's own; None without."""
-        if light is None or not self.config.light_gains:
-            return light_of(frames, self._tables, self.config)
-        assert self._tables.gains is not None
-        return np.array([light.take(picture) for picture in ratios(frames, self._tables.gains, self.config)])
-
     def _chip(self, frames: np.ndarray, monitor: Monitor, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Compute slopes and depth as the RTL does, bit for bit."""
         step = max(1, PIXELS_AT_ONCE // (self.config.rows * self.config.columns))
@@ -370,7 +363,7 @@ class Pipeline:
         self._exact_tables = exact.slope_tables(self.sensor, self.config)
 
     def _use_zero(self, frames: np.ndarray) -> None:
-        light = self._light(frames)
+        light = light_of(frames, self._tables, self.config)
         self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
         self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
 

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from scipy.fft import dctn, dstn, idctn, idstn
 
-from tactile_depth.configuration import DARKEST_LOG2, LIGHT_GAIN_WIDTH, Configuration
+from tactile_depth.configuration import DARKEST_LOG2, LIGHT_GAIN, Configuration
 from tactile_depth.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.transform.orders import read_only
@@ -137,7 +137,7 @@ def slopes_of(
     if tables.coefficients is not None:
         deviation = frames * tables.gains
         if light is not None:
-            deviation *= light[..., None, None, :] * 2.0 ** (1 - LIGHT_GAIN_WIDTH)
+            deviation *= light[..., None, None, :] * LIGHT_GAIN.lsb
         deviation -= 1
         if tables.dead is not None:
             deviation = hold_dark(deviation, np.broadcast_to(tables.dead, deviation.shape[:-1]), 0)

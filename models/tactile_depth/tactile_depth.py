@@ -21,7 +21,7 @@ from tactile_depth.configuration import (
     DARKEST_LOG2,
     DEVIATION,
     GUARD_BITS,
-    LIGHT_GAIN_WIDTH,
+    LIGHT_GAIN,
     POLYNOMIAL,
     RATIO,
     Configuration,
@@ -66,7 +66,7 @@ CONSTANTS = {
     "DeviationFraction": (DEVIATION.fraction, "fraction bits of it"),
     "RatioWidth": (RATIO.width, "bits of a colour relative to the reference, before the light gains"),
     "RatioFraction": (RATIO.fraction, "fraction bits of it"),
-    "LightGainWidth": (LIGHT_GAIN_WIDTH, "bits of a light gain, one bit less of them is fraction"),
+    "LightGainWidth": (LIGHT_GAIN.width, "bits of a light gain, one bit less of them is fraction"),
     "CodeWidth": (CODE_WIDTH, "bits of a colour that indexes the gradient table"),
     "FlatCode": (FLAT_CODE, "code of a colour that equals the reference"),
     "DarkestLog2": (DARKEST_LOG2, "fraction bits of a gain beyond its width"),
@@ -189,12 +189,15 @@ def slope_codes(
     return gradient_lookup(frames, tables.slopes, config.bits_per_channel)
 
 
-def light_of(frames: np.ndarray, tables: Tables, config: Configuration) -> np.ndarray | None:
-    """Return the light gains of frames that are single pictures, int64 (..., 3); None without `light_gains`."""
+def light_of(
+    frames: np.ndarray, tables: Tables, config: Configuration, stream: LightFilter | None = None
+) -> np.ndarray | None:
+    """Return the light gains of frames, int64 (..., 3): of single pictures, or of a stream; None without them."""
     if not config.light_gains:
         return None
     assert tables.gains is not None
-    return settled(ratios(frames, tables.gains, config), Light.of(config))
+    relative = ratios(frames, tables.gains, config)
+    return settled(relative, Light.of(config)) if stream is None else stream.take_all(relative)
 
 
 def _lit_deviations(
@@ -210,8 +213,7 @@ def _lit_deviations(
     if light is None:
         light = LightFilter(Light.of(config))
     if isinstance(light, LightFilter):
-        pictures = relative.reshape(-1, *relative.shape[-3:])
-        light = np.array([light.take(picture) for picture in pictures]).reshape(*relative.shape[:-3], 3)
+        light = light.take_all(relative)
     return Light.of(config).deviations(relative, light[..., None, None, :], monitor)
 
 

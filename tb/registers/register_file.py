@@ -9,7 +9,7 @@ from typing import Any
 
 from cocotb.triggers import RisingEdge
 
-from tactile_depth.configuration import LIGHT_GAIN_WIDTH
+from tactile_depth.configuration import LIGHT_GAIN
 from tactile_depth.registers.axil_port import LATE_CLOCKS, Response, response, strobed_bits
 from tactile_depth.registers.axil_registers import RECORD, AxilRegisters, Build, Events, Live
 from tactile_depth.registers.event_registers import EVENTS, LEVELS
@@ -78,7 +78,7 @@ class Checker(PortChecker):
             ending=self.status("done"),
             in_use=self.pin("table_in_use"),
             record=tuple(record >> 32 * word & WORD for word in range(len(RECORD))),
-            light_gains=tuple(gains >> LIGHT_GAIN_WIDTH * c & (1 << LIGHT_GAIN_WIDTH) - 1 for c in range(3)),
+            light_gains=tuple(gains >> LIGHT_GAIN.width * c & (1 << LIGHT_GAIN.width) - 1 for c in range(3)),
         )
 
     def settings(self) -> dict[str, int]:
@@ -189,7 +189,7 @@ class Tables:
             if light["write"]:
                 assert light["gain"] is not None
                 gains = [light["gain"] if light["write"] >> c & 1 else gain for c, gain in enumerate(gains)]
-                dut.light_gains.value = sum(gain << LIGHT_GAIN_WIDTH * c for c, gain in enumerate(gains))
+                dut.light_gains.value = sum(gain << LIGHT_GAIN.width * c for c, gain in enumerate(gains))
             command = structs.of(dut.table_command, "table_command_t")
             if command["read"]:
                 assert command["select"] is not None

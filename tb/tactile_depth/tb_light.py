@@ -49,7 +49,7 @@ async def light_gains_follow_a_stream(dut: Any) -> None:
 
 @case(Level.FORMATS, needs=lambda config: config.light_gains)
 async def light_gains_of_single_pictures_are_written(dut: Any) -> None:
-    """Write gains, whole and byte by byte, and hold them: the next frames use them; a reset sets them to 1."""
+    """Write gains and hold them: the next frames use them; then they follow at a rate, and a reset sets them to 1."""
     pipeline = await started(dut)
     await pipeline.hold_light()
     stream = pipeline.scoreboard.light

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor, round_half_even, round_saturate
-from tactile_depth.configuration import DEVIATION, LIGHT_GAIN_WIDTH, RATIO, Configuration, Format
+from tactile_depth.configuration import DEVIATION, LIGHT_GAIN, RATIO, Configuration, Format
 
 LATENCY = 2
 NEAR_LOG2 = 3
@@ -44,7 +44,7 @@ class Light:
     columns: int
     ratio_width: int = RATIO.width
     ratio_fraction: int = RATIO.fraction
-    gain_width: int = LIGHT_GAIN_WIDTH
+    gain_width: int = LIGHT_GAIN.width
     deviation: Format = DEVIATION
 
     @classmethod
@@ -168,3 +168,8 @@ class LightFilter:
         if self.follow and not bad:
             self.gains = self.light.followed(self.light.deviations(ratios, used), used, self.rate)
         return used
+
+    def take_all(self, ratios: np.ndarray) -> np.ndarray:
+        """Return the gains of frames, int64 (..., 3), that follow one another, from ratios (..., rows, columns, 3)."""
+        pictures = ratios.reshape(-1, *ratios.shape[-3:])
+        return np.array([self.take(picture) for picture in pictures]).reshape(*ratios.shape[:-3], 3)

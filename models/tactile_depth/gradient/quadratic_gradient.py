@@ -10,7 +10,7 @@ Every C is a quadratic in column c and row r, kept as six words that are integer
 so that the hardware computes C along the raster by additions only: v += dv, dv += D from pixel to pixel; at a new row
 v0 += e, e += F, dv0 += H, and v = v0, dv = dv0; a frame begins with v0 = A, dv0 = B, e = E. The upper 18 bits of v (14
 fraction bits) are multiplied. A includes half of the last bit that is kept, so that dropping the lower bits rounds. The
-sum of the three products, 34 bits with 26 fraction bits, is rounded half to even and saturated to the gradient's format
+sum of the three products, 37 bits with 29 fraction bits, is rounded half to even and saturated to the gradient's format
 (`Configuration.gradient`), whose unit the words have. This module, not the hardware, checks that the words stay within
 32 bits over the whole grid.
 """
