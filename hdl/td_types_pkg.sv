@@ -130,25 +130,24 @@ package td_types_pkg;
   typedef struct packed {
     logic [31:0] threshold;
     logic [31:0] off_threshold;
+    logic [31:0] area_threshold;
     logic [31:0] minimum_area;
     logic [7:0]  debounce;
     logic        hold_contact;
     logic        drop_frames;
   } contact_settings_t;
 
-  // Words 4 to 11 of a contact record: of all depths above the threshold in a frame. All zero if there are none.
-  // Rows are counted from the top of the picture. volume and peak are signed.
+  // Sums of the depths above a threshold in a frame. Without any the limits have no meaning, and the others are 0. Rows
+  // are counted from the top of the picture.
   typedef struct packed {
-    logic [63:0] volume;  // sum of the depths
-    logic [31:0] row_sum;
-    logic [31:0] column_sum;
+    logic [31:0] area;           // pixels
+    logic [63:0] weight;         // what the depths are above the threshold
+    logic [63:0] row_moment;     // of the weights, from the last row to come
+    logic [63:0] column_moment;  // of the weights, from the last column
     logic [15:0] greatest_row;
     logic [15:0] greatest_column;
     logic [15:0] least_row;
     logic [15:0] least_column;
-    logic [15:0] peak_row;  // of equal peaks the first in stream order
-    logic [15:0] peak_column;
-    logic [31:0] peak;
   } contact_sums_t;
 
   // A counter that counts on, and stays at all ones.

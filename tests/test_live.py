@@ -183,13 +183,13 @@ def test_keys_capture_from_the_frames_that_follow(
     press_keys(key)
     printed = live(tmp_path / "frames.npy", *background)
     expected = pipeline_of(inputs)
-    light = expected.light_filter()
-    before = [expected(image, light).height_mm for image in no_contact]
+    stream = expected.new_stream()
+    before = [expected(image, stream).height_mm for image in no_contact]
     np.testing.assert_array_equal(Screen.last.heights[:8], before)
     if key == "r":
         expected.capture_reference(no_contact)
     expected.capture_zero(no_contact)
-    np.testing.assert_array_equal(Screen.last.heights[8], expected(press, light).height_mm)
+    np.testing.assert_array_equal(Screen.last.heights[8], expected(press, stream).height_mm)
     assert "captured the" in printed.out
 
 

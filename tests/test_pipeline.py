@@ -118,7 +118,7 @@ def test_another_light_changes_no_height(ball: Any, pipeline: Any) -> None:
         assert np.abs(result.height_mm - before.height_mm).max() < 0.01 * before.height_mm.max()
     without = td.Pipeline(ball.sensor, ball.reference, light_gains=False)
     assert without(ball.image).light_gains is None
-    assert without.light_filter() is None
+    assert without.new_stream().light is None
 
 
 @pytest.mark.parametrize("solver", ["spectral", "tridiagonal"])
@@ -175,9 +175,9 @@ def test_larger_pictures_of_the_camera_give_the_same_depth(ball: Any, small: Any
 
 def test_the_record_of_a_whole_frame_is_that_of_its_beats() -> None:
     rng = np.random.default_rng(1)
-    settings = Settings(40, 20, 3, 2)
+    settings = Settings(40, 20, 30, 3, 2)
     for bottom_first in (False, True):
-        beats, at_once = (ContactEvents(9, 16, bottom_first) for _ in range(2))
+        beats, at_once = (ContactEvents(9, 16, 8, bottom_first) for _ in range(2))
         for time in range(12):
             frame = rng.integers(-50, rng.integers(1, 60), (9, 16))
             for row in range(9):
@@ -197,9 +197,40 @@ def test_the_contact_in_millimetres(pipeline: Any, ball: Any) -> None:
     pitch = result.pixel_pitch_mm
     assert contact.peak_position_mm == pytest.approx([pitch * index for index in contact.peak_px])
     assert contact.centroid_mm == pytest.approx([pitch * index for index in contact.centroid_px])
-    assert contact.area_mm2 == pytest.approx(touched.sum() * pipeline.pixel_pitch_mm**2)
-    assert contact.volume_mm3 == pytest.approx(result.depth_mm[touched].sum() * pipeline.pixel_pitch_mm**2)
-    np.testing.assert_allclose(contact.centroid_px, np.argwhere(touched).mean(axis=0), atol=1 / 32)
+    assert contact.peak_mm - contact.untouched_mm == pytest.approx(result.height_mm.max())
+    level = min(0.3, contact.peak_mm / 2)
+    assert contact.area_threshold_mm == pytest.approx(level, abs=pipeline.depth_lsb_mm)
+    area = result.depth_mm > contact.area_threshold_mm
+    assert contact.area_mm2 == pytest.approx(area.sum() * pipeline.pixel_pitch_mm**2)
+    assert contact.volume_mm3 == pytest.approx(result.depth_mm[area].sum() * pipeline.pixel_pitch_mm**2)
+    centroid = np.average(np.argwhere(area), axis=0, weights=result.depth_mm[area] - contact.area_threshold_mm)
+    np.testing.assert_allclose(contact.centroid_px, centroid, atol=1 / 32 + 1e-6)
+
+
+def test_the_area_of_a_stream_follows_the_last_peak(ball: Any) -> None:
+    """In a stream the area threshold is half the peak of the frame before; a picture by itself is one that stays."""
+    pipeline = td.Pipeline(ball.sensor, ball.reference, grid=SMALL, light_gains=False, area_threshold_mm=10)
+    first, second = (result.contact for result in pipeline.stream([ball.image, ball.image]))
+    assert first.touching
+    assert (first.area_mm2, first.centroid_px) == (0, first.peak_px)
+    assert second.area_threshold_mm == pytest.approx(second.peak_mm / 2, abs=pipeline.depth_lsb_mm)
+    assert second.area_mm2 > 0
+    assert second.record[3:] == pipeline(ball.image).contact.record[3:]
+
+
+@pytest.mark.parametrize("depth", [0.12, 0.2, 0.28])
+def test_a_light_touch_has_a_record(ball: Any, pipeline: Any, depth: float) -> None:
+    """Draw a touch that the area threshold is never below: area and centroid are those at half its height."""
+    y, x = np.indices(pipeline.grid)
+    row, column = 40, 70
+    height = depth * np.exp(-((y - row) ** 2 + (x - column) ** 2) / (2 * 6**2))
+    codes = np.rint(height / pipeline.depth_lsb_mm).astype(np.int32)
+    record = pipeline._record(codes[::-1] if pipeline.config.solver == "tridiagonal" else codes, None)
+    assert (record.peak, record.peak_position) == (codes.max(), (row, column))
+    level = max(0.1, depth / 2) / pipeline.depth_lsb_mm
+    assert record.area_threshold == pytest.approx(level, abs=1)
+    assert record.area == np.count_nonzero(codes > record.area_threshold) > 0
+    np.testing.assert_allclose(np.divide(record.centroid, 16), (row, column), atol=0.1)
 
 
 # Captures.
@@ -370,6 +401,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
         ({"threshold_mm": 0.0}, "threshold_mm=0.0"),
         ({"threshold_mm": None}, "threshold_mm=None: accepted is a depth above 0"),
         ({"threshold_mm": 1e3}, "threshold_mm=1000.0"),
+        ({"area_threshold_mm": -0.1}, "area_threshold_mm=-0.1: accepted is a depth, 0 or more"),
         ({"reference": None}, "sample needs a reference"),
         ({"reference": "none.png"}, "none.png: no such file or folder"),
         ({"reference": 3}, "reference are int: accepted is a uint8 array or a path"),

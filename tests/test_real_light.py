@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Light gains on the real presses: another light changes neither heights nor areas, and tilts no untouched gel."""
+"""The real presses: another light changes neither heights nor areas, and tilts no untouched gel; contact records."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -41,14 +41,18 @@ def in_light(image: Any, light: Any) -> np.ndarray:
     return np.rint(read_stack(image)[0] * np.array(light)).clip(0, 255).astype(np.uint8)
 
 
+def circle_on(pipeline: td.Pipeline, press: Any) -> np.ndarray:
+    """Return x, y, radius of a press in pixels of the grid, from the upper left corner of the picture."""
+    scale = pipeline.sensor.camera.columns / pipeline.grid[1]  # type: ignore[union-attr]
+    return (np.array(press.circle) + np.array([0.5, 0.5, 0])) / scale
+
+
 def measured(pipeline: td.Pipeline, press: Any, result: td.Result) -> Measured:
-    rows, columns = pipeline.grid
-    scale = pipeline.sensor.camera.columns / columns  # type: ignore[union-attr]
-    first = np.array([0.5, 0.5, 0])  # centre of the first pixel
-    x, y, radius = (np.array(press.circle) + first) / scale - first
-    ball = GridPress(press.name, x, y, radius, press.ball_radius_px / scale)
-    down, along = np.indices((rows, columns))
-    untouched = result.depth_mm[np.hypot(down + 0.5 - y, along + 0.5 - x) > UNTOUCHED * radius]
+    scale = pipeline.sensor.camera.columns / pipeline.grid[1]  # type: ignore[union-attr]
+    x, y, radius = circle_on(pipeline, press)
+    ball = GridPress(press.name, x - 0.5, y - 0.5, radius, press.ball_radius_px / scale)
+    down, along = np.indices(pipeline.grid)
+    untouched = result.depth_mm[np.hypot(down - y, along - x) > UNTOUCHED * radius]
     untouched = untouched - untouched.mean()
     height = ball.recovered(result.height_mm / pipeline.pixel_pitch_mm)
     return Measured(height, result.contact.area_mm2, untouched.std(), np.abs(untouched).max())
@@ -82,6 +86,32 @@ def test_another_light_changes_no_press(pipeline: td.Pipeline, presses: Any) -> 
         assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.001), light
 
 
+def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, presses: Any) -> None:
+    """Measured: centroids 0.123 mm off on average, 0.447 at worst; areas 0.78 to 1.35 of the circle's, 1.03 on average.
+
+    docs/depth-map.md states these numbers, and those of all that is above the threshold.
+    """
+    found: dict[str, list[tuple[float, float]]] = {"area": [], "mask": []}
+    for press in presses:
+        result = pipeline(press.image)
+        x, y, radius = pipeline.pixel_pitch_mm * circle_on(pipeline, press)
+        areas = {"area": result.contact.area_mm2, "mask": result.mask.sum() * pipeline.pixel_pitch_mm**2}
+        centroids = {
+            "area": result.contact.centroid_mm,
+            "mask": np.argwhere(result.mask).mean(axis=0) * pipeline.pixel_pitch_mm,
+        }
+        for name, values in found.items():
+            values.append((np.hypot(*(centroids[name] - np.array([y, x]))), areas[name] / (np.pi * radius**2)))
+    (off, area), (all_off, all_area) = (np.transpose(values) for values in found.values())
+    assert off.mean() < 0.13
+    assert off.max() < 0.45
+    assert 1.02 < area.mean() < 1.05
+    assert area.min() > 0.75
+    assert area.max() < 1.4
+    assert (all_off.mean(), all_off.max()) == pytest.approx((0.24, 0.70), abs=0.01)
+    assert (all_area.mean(), all_area.min(), all_area.max()) == pytest.approx((1.73, 1.22, 2.47), abs=0.01)
+
+
 def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: Any) -> None:
     """Compare peak and area, mean over presses, with 5 % more light. docs/depth-map.md states these numbers."""
     sensor, found = td.load("gelsight-mini"), {}
@@ -91,18 +121,18 @@ def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: A
             results = [pipeline(in_light(press.image, light)) for press in presses]
             peaks, areas = ([each(result) for result in results] for each in (peak, area))
             found[on, light] = np.mean(peaks), np.mean(areas)
-    assert found[False, 1] == pytest.approx((0.85, 19.2), rel=0.01)
-    assert found[False, 1.05] == pytest.approx((1.09, 117), rel=0.01)
-    assert found[True, 1] == pytest.approx((0.84, 18.5), rel=0.01)
+    assert found[False, 1] == pytest.approx((0.85, 11.3), rel=0.01)
+    assert found[False, 1.05] == pytest.approx((1.09, 53.7), rel=0.01)
+    assert found[True, 1] == pytest.approx((0.84, 11.2), rel=0.01)
     assert found[True, 1.05] == pytest.approx(found[True, 1], rel=0.001)
 
 
 def test_light_gains_take_the_tilt_off_untouched_gel(real: Any, pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: 0.0224 mm RMS and 0.122 mm at most, mean over presses; without light gains 0.048 and 0.157 mm."""
+    """Measured: 0.0224 mm RMS and 0.128 mm at most, mean over presses; without light gains 0.048 and 0.163 mm."""
     without = td.Pipeline(td.load("gelsight-mini"), real / "background.png", light_gains=False)
     tilted, level = ([measured(each, press, each(press.image)) for press in presses] for each in (without, pipeline))
     assert mean(level, "rms").mean() < 0.023
-    assert mean(level, "largest").mean() < 0.125
+    assert mean(level, "largest").mean() < 0.13
     assert mean(level, "rms").mean() < 0.5 * mean(tilted, "rms").mean()
 
 

@@ -8,49 +8,50 @@ module fv_beat_sums #(
   parameter int Lanes   = 4,
   parameter int Latency = 2,  // models/tactile_depth/contact/beat_sums.py
   localparam int OffsetWidth = $clog2(Lanes),
-  localparam int VolumeWidth = Width + OffsetWidth
+  localparam int WeightWidth = Width + OffsetWidth,
+  localparam int MomentWidth = WeightWidth + OffsetWidth
 ) (
   input logic                   clk,
   input logic [Lanes-1:0]       above,
-  input logic [Lanes*Width-1:0] data
+  input logic [Lanes*Width-1:0] weights
 );
 
   logic [OffsetWidth:0] count;
-  logic [2*OffsetWidth-1:0] offset_sum;
-  logic signed [VolumeWidth-1:0] volume;
-  logic signed [Width-1:0] peak;
-  logic [OffsetWidth-1:0] peak_offset, least_offset, greatest_offset;
+  logic [WeightWidth-1:0] weight;
+  logic [MomentWidth-1:0] moment;
+  logic [OffsetWidth-1:0] least_offset, greatest_offset;
   beat_sums #(.Width(Width), .Lanes(Lanes)) dut (.*);
+
+  logic allowed;
+  protocol_beat_sums #(.Width(Width), .Lanes(Lanes)) u_protocol (.above, .weights, .count, .holds(allowed));
+  always_comb assume (allowed);
 
   logic [Latency-1:0] known = '0;
   logic [Latency*Lanes-1:0] above_q;
-  logic [Latency*Lanes*Width-1:0] data_q;
+  logic [Latency*Lanes*Width-1:0] weights_q;
   always_ff @(posedge clk) begin
     known <= Latency'({known, 1'b1});
     above_q <= (Latency * Lanes)'({above_q, above});
-    data_q <= (Latency * Lanes * Width)'({data_q, data});
+    weights_q <= (Latency * Lanes * Width)'({weights_q, weights});
   end
 
   logic any;
   logic [OffsetWidth:0] total;
-  logic [2*OffsetWidth-1:0] offsets;
-  logic signed [VolumeWidth-1:0] sum;
-  logic signed [Width-1:0] depth, highest;
-  logic [OffsetWidth-1:0] highest_at, first, last;
+  logic [WeightWidth-1:0] sum;
+  logic [MomentWidth-1:0] turn, of_lane;
+  logic [OffsetWidth-1:0] first, last;
   always_comb begin
     any = 1'b0;
     total = '0;
-    offsets = '0;
     sum = '0;
-    highest = '0;
-    {highest_at, first, last} = '0;
+    turn = '0;
+    {first, last} = '0;
     for (int lane = 0; lane < Lanes; lane++) begin
-      depth = data_q[((Latency-1)*Lanes+lane)*Width+:Width];
+      of_lane = MomentWidth'(weights_q[((Latency-1)*Lanes+lane)*Width+:Width]);
+      sum = sum + WeightWidth'(of_lane);
+      turn = turn + of_lane * MomentWidth'(Lanes - 1 - lane);
       if (above_q[(Latency-1)*Lanes+lane]) begin
         total = total + (OffsetWidth + 1)'(1);
-        offsets = offsets + (2 * OffsetWidth)'(lane);
-        sum = sum + VolumeWidth'(depth);
-        if (!any || depth > highest) {highest, highest_at} = {depth, OffsetWidth'(lane)};
         if (!any) first = OffsetWidth'(lane);
         last = OffsetWidth'(lane);
         any = 1'b1;
@@ -60,10 +61,9 @@ module fv_beat_sums #(
 
   always_comb begin
     if (known[Latency-1]) begin
-      sums: assert (count == total && offset_sum == offsets && volume == sum);
+      sums: assert (count == total && weight == sum && moment == turn);
       if (any) limits: assert (least_offset == first && greatest_offset == last);
-      if (any) top: assert (peak == highest && peak_offset == highest_at);
-      tie: cover (count == (OffsetWidth + 1)'(Lanes - 1) && peak_offset == OffsetWidth'(1) && peak == '0);
+      some: cover (count == (OffsetWidth + 1)'(Lanes - 1) && moment != '0);
       none: cover (count == '0);
     end
   end

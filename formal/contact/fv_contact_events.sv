@@ -11,9 +11,9 @@ module fv_contact_events
   import td_types_pkg::*;
 #(
   parameter int Width   = 2,
-  parameter int Rows    = 3,
+  parameter int Rows    = 4,
   parameter int Columns = 8,
-  parameter int Latency = 22  // models/tactile_depth/contact/contact_events.py
+  parameter int Latency = 26  // models/tactile_depth/contact/contact_events.py
 ) (
   input logic                    clk,
   input logic                    rst,
@@ -23,12 +23,13 @@ module fv_contact_events
   input logic [31:0]             in_time,
   input logic signed [31:0]      on_threshold,
   input logic signed [31:0]      off_threshold,
+  input logic signed [31:0]      area_threshold,
   input logic [31:0]             minimum_area,
   input logic [7:0]              debounce,
   input logic                    m_event_tready
 );
 
-  localparam int Words = 13;
+  localparam int Words = 12;
 
   logic touching, record_valid, record_lost, m_event_tvalid, m_event_tlast;
   logic [32*Words-1:0] record;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_contact_sums: area 2 clocks after the last beat of each frame, sums 3 + log2(Lanes); the area counts the depths above the
-// threshold; limits and peak enclose an arbitrary depth above it, and are attained; the first of equal peaks.
-//
-// `touching` takes any value in any clock. Sums of rows, columns and
-// depths are left to simulation against the model.
+// fv_contact_sums: sums 2 + log2(Lanes) clocks after the last beat of each frame: area, weight and moments of the depths above
+// the threshold, by multiplication; limits enclose an arbitrary depth above it, and are attained.
 
 `default_nettype none
 
@@ -21,119 +18,108 @@ module fv_contact_sums
   input logic                    in_valid,
   input depth_position_t         in_position,
   input logic [Lanes*Width-1:0]  in_data,
-  input logic signed [Width:0]   on_level,
-  input logic signed [Width:0]   off_level,
-  input logic                    touching,
+  input logic signed [Width-1:0] threshold,
   input logic [3:0]              chosen
 );
 
   localparam int Pixels = Rows * Columns;
-  localparam int AreaWidth = $clog2(Pixels + 1);
-  localparam int ToSums = 3 + $clog2(Lanes);  // clocks from the last beat of a frame
-  localparam int Behind = ToSums - 2;         // clocks from the area to the sums
+  localparam int SumWidth = Width + 6;        // of a sum or a moment in so small a frame
+  localparam int ToSums = 2 + $clog2(Lanes);  // clocks from the last beat of a frame
+  localparam int Behind = ToSums - 1;         // clocks from what the frame should come to, to the sums
 
-  logic area_valid, sums_valid;
-  logic [AreaWidth-1:0] area;
+  logic sums_valid;
   contact_sums_t sums;
   contact_sums #(
     .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
-  ) dut (.*, .on_threshold(32'(on_level)), .off_threshold(32'(off_level)));
+  ) dut (.*);
 
   logic allowed, started;
   logic [$clog2(Pixels/Lanes)-1:0] beat;
   logic [3:0] place;  // of the first depth of a beat
   assign place = 4'(Lanes * 32'(beat));
   protocol_contact_sums #(.Rows(Rows), .Columns(Columns), .Lanes(Lanes)) u_protocol (
-    .clk, .rst, .in_valid, .in_position, .area_valid, .sums_valid, .place(beat), .holds(allowed)
+    .clk, .rst, .in_valid, .in_position, .sums_valid, .place(beat), .holds(allowed)
   );
   assumed u_assumed (.clk, .rst, .allowed, .started);
 
-  // A beat one clock later, with the thresholds of its frame.
-  logic valid_q, first_q;
-  logic [Lanes*Width-1:0] data_q;
-  logic signed [Width:0] on_q, off_q;
-  logic [3:0] place_q;
-  logic [15:0] row_q;
-  assign row_q = BottomFirst != 0 ? 16'(Rows - 1) - 16'(place_q / 4'(Columns)) : 16'(place_q / 4'(Columns));
-
   // What the frame should come to; an arbitrary depth, row and column of it.
+  typedef struct packed {
+    logic [3:0] area;
+    logic [SumWidth-1:0] weight;
+    logic [SumWidth-1:0] rows;     // moments
+    logic [SumWidth-1:0] columns;
+    logic held;                    // the watched depth is above
+    logic in_row;                  // a depth of the watched row is above
+    logic in_column;
+  } wanted_t;
+
+  logic first;
   logic [ToSums-1:0] due;
-  logic [3:0] watched, watched_row, watched_column;
-  logic [Lanes-1:0] above, is_watched, in_watched_column;
-  logic signed [Width-1:0] depth, depth_now, depth_q;
-  for (genvar lane = 0; lane < Lanes; lane++) begin : g_lane
-    logic signed [Width-1:0] of_lane;
-    assign of_lane = data_q[lane*Width+:Width];
-    assign above[lane] = valid_q & ((Width + 1)'(of_lane) > (touching ? off_q : on_q));
-    assign is_watched[lane] = place_q + 4'(lane) == watched;
-    assign in_watched_column[lane] = (place_q + 4'(lane)) % 4'(Columns) == watched_column;
-  end
-  logic [AreaWidth-1:0] above_count, count, count_q;
-  logic held, held_q, in_row, in_row_q, in_column, in_column_q;
+  logic signed [Width-1:0] threshold_q, threshold_now;
+  logic [3:0] watched, watched_row, watched_column, row, column;
+  wanted_t so_far, wanted, now;
+  wanted_t [Behind-1:0] later;
+  assign first = in_position.frame_start;
+  assign threshold_now = first ? threshold : threshold_q;
+  assign so_far = first ? '0 : wanted;
+  assign row = place / 4'(Columns);  // in the order of the stream
+  assign watched_row = watched / 4'(Columns);
+  assign watched_column = watched % 4'(Columns);
+  logic signed [Width-1:0] depth;
+  logic [SumWidth-1:0] excess;
   always_comb begin
-    above_count = '0;
-    depth_now = depth;
+    now = so_far;
+    column = place % 4'(Columns);
     for (int lane = 0; lane < Lanes; lane++) begin
-      above_count += AreaWidth'(above[lane]);
-      if (is_watched[lane]) depth_now = data_q[lane*Width+:Width];
+      depth = in_data[lane*Width+:Width];
+      excess = SumWidth'($signed((Width + 1)'(depth) - (Width + 1)'(threshold_now)));
+      if (depth > threshold_now) begin
+        now.area = now.area + 4'd1;
+        now.weight = now.weight + excess;
+        now.rows = now.rows + excess * SumWidth'(4'(Rows - 1) - row);
+        now.columns = now.columns + excess * SumWidth'(4'(Columns - 1) - column);
+        now.held = now.held | (row == watched_row & column == watched_column);
+        now.in_row = now.in_row | row == watched_row;
+        now.in_column = now.in_column | column == watched_column;
+      end
+      column = column + 4'd1;
     end
   end
-  logic signed [31:0] peak;
-  logic [3:0] peak_place;
-  assign peak = $signed(sums.peak);
-  assign peak_place = 4'((BottomFirst != 0 ? 16'(Rows - 1) - sums.peak_row : sums.peak_row) * 16'(Columns)
-      + sums.peak_column);
-  assign watched_row = BottomFirst != 0 ? 4'(Rows - 1) - watched / 4'(Columns) : watched / 4'(Columns);
-  assign watched_column = watched % 4'(Columns);
-  logic [Behind*(AreaWidth+3+Width)-1:0] later;  // what the sums should say, when they come
-  assign {count_q, held_q, in_row_q, in_column_q, depth_q} = later[(Behind-1)*(AreaWidth+3+Width)+:AreaWidth+3+Width];
-
   always_ff @(posedge clk) begin
     if (!started) watched <= chosen;
-    if (in_valid && in_position.frame_start) {on_q, off_q} <= {on_level, off_level};
-    valid_q <= in_valid & ~rst;
-    first_q <= in_position.frame_start;
-    data_q <= in_data;
-    place_q <= place;
     due <= {due[ToSums-2:0], in_valid & in_position.frame_end};
-    if (valid_q) begin
-      count <= (first_q ? '0 : count) + above_count;
-      held <= is_watched != '0 ? (above & is_watched) != '0 : held & ~first_q;
-      in_row <= (above != '0 & row_q == 16'(watched_row)) | (in_row & ~first_q);
-      in_column <= ((above & in_watched_column) != '0) | (in_column & ~first_q);
-      depth <= depth_now;
-    end
-    later <= (Behind * (AreaWidth + 3 + Width))'({later, count, held, in_row, in_column, depth});
+    if (in_valid) {threshold_q, wanted} <= {threshold_now, now};
+    later <= (Behind * $bits(wanted_t))'({later, wanted});
     if (rst) due <= '0;
   end
   always_comb assume (chosen < 4'(Pixels));
 
+  wanted_t want;
+  logic [15:0] upright_row;
+  assign want = later[Behind-1];
+  assign upright_row = BottomFirst != 0 ? 16'(Rows - 1) - 16'(watched_row) : 16'(watched_row);
   always_comb begin
     if (started) begin
-      area_in_time: assert (area_valid == due[1]);
-      sums_in_time: assert (sums_valid == due[ToSums-1]);
-      if (area_valid) area_of_frame: assert (area == count);
+      in_time: assert (sums_valid == due[ToSums-1]);
       if (sums_valid) begin
-        none: assert (count_q != 0 || sums == '0);
-        if (held_q) begin
-          row_within: assert (sums.least_row <= 16'(watched_row) && 16'(watched_row) <= sums.greatest_row);
+        area: assert (sums.area == 32'(want.area));
+        weight: assert (sums.weight == 64'(want.weight));
+        moments: assert (sums.row_moment == 64'(want.rows) && sums.column_moment == 64'(want.columns));
+        if (want.held) begin
+          row_within: assert (sums.least_row <= upright_row && upright_row <= sums.greatest_row);
           column_within: assert (sums.least_column <= 16'(watched_column)
               && 16'(watched_column) <= sums.greatest_column);
-          highest: assert (peak > 32'(depth_q) || (peak == 32'(depth_q) && peak_place <= watched));
         end
-        if (count_q != 0) begin
-          if (peak_place == watched) peak_attained: assert (held_q && peak == 32'(depth_q));
-          if (sums.least_row == 16'(watched_row) || sums.greatest_row == 16'(watched_row)) begin
-            row_attained: assert (in_row_q);
-          end
+        if (want.area != '0) begin
+          if (sums.least_row == upright_row || sums.greatest_row == upright_row) row_attained: assert (want.in_row);
           if (sums.least_column == 16'(watched_column) || sums.greatest_column == 16'(watched_column)) begin
-            column_attained: assert (in_column_q);
+            column_attained: assert (want.in_column);
           end
         end
       end
-      some_above: cover (sums_valid && held_q && count_q == AreaWidth'(3) && peak != 32'(depth_q));
-      none_above: cover (sums_valid && count_q == 0);
-      next_follows: cover (area_valid && above != '0 && first_q);
+      some_above: cover (sums_valid && want.held && want.area == 4'd3 && want.rows != want.columns);
+      none_above: cover (sums_valid && want.area == '0);
+      next_follows: cover (sums_valid && in_valid);
     end
   end
 

@@ -1,44 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_centroid: row_sum and area are held from start to done; no sum is more than that of as many largest
-// positions; means count with done.
+// protocol_centroid: row_moment and weight are held from start to done; no moment is more than the weight times the
+// largest position; means count with done.
 
 `default_nettype none
 
 module protocol_centroid #(
   parameter int PositionWidth = 7,
-  parameter int AreaWidth     = 15,
-  localparam int SumWidth = AreaWidth + PositionWidth - 1,
-  localparam int LimitWidth = AreaWidth + PositionWidth
+  parameter int WeightWidth   = 38,
+  localparam int MomentWidth = WeightWidth + PositionWidth
 ) (
-  input  logic                 clk,
-  input  logic                 rst,
-  input  logic                 start,
-  input  logic [SumWidth-1:0]  column_sum,
-  input  logic [SumWidth-1:0]  row_sum,
-  input  logic [AreaWidth-1:0] area,
-  input  logic                 done,
-  output logic                 holds,
-  output logic                 counts_done,
-  output logic                 counts
+  input  logic                   clk,
+  input  logic                   rst,
+  input  logic                   start,
+  input  logic [MomentWidth-1:0] column_moment,
+  input  logic [MomentWidth-1:0] row_moment,
+  input  logic [WeightWidth-1:0] weight,
+  input  logic                   done,
+  output logic                   holds,
+  output logic                   counts_done,
+  output logic                   counts
 );
 
   logic reset, live = 1'b0, dividing = 1'b0;
-  logic [SumWidth-1:0] held_sum;
-  logic [AreaWidth-1:0] held_area;
-  logic [LimitWidth-1:0] limit;
-  assign limit = {area, PositionWidth'(0)} - LimitWidth'(area);
+  logic [MomentWidth-1:0] held_moment, limit;
+  logic [WeightWidth-1:0] held_weight;
+  assign limit = {weight, PositionWidth'(0)} - MomentWidth'(weight);
   assign reset = rst | ~holds;
   assign holds = rst | (start
-      ? area != '0 & LimitWidth'(column_sum) <= limit & LimitWidth'(row_sum) <= limit
-      : ~dividing | (row_sum == held_sum & area == held_area));
+      ? weight != '0 & column_moment <= limit & row_moment <= limit
+      : ~dividing | (row_moment == held_moment & weight == held_weight));
   assign counts_done = live & ~reset;
   assign counts = counts_done & done;
   always_ff @(posedge clk) begin
     live <= live | reset;
     dividing <= ~reset & (start | (dividing & ~done));
     if (start) begin
-      held_sum <= row_sum;
-      held_area <= area;
+      held_moment <= row_moment;
+      held_weight <= weight;
     end
   end
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_contact_sums: frames as depth_frames allows them; area and sums count while they are valid.
+// protocol_contact_sums: frames as depth_frames allows them; sums count while they are valid, the limits where there is an
+// area.
 
 `default_nettype none
 
@@ -13,17 +14,14 @@ module protocol_contact_sums #(
   input  logic                  rst,
   input  logic                  in_valid,
   input  logic [2:0]            in_position,
-  input  logic                  area_valid,
   input  logic                  sums_valid,
   output logic [PlaceWidth-1:0] place,  // of the beat in its frame
   output logic                  holds,
-  output logic                  counts_area,
   output logic                  counts_sums,
   output logic                  counts
 );
 
   logic reset;
-  assign counts_area = counts & area_valid;
   assign counts_sums = counts & sums_valid;
   depth_frames #(.Rows(Rows), .Columns(Columns / Lanes)) u_frames (.*);
 

@@ -181,7 +181,7 @@ module fv_axil_registers
   assign writes_gain = {writes(LightGainBlueOffset), writes(LightGainGreenOffset), writes(LightGainRedOffset)};
   logic [LightGainWidth-1:0] gain_before;
   assign gain_before = writes_gain[0] ? light_gains[0] : writes_gain[1] ? light_gains[1] : light_gains[2];
-  logic [31:0] dim, averaged, zero_averaged, off, area, frames_needed, dark, given_up, lost;
+  logic [31:0] dim, averaged, zero_averaged, off, level, area, frames_needed, dark, given_up, lost;
   logic [31:0] limit, silence, high, frames_in, frames_out, frames_dropped, clipped, latency;
   logic clears;
   assign clears = writes(ControlOffset) & data[ControlClearCountersBit] & mask[ControlClearCountersBit];
@@ -254,6 +254,7 @@ module fv_axil_registers
     else if (read_offset == DepthDroppedOffset) word = given_up;
     else if (read_offset == RecordsLostOffset) word = lost;
     else if (read_offset == OffThresholdOffset) word = off;
+    else if (read_offset == AreaThresholdOffset) word = level;
     else if (read_offset == MinimumAreaOffset) word = area;
     else if (read_offset == DebounceOffset) word = frames_needed;
     else if (read_offset == InterruptStatusOffset) word = interrupts;
@@ -321,6 +322,7 @@ module fv_axil_registers
     if (writes_capture) averaged <= written(averaged) & 32'hf;
     if (writes_zero) zero_averaged <= written(zero_averaged) & 32'hf;
     if (writes(OffThresholdOffset)) off <= written(off);
+    if (writes(AreaThresholdOffset)) level <= written(level);
     if (writes(MinimumAreaOffset)) area <= written(area);
     if (writes(DebounceOffset)) frames_needed <= written(frames_needed) & 32'hff;
     if (writes(ThresholdOffset)) limit <= written(limit);
@@ -357,6 +359,7 @@ module fv_axil_registers
       {has_address, has_data, answered, asked, since, write_due, read_due, b_stalled, r_stalled, hold} <= '0;
       limit <= 32'h7fffffff;
       off <= 32'h7fffffff;
+      level <= '0;
       area <= 32'd1;
       frames_needed <= 32'd1;
       {drop, dim, averaged, zero_averaged, dark, given_up, lost} <= '0;
@@ -393,7 +396,8 @@ module fv_axil_registers
       // What leaves for the pipeline.
       outputs: assert (contact_settings.threshold == limit && timeout == silence
           && contact_settings.hold_contact == hold);
-      contact_words: assert (contact_settings.off_threshold == off && contact_settings.minimum_area == area
+      contact_words: assert (contact_settings.off_threshold == off && contact_settings.area_threshold == level
+          && contact_settings.minimum_area == area
           && 32'(contact_settings.debounce) == frames_needed);
       stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
           && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// centroid: mean column and mean row of an area, by one sequential divider.
+// centroid: mean column and mean row of weighted pixels, by one sequential divider.
 //
-//   mean = 16 sum / area, rounded to the nearest, ties to even: in units of 1/16 pixel
+//   mean = 16 moment / weight, rounded to the nearest, ties to even: in units of 1/16 pixel
 //
-// `start` begins with the column and abandons what is under way; it may come with `done`. column_sum counts in that
-// cycle; row_sum and area are held from `start` to `done`. No position has more than PositionWidth bits, so a sum is
-// less than area 2^PositionWidth; an area of 0 gives no meaning to the result.
+// `start` begins with the column and abandons what is under way; it may come with `done`. column_moment counts in that
+// cycle; row_moment and weight are held from `start` to `done`. A moment is the sum of each weight times its position.
+// No position has more than PositionWidth bits, so a moment is less than weight 2^PositionWidth; a weight of 0 gives no
+// meaning to the result.
 // Latency: 2 PositionWidth + 12 cycles from `start` to `done`; column and row are valid in that cycle alone.
 // Bit-accurate model: models/tactile_depth/contact/centroid.py.
 
@@ -13,31 +14,31 @@
 
 module centroid #(
   parameter int PositionWidth = 7,
-  parameter int AreaWidth     = 15,
-  localparam int SumWidth = AreaWidth + PositionWidth - 1,
+  parameter int WeightWidth   = 38,
+  localparam int MomentWidth = WeightWidth + PositionWidth,
   localparam int MeanWidth = PositionWidth + 4
 ) (
-  input  wire                  clk,
-  input  wire                  rst,
-  input  wire                  start,
-  input  wire  [SumWidth-1:0]  column_sum,  // pixels
-  input  wire  [SumWidth-1:0]  row_sum,     // pixels
-  input  wire  [AreaWidth-1:0] area,        // pixels
-  output logic                 done,
-  output logic [MeanWidth-1:0] column,      // 4 fraction bits, pixels
-  output logic [MeanWidth-1:0] row          // 4 fraction bits, pixels
+  input  wire                    clk,
+  input  wire                    rst,
+  input  wire                    start,
+  input  wire  [MomentWidth-1:0] column_moment,
+  input  wire  [MomentWidth-1:0] row_moment,
+  input  wire  [WeightWidth-1:0] weight,
+  output logic                   done,
+  output logic [MeanWidth-1:0]   column,         // 4 fraction bits, pixels
+  output logic [MeanWidth-1:0]   row             // 4 fraction bits, pixels
 );
 
   localparam int QuotientWidth = MeanWidth + 1;  // one bit to round by
 
   logic of_row, divided;
-  logic [SumWidth-1:0] sum;
+  logic [MomentWidth-1:0] moment;
   logic [QuotientWidth-1:0] quotient;
-  logic [AreaWidth-1:0] remainder;
+  logic [WeightWidth-1:0] remainder;
   logic unused_overflow;
-  assign sum = start ? column_sum : row_sum;
-  td_divide #(.DivisorWidth(AreaWidth), .QuotientWidth(QuotientWidth)) u_divide (
-    .clk, .rst, .start(start | (divided & ~of_row)), .numerator({1'b0, sum, 5'd0}), .divisor(area),
+  assign moment = start ? column_moment : row_moment;
+  td_divide #(.DivisorWidth(WeightWidth), .QuotientWidth(QuotientWidth)) u_divide (
+    .clk, .rst, .start(start | (divided & ~of_row)), .numerator({moment, 5'd0}), .divisor(weight),
     .done(divided), .quotient, .remainder, .overflow(unused_overflow)
   );
 

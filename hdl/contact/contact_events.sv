@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // contact_events: a record of the contact in each frame, and whether something touches.
 //
-//   contact_sums --> contact_debounce --> touching
-//        \-> centroid --> record_packets --> record, m_event
+//   depth --> contact_peak --> contact_debounce --> touching
+//     |            \-> area threshold
+//     \-> delay --> contact_sums --> centroid --> record_packets --> record, m_event
+//
+//   above = a depth greater than the threshold in force: on_threshold while not touching, off_threshold while touching
+//   area threshold of a frame = min(area_threshold, half the peak of the last frame, if one was above then), but never
+//   below the threshold in force; and a depth code
 //
 // Stream in: depth codes as they leave (valid and ready together), Lanes of them in a beat, raster order or,
 // BottomFirst, bottom row first; they are never held back, and gaps change nothing. A frame that begins inside another
 // begins afresh. Settings and in_time are taken with a frame's first beat. From the last beat of a frame to that of the
 // next lie at least Latency cycles. Stream out: the record of each frame, docs/registers.md, as a packet. Latency: the
-// record is in its register, until the next, Latency = 2 log2(larger side) + 16 + log2(Lanes) cycles after the last
+// record is in its register, until the next, Latency = 2 log2(larger side) + 2 log2(Lanes) + 20 cycles after the last
 // beat, touching 3 cycles after it. Bit-accurate model: models/tactile_depth/contact/contact_events.py.
 
 `default_nettype none
@@ -21,7 +26,7 @@ module contact_events
   parameter int Columns     = 128,
   parameter int Lanes       = 1,  // depths in a beat
   parameter int BottomFirst = 0,  // 1: the bottom row comes first
-  localparam int Words = 13
+  localparam int Words = 12
 ) (
   input  wire                     clk,
   input  wire                     rst,
@@ -31,7 +36,8 @@ module contact_events
   input  wire  [31:0]             in_time,         // of the frame that begins, cycles
   input  wire  signed [31:0]      on_threshold,    // depth code
   input  wire  signed [31:0]      off_threshold,   // depth code
-  input  wire  [31:0]             minimum_area,    // pixels
+  input  wire  signed [31:0]      area_threshold,  // depth code
+  input  wire  [31:0]             minimum_area,    // pixels above
   input  wire  [7:0]              debounce,        // frames
   output logic                    touching,
   output logic                    record_valid,    // the record is new in this cycle
@@ -44,61 +50,122 @@ module contact_events
 );
 
   localparam int PositionWidth = $clog2(Rows > Columns ? Rows : Columns);
-  localparam int AreaWidth = $clog2(Rows * Columns + 1);
-  localparam int SumWidth = AreaWidth + PositionWidth - 1;
-  localparam int Latency = 2 * PositionWidth + 16 + $clog2(Lanes);
+  localparam int CountWidth = $clog2(Rows * Columns + 1);
+  localparam int WeightWidth = Width + $clog2(Rows * Columns);
+  localparam int MomentWidth = WeightWidth + PositionWidth;
+  localparam int Latency = 2 * PositionWidth + 2 * $clog2(Lanes) + 20;
+  localparam int Delay = $clog2(Lanes) + 4;  // until the first beat of a frame finds the area threshold
+  localparam int PositionBits = $bits(depth_position_t);
 
-  logic touching_next, area_valid, sums_valid, began, ended;
-  logic [AreaWidth-1:0] area, area_q;
-  contact_sums_t sums, sums_q;  // sums_q: of the last frame
-  contact_sums #(
+  // Settings and time: of the frame that comes in (_q: since its first beat), and of the last frame (last_).
+
+  logic signed [31:0] on, on_q, off, off_q, area_limit;
+  logic [31:0] minimum, last_minimum, start_time, last_time, frame;
+  logic [7:0] frames_needed, last_frames_needed;
+  assign {on, off} = in_position.frame_start ? {on_threshold, off_threshold} : {on_q, off_q};
+
+  logic touching_next, count_valid, peak_valid, any_above, last_any, began, ended;
+  logic [CountWidth-1:0] count;
+  logic signed [Width-1:0] peak, last_peak;
+  logic [15:0] peak_row, peak_column, last_peak_row, last_peak_column;
+  contact_peak #(
     .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
-  ) u_sums (
-    .clk, .rst, .in_valid, .in_position, .in_data, .on_threshold, .off_threshold, .touching(touching_next),
-    .area_valid, .area, .sums_valid, .sums
+  ) u_peak (
+    .clk, .rst, .in_valid, .in_position, .in_data, .on_threshold(on), .off_threshold(off), .touching(touching_next),
+    .count_valid, .count, .peak_valid, .any_above, .peak, .peak_row, .peak_column
   );
-
-  // Settings and time: of the frame that comes in, and of the last frame (_q).
-
-  logic [31:0] minimum, minimum_q, start_time, start_time_q, frame;
-  logic [7:0] frames_needed, frames_needed_q;
-  contact_debounce #(.AreaWidth(AreaWidth)) u_debounce (
-    .clk, .rst, .area_valid, .area, .minimum_area(minimum_q), .debounce(frames_needed_q),
+  contact_debounce #(.AreaWidth(CountWidth)) u_debounce (
+    .clk, .rst, .area_valid(count_valid), .area(count), .minimum_area(last_minimum), .debounce(last_frames_needed),
     .touching_next, .touching, .began, .ended
   );
 
-  logic centroid_valid;
-  logic [PositionWidth+3:0] mean_column, mean_row;
-  logic [31:0] mean_position;
-  centroid #(.PositionWidth(PositionWidth), .AreaWidth(AreaWidth)) u_centroid (
-    .clk, .rst, .start(sums_valid), .column_sum(SumWidth'(sums.column_sum)), .row_sum(SumWidth'(sums_q.row_sum)),
-    .area(area_q), .done(centroid_valid), .column(mean_column), .row(mean_row)
+  // Area threshold. The delayed frame takes it Delay cycles after its first beat, when the peak of the last is known.
+
+  logic signed [31:0] in_force, half_peak, wanted, least_wanted;
+  logic signed [Width-1:0] level, level_of_frame, last_level;
+  assign in_force = touching ? off_q : on_q;
+  assign half_peak = 32'(last_peak >>> 1);
+  assign wanted = last_any && half_peak < area_limit ? half_peak : area_limit;
+  assign least_wanted = wanted > in_force ? wanted : in_force;
+  always_ff @(posedge clk) begin
+    level <= least_wanted[Width-1:0];
+    if (least_wanted[31:Width-1] != {(33 - Width) {least_wanted[31]}}) begin
+      level <= {least_wanted[31], {(Width - 1) {~least_wanted[31]}}};
+    end
+  end
+
+  logic [Delay-1:0] valid_delayed;
+  depth_position_t late_position;
+  logic [Lanes*Width-1:0] late_data;
+  logic late_valid, sums_valid, sums_held;
+  contact_sums_t sums, last_sums;
+  td_delay_line #(.Width(PositionBits + Lanes * Width), .Delay(Delay)) u_delay (
+    .clk, .rst, .en(1'b1), .in({in_position, in_data}), .out({late_position, late_data})
   );
-  assign mean_position = area_q == '0 ? '0 : {16'(mean_row), 16'(mean_column)};
+  assign late_valid = valid_delayed[Delay-1];
+  contact_sums #(
+    .Width(Width), .Rows(Rows), .Columns(Columns), .Lanes(Lanes), .BottomFirst(BottomFirst)
+  ) u_sums (
+    .clk, .rst, .in_valid(late_valid), .in_position(late_position), .in_data(late_data), .threshold(level),
+    .sums_valid, .sums
+  );
+
+  // Centroid. The moments count from the last row to come and from the last column; without area it is the peak.
+
+  localparam logic [15:0] LastRow = 16'(16 * (Rows - 1));  // in units of 1/16 pixel
+  localparam logic [15:0] LastColumn = 16'(16 * (Columns - 1));
+
+  logic centroid_valid, no_area;
+  logic [PositionWidth+3:0] mean_column, mean_row;
+  logic [31:0] middle, least, greatest, peak_position;
+  centroid #(.PositionWidth(PositionWidth), .WeightWidth(WeightWidth)) u_centroid (
+    .clk, .rst, .start(sums_held), .column_moment(MomentWidth'(last_sums.column_moment)),
+    .row_moment(MomentWidth'(last_sums.row_moment)), .weight(WeightWidth'(last_sums.weight)), .done(centroid_valid),
+    .column(mean_column), .row(mean_row)
+  );
+  assign no_area = last_sums.area == '0;
+  assign peak_position = {last_peak_row, last_peak_column};
+  assign middle = no_area ? peak_position << 4
+      : {BottomFirst != 0 ? 16'(mean_row) : LastRow - 16'(mean_row), LastColumn - 16'(mean_column)};
+  assign least = no_area ? peak_position : {last_sums.least_row, last_sums.least_column};
+  assign greatest = no_area ? peak_position : {last_sums.greatest_row, last_sums.greatest_column};
 
   record_packets #(.Words(Words)) u_packets (
     .clk, .rst, .new_valid(centroid_valid),
-    .new_record({mean_position, sums_q, 32'(area_q), start_time_q, frame, 29'd0, ended, began, touching}),
+    .new_record({middle, last_sums.weight, greatest, least, last_sums.area, 32'(last_level), peak_position,
+      32'(last_peak), last_time, frame, 29'd0, ended, began, touching}),
     .record_valid, .record, .record_lost, .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
 
   always_ff @(posedge clk) begin
     if (in_valid && in_position.frame_start) begin
+      {on_q, off_q} <= {on, off};
+      area_limit <= area_threshold;
       minimum <= minimum_area;
       frames_needed <= debounce;
       start_time <= in_time;
     end
     if (in_valid && in_position.frame_end) begin
-      minimum_q <= minimum;
-      frames_needed_q <= frames_needed;
-      start_time_q <= start_time;
+      last_minimum <= minimum;
+      last_frames_needed <= frames_needed;
+      last_time <= start_time;
     end
-    if (area_valid) begin
-      area_q <= area;
-      frame <= frame + 32'd1;
+    if (count_valid) frame <= frame + 32'd1;
+    if (peak_valid) begin
+      {last_any, last_peak} <= {any_above, peak};
+      {last_peak_row, last_peak_column} <= {peak_row, peak_column};
     end
-    if (sums_valid) sums_q <= sums;
-    if (rst) frame <= '0;
+    valid_delayed <= Delay'({valid_delayed, in_valid});
+    if (late_valid && late_position.frame_start) level_of_frame <= level;
+    if (late_valid && late_position.frame_end) last_level <= level_of_frame;
+    if (sums_valid) last_sums <= sums;
+    sums_held <= sums_valid;
+    if (rst) begin
+      frame <= '0;
+      last_any <= 1'b0;
+      sums_held <= 1'b0;
+      valid_delayed <= '0;
+    end
   end
 
   if (Rows * Columns < Latency) begin : g_refused

@@ -87,8 +87,8 @@ module contact_unit
   ) u_events (
     .clk, .rst, .in_valid(tap_valid), .in_position(tap_position), .in_data(tap_data),
     .in_time(tap_time), .on_threshold(settings.threshold), .off_threshold(settings.off_threshold),
-    .minimum_area(settings.minimum_area), .debounce(settings.debounce), .touching,
-    .record_valid, .record, .record_lost,
+    .area_threshold(settings.area_threshold), .minimum_area(settings.minimum_area), .debounce(settings.debounce),
+    .touching, .record_valid, .record, .record_lost,
     .m_event_tdata, .m_event_tvalid, .m_event_tready, .m_event_tlast
   );
 

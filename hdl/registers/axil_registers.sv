@@ -138,6 +138,7 @@ module axil_registers
   );
   assign contact_settings.threshold = settings[ThresholdSetting];
   assign contact_settings.off_threshold = settings[OffThresholdSetting];
+  assign contact_settings.area_threshold = settings[AreaThresholdSetting];
   assign contact_settings.minimum_area = settings[MinimumAreaSetting];
   assign contact_settings.debounce = settings[DebounceSetting][7:0];
   assign contact_settings.hold_contact = settings[ControlSetting][ControlHoldContactBit];

@@ -38,16 +38,16 @@ package td_register_map_pkg;
   localparam int RecordEventOffset = 32'h068;
   localparam int RecordFrameOffset = 32'h06c;
   localparam int RecordTimeOffset = 32'h070;
-  localparam int RecordAreaOffset = 32'h074;
-  localparam int RecordPeakOffset = 32'h078;
-  localparam int RecordPeakPositionOffset = 32'h07c;
-  localparam int RecordLeastOffset = 32'h080;
-  localparam int RecordGreatestOffset = 32'h084;
-  localparam int RecordColumnSumOffset = 32'h088;
-  localparam int RecordRowSumOffset = 32'h08c;
-  localparam int RecordVolumeLowOffset = 32'h090;
-  localparam int RecordVolumeHighOffset = 32'h094;
-  localparam int RecordCentroidOffset = 32'h098;
+  localparam int RecordPeakOffset = 32'h074;
+  localparam int RecordPeakPositionOffset = 32'h078;
+  localparam int RecordAreaThresholdOffset = 32'h07c;
+  localparam int RecordAreaOffset = 32'h080;
+  localparam int RecordLeastOffset = 32'h084;
+  localparam int RecordGreatestOffset = 32'h088;
+  localparam int RecordWeightLowOffset = 32'h08c;
+  localparam int RecordWeightHighOffset = 32'h090;
+  localparam int RecordCentroidOffset = 32'h094;
+  localparam int AreaThresholdOffset = 32'h098;
   localparam int ZeroCaptureOffset = 32'h09c;
   localparam int InterruptStatusOffset = 32'h0a0;
   localparam int InterruptMaskOffset = 32'h0a4;
@@ -61,7 +61,7 @@ package td_register_map_pkg;
   localparam int LightGainBlueOffset = 32'h0dc;
 
   // Words of a record of contact.
-  localparam int RecordWords = 13;
+  localparam int RecordWords = 12;
 
   // Values after reset that are not zero.
   localparam int IdReset = 32'h54444550;
@@ -138,7 +138,7 @@ package td_register_map_pkg;
   localparam int DeviceQuadratic = 1;
 
   // Registers that software alone writes, by number, in words of 32 bits, the lowest first.
-  localparam int Settings = 13;
+  localparam int Settings = 14;
   localparam int ControlSetting = 0;
   localparam int ThresholdSetting = 1;
   localparam int TimeoutSetting = 2;
@@ -148,22 +148,23 @@ package td_register_map_pkg;
   localparam int OffThresholdSetting = 6;
   localparam int MinimumAreaSetting = 7;
   localparam int DebounceSetting = 8;
-  localparam int ZeroCaptureSetting = 9;
-  localparam int InterruptMaskSetting = 10;
-  localparam int PitchSetting = 11;
-  localparam int LightSetting = 12;
+  localparam int AreaThresholdSetting = 9;
+  localparam int ZeroCaptureSetting = 10;
+  localparam int InterruptMaskSetting = 11;
+  localparam int PitchSetting = 12;
+  localparam int LightSetting = 13;
   localparam logic [32*Settings-1:0] SettingOffsets = {
-    LightOffset, PitchOffset, InterruptMaskOffset, ZeroCaptureOffset, DebounceOffset, MinimumAreaOffset,
-    OffThresholdOffset, ReferenceCaptureOffset, DarkLevelOffset, TableSelectOffset, TimeoutOffset, ThresholdOffset,
-    ControlOffset
+    LightOffset, PitchOffset, InterruptMaskOffset, ZeroCaptureOffset, AreaThresholdOffset, DebounceOffset,
+    MinimumAreaOffset, OffThresholdOffset, ReferenceCaptureOffset, DarkLevelOffset, TableSelectOffset,
+    TimeoutOffset, ThresholdOffset, ControlOffset
   };
   localparam logic [32*Settings-1:0] SettingMasks = {
-    32'h00000071, 32'hffffffff, 32'h00000003, 32'h0000000f, 32'h000000ff, 32'hffffffff, 32'hffffffff, 32'h0000000f,
-    32'h000000ff, 32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
+    32'h00000071, 32'hffffffff, 32'h00000003, 32'h0000000f, 32'hffffffff, 32'h000000ff, 32'hffffffff, 32'hffffffff,
+    32'h0000000f, 32'h000000ff, 32'h00000003, 32'hffffffff, 32'hffffffff, 32'h00000005
   };
   localparam logic [32*Settings-1:0] SettingResets = {
-    32'h00000001, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001, 32'h7fffffff, 32'h00000000,
-    32'h00000000, 32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
+    32'h00000001, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h00000001, 32'h00000001, 32'h7fffffff,
+    32'h00000000, 32'h00000000, 32'h00000000, 32'h00000000, 32'h7fffffff, 32'h00000000
   };
 
   // Offsets that can be read, and those that can be written.
@@ -175,9 +176,9 @@ package td_register_map_pkg;
       TableLowOffset, TableCommitOffset, TableSizeOffset, DarkLevelOffset,
       ReferenceCaptureOffset, DarkPixelsOffset, DepthDroppedOffset, RecordsLostOffset,
       OffThresholdOffset, MinimumAreaOffset, DebounceOffset, RecordEventOffset,
-      RecordFrameOffset, RecordTimeOffset, RecordAreaOffset, RecordPeakOffset,
-      RecordPeakPositionOffset, RecordLeastOffset, RecordGreatestOffset, RecordColumnSumOffset,
-      RecordRowSumOffset, RecordVolumeLowOffset, RecordVolumeHighOffset, RecordCentroidOffset,
+      RecordFrameOffset, RecordTimeOffset, RecordPeakOffset, RecordPeakPositionOffset,
+      RecordAreaThresholdOffset, RecordAreaOffset, RecordLeastOffset, RecordGreatestOffset,
+      RecordWeightLowOffset, RecordWeightHighOffset, RecordCentroidOffset, AreaThresholdOffset,
       ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, DeviceOffset,
       DepthUnitOffset, SlopeUnitOffset, PitchOffset, LightOffset, LightGainRedOffset,
       LightGainGreenOffset, LightGainBlueOffset: is_register = 1'b1;
@@ -189,8 +190,8 @@ package td_register_map_pkg;
       ControlOffset, StatusOffset, ThresholdOffset, TimeoutOffset, TableSelectOffset,
       TableIndexOffset, TableHighOffset, TableLowOffset, TableCommitOffset, DarkLevelOffset,
       ReferenceCaptureOffset, OffThresholdOffset, MinimumAreaOffset, DebounceOffset,
-      ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset, PitchOffset, LightOffset,
-      LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset: is_writable = 1'b1;
+      AreaThresholdOffset, ZeroCaptureOffset, InterruptStatusOffset, InterruptMaskOffset,
+      PitchOffset, LightOffset, LightGainRedOffset, LightGainGreenOffset, LightGainBlueOffset: is_writable = 1'b1;
       default: is_writable = 1'b0;
     endcase
   endfunction

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 from tactile_depth import reference as exact
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import LIGHT_GAIN, Configuration
-from tactile_depth.contact.contact_events import ContactEvents, Settings
+from tactile_depth.contact.contact_events import ContactEvents, Record, Settings
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
@@ -45,10 +45,27 @@ SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 BOUNDARIES = ("neumann", "dirichlet")
 PARAMETERS = "parameters.json"
+THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # registers, by field of Settings
 PICTURES = Argument("pictures")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
 
 Pictures = np.ndarray | str | Path
+
+
+@dataclass
+class Stream:
+    """What a stream of pictures has left behind for the next.
+
+    Attributes
+    ----------
+    light : LightFilter or None
+        Light gains; None for a pipeline without them.
+    events : ContactEvents
+        Whether something touches, and the last peak.
+    """
+
+    light: LightFilter | None
+    events: ContactEvents
 
 
 def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
@@ -96,6 +113,10 @@ class Pipeline:
         `chip`, bit-accurate as in the hardware, or `float`, double precision.
     threshold_mm : float
         Depth above which a pixel touches.
+    area_threshold_mm : float
+        Depth above which a pixel is in the area of the contact, whose centroid, limits and volume are recorded. Half
+        the peak of the frame before counts where that is less, but never less than `threshold_mm`. A picture that is
+        not of a stream counts as the frame before itself.
 
     Attributes
     ----------
@@ -130,6 +151,7 @@ class Pipeline:
         light_gains: bool | None = None,
         arithmetic: str = "chip",
         threshold_mm: float = 0.1,
+        area_threshold_mm: float = 0.3,
     ) -> None:
         if not isinstance(sensor, Sensor):
             problem = f" is a {type(sensor).__name__}"
@@ -167,9 +189,11 @@ class Pipeline:
             limit = f"{self.config.depth_limit_px * self.pixel_pitch_mm:.3g} mm"
             accepted = f"a depth above 0 and within the depth range of {limit}"
             raise InputError(Argument("threshold_mm", threshold_mm), accepted=accepted)
-        self.threshold_mm = threshold_mm
-        self._threshold = round(threshold_mm / self.depth_lsb_mm)
-        self._events = ContactEvents(rows, columns, bottom_first=solver == "tridiagonal")
+        if not is_number(area_threshold_mm) or not 0 <= area_threshold_mm / self.depth_lsb_mm < 2**31:
+            raise InputError(Argument("area_threshold_mm", area_threshold_mm), accepted="a depth, 0 or more")
+        self.threshold_mm, self.area_threshold_mm = threshold_mm, area_threshold_mm
+        threshold, area = (round(depth / self.depth_lsb_mm) for depth in (threshold_mm, area_threshold_mm))
+        self._settings = Settings(threshold, threshold, area, minimum_area=1, debounce=1)
         self._gains = unit_gains(self.config)
         self._zero = no_zero(self.config)
         self._exact_zero = np.zeros(self.grid)
@@ -180,7 +204,7 @@ class Pipeline:
             if zero_offset:
                 self._use_zero(rest)
 
-    def __call__(self, pictures: Pictures, light: LightFilter | None = None) -> Result:
+    def __call__(self, pictures: Pictures, stream: Stream | None = None) -> Result:
         """Return the depth of pictures.
 
         Parameters
@@ -188,9 +212,9 @@ class Pipeline:
         pictures : uint8 array (rows, columns, 3) or (frames, rows, columns, 3), RGB, or a path
             Full pictures of the sensor's camera, or scaled pictures of the same aspect ratio. A path names a picture
             (PNG, JPEG), a `.npy` of frames or a folder of pictures.
-        light : LightFilter, optional
-            The light gains of a stream, `light_filter`, to which the pictures belong, in their order; by default each
-            picture has light gains of its own.
+        stream : Stream, optional
+            The stream, `new_stream`, to which the pictures belong, in their order; by default each picture stands for
+            itself.
 
         Returns
         -------
@@ -203,17 +227,16 @@ class Pipeline:
         """
         frames, single = self._read(pictures, PICTURES)
         monitor = Monitor()
-        gains = light_of(frames, self._tables, self.config, light)
+        gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light)
         if self.arithmetic == "chip":
-            slopes, stream = self._chip(frames, monitor, gains)
-            stream = zeroed(stream, self.config, monitor, self._zero)
+            slopes, depth = self._chip(frames, monitor, gains)
+            depth = zeroed(depth, self.config, monitor, self._zero)
         else:
-            slopes, stream = self._exact(frames, gains)
-            stream = stream - self._exact_zero
-        codes = np.rint(stream).astype(np.int32)
-        settings = Settings(self._threshold, self._threshold, minimum_area=1, debounce=1)
-        records = tuple(self._events.whole_frame(frame, settings, time=0) for frame in codes)
-        codes, depth_mm = self._upright(codes), self._upright(stream) * self.depth_lsb_mm
+            slopes, depth = self._exact(frames, gains)
+            depth = depth - self._exact_zero
+        codes = np.rint(depth).astype(np.int32)
+        records = tuple(self._record(frame, stream) for frame in codes)
+        codes, depth_mm = self._upright(codes), self._upright(depth) * self.depth_lsb_mm
         reference = self._tables.gains
         dark = np.zeros(codes.shape, bool) if reference is None else dark_pixels(frames, reference, self.config)
         result = Result(
@@ -224,7 +247,7 @@ class Pipeline:
             None if gains is None else gains * LIGHT_GAIN.lsb,
             records,
             dict(monitor.saturations),
-            self._threshold,
+            self._settings.on_threshold,
             self.depth_lsb_mm,
             self.pixel_pitch_mm,
             self.sensor.fitted_slope.get(self.config.gradient_model, math.inf),
@@ -233,7 +256,9 @@ class Pipeline:
         return result[0] if single else result
 
     def stream(self, pictures: Iterable[np.ndarray]) -> Iterator[Result]:
-        """Give the depth of the pictures of a stream, as the hardware does: its light gains act on the next picture.
+        """Give the depth of the pictures of a stream, as the hardware does.
+
+        Light gains act on the next picture, and half the peak of a contact bounds the area of the next.
 
         Parameters
         ----------
@@ -243,13 +268,14 @@ class Pipeline:
         ------
         InputError
         """
-        light = self.light_filter()
+        stream = self.new_stream()
         for picture in pictures:
-            yield self(picture, light)
+            yield self(picture, stream)
 
-    def light_filter(self) -> LightFilter | None:
-        """Return the light gains of a new stream, all 1; None for a pipeline without light gains."""
-        return LightFilter(Light.of(self.config)) if self.config.light_gains else None
+    def new_stream(self) -> Stream:
+        """Return the state of a stream before its first picture: light gains of 1, no contact."""
+        light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
+        return Stream(light, ContactEvents(*self.grid, self.config.data_width, self.config.solver == "tridiagonal"))
 
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
@@ -295,7 +321,7 @@ class Pipeline:
         ----------
         folder : path
             Created if it is missing. Its `parameters.json` holds the parameters of hdl/tactile_depth.sv, the fields of
-            Config by name, the contact threshold for the register, units, and the names of the tables.
+            Config by name, the contact thresholds for the registers, units, and the names of the tables.
 
         Returns
         -------
@@ -313,7 +339,7 @@ class Pipeline:
             description = {
                 "parameters": {"Config": config_value(fields)},
                 "fields": fields,
-                "registers": {"THRESHOLD": self._threshold},
+                "registers": {name: getattr(self._settings, field) for name, field in THRESHOLDS.items()},
                 "grid": list(self.grid),
                 "depth_lsb_mm": self.depth_lsb_mm,
                 "pixel_pitch_mm": self.pixel_pitch_mm,
@@ -324,6 +350,14 @@ class Pipeline:
             }
             (unfinished / PARAMETERS).write_text(json.dumps(description, indent=1) + "\n")
         return folder / PARAMETERS
+
+    def _record(self, codes: np.ndarray, stream: Stream | None) -> Record:
+        """Return the record of depth codes as they leave; a picture that is not of a stream stands still."""
+        if stream is not None:
+            return stream.events.whole_frame(codes, self._settings, time=0)
+        events = self.new_stream().events
+        events.whole_frame(codes, self._settings, time=0)
+        return events.whole_frame(codes, self._settings, time=0)
 
     # Arithmetic. Each function returns slopes, and depth in codes before the zero offset, rows in stream order.
 

@@ -24,11 +24,14 @@ class Contact:
         Words of the hardware: depth in codes, positions in grid pixels.
     mask : bool array (rows, columns)
         Pixels whose depth is above the threshold, rows from the top of the picture.
+    untouched_mm : float
+        Mean depth of the other pixels, which a height is counted from, in mm; NaN without any.
     depth_lsb_mm, pixel_pitch_mm : float
     """
 
     record: Record
     mask: np.ndarray
+    untouched_mm: float
     depth_lsb_mm: float
     pixel_pitch_mm: float
 
@@ -39,7 +42,7 @@ class Contact:
 
     @property
     def peak_mm(self) -> float:
-        """Largest depth above the threshold, in mm; 0 without contact."""
+        """Largest depth above the threshold, in mm; 0 without contact. Its height is `peak_mm - untouched_mm`."""
         return self.record.peak * self.depth_lsb_mm
 
     @property
@@ -48,18 +51,26 @@ class Contact:
         return self.record.peak_position
 
     @property
+    def area_threshold_mm(self) -> float:
+        """Depth above which a pixel of this frame is in the area, in mm."""
+        return self.record.area_threshold * self.depth_lsb_mm
+
+    @property
     def area_mm2(self) -> float:
-        """Area whose depth is above the threshold, in mm^2."""
+        """Area whose depth is above `area_threshold_mm`, in mm^2; 0 for a contact that does not reach it."""
         return self.record.area * self.pixel_pitch_mm**2
 
     @property
     def volume_mm3(self) -> float:
-        """Sum of the depths above the threshold times the area of a pixel, in mm^3."""
+        """Sum of the depths in the area times the area of a pixel, in mm^3."""
         return self.record.volume * self.depth_lsb_mm * self.pixel_pitch_mm**2
 
     @property
     def centroid_px(self) -> tuple[float, float]:
-        """Row and column of the centre of the area on the grid, to 1/16 of a pixel."""
+        """Row and column of the area's centre on the grid, weighted by depth above `area_threshold_mm`, to 1/16 pixel.
+
+        Of a contact without area the peak.
+        """
         row, column = self.record.centroid
         return row / 2**FRACTION, column / 2**FRACTION
 
@@ -86,7 +97,7 @@ class Contact:
 
     @property
     def is_central(self) -> bool:
-        """True if the contact lies wholly in the middle square, where `Result.height_error` was measured."""
+        """True if the area lies wholly in the middle square, where `Result.height_error` was measured."""
         shape, side = self.mask.shape, min(self.mask.shape)
         bounds = zip(shape, self.record.least, self.record.greatest, strict=True)
         return all((length - side) // 2 < least <= most < (length + side) // 2 - 1 for length, least, most in bounds)
@@ -164,15 +175,17 @@ class Result:
         return self.codes > self.threshold
 
     @cached_property
-    def height_mm(self) -> np.ndarray:
-        """Depth above the untouched surface: `depth_mm` minus the mean of the depths that are not above the threshold.
-
-        Without such a pixel the untouched surface is unknown, and the height is NaN.
-        """
+    def untouched_mm(self) -> np.ndarray:
+        """Mean of the depths that are not above the threshold, of each frame, in mm; NaN without such a pixel."""
         untouched = ~self.mask
-        count = untouched.sum(axis=(-2, -1), keepdims=True)
-        total = np.where(untouched, self.depth_mm, 0).sum(axis=(-2, -1), keepdims=True)
-        return self.depth_mm - np.where(count, total / np.maximum(count, 1), np.nan)
+        count = untouched.sum(axis=(-2, -1))
+        total = np.where(untouched, self.depth_mm, 0).sum(axis=(-2, -1))
+        return np.where(count, total / np.maximum(count, 1), np.nan)
+
+    @cached_property
+    def height_mm(self) -> np.ndarray:
+        """Depth above the untouched surface: `depth_mm` minus `untouched_mm`."""
+        return self.depth_mm - self.untouched_mm[..., None, None]
 
     @cached_property
     def outside(self) -> np.ndarray:
@@ -184,4 +197,5 @@ class Result:
         """Contact of a single picture; for several frames use `result[i].contact`."""
         if self.codes.ndim != 2:
             raise AttributeError("several frames have several contacts: use result[i].contact")
-        return Contact(self.records[0], self.mask, self.depth_lsb_mm, self.pixel_pitch_mm)
+        untouched = float(self.untouched_mm)
+        return Contact(self.records[0], self.mask, untouched, self.depth_lsb_mm, self.pixel_pitch_mm)

@@ -142,10 +142,10 @@ class Board:
     def records_of(self, pixels: np.ndarray, thresholds: Any, times: Any) -> list[tuple[Any, bool]]:
         """Return the record of each frame, and whether its light is on, from its thresholds and its time."""
         depth = tactile_depth(pixels, synthetic(self.config.bits_per_channel), self.config)
-        events = ContactEvents(self.rows, self.columns, self.config.solver == "tridiagonal")
+        events = ContactEvents(self.rows, self.columns, self.config.data_width, self.config.solver == "tridiagonal")
         expected_records = []
         for codes, (on, off), time in zip(depth, thresholds, times, strict=True):
-            settings = Settings(on, off, 1, 1)
+            settings = Settings(on, off, 0, 1, 1)
             for place, code in enumerate(codes.flat):
                 row_end = place % self.columns == self.columns - 1
                 record = events.beat(int(code), place == 0, row_end, place == codes.size - 1, settings, time)

@@ -142,3 +142,7 @@ class DepthBench:
         if rng.random() < 0.05:
             on, off = rng.choice([WORD_LOW, WORD_HIGH, self.low, self.high], 2)
         return int(on), int(off)
+
+    def random_level(self, rng: np.random.Generator, depth: np.ndarray) -> int:
+        """Return a random threshold near the values of the map, within the range of a depth code."""
+        return int(np.clip(self.random_thresholds(rng, depth)[0], self.low, self.high))

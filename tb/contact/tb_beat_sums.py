@@ -11,24 +11,17 @@ from tactile_depth.contact.beat_sums import BeatSums, beat_sums, latency
 from tb.stream import drive, parameters
 
 BEATS = 600
-SIGNED = ("volume", "peak")
 
 
 def beats(lanes: int, width: int) -> list[tuple[list[bool], list[int]]]:
-    """Return random depths of every kind; some beats have few different values, so that peaks are equal."""
+    """Return beats of random and of the largest weights, few to all of them above."""
     rng = np.random.default_rng(cocotb.RANDOM_SEED)
-    low, high = -(1 << width - 1), (1 << width - 1) - 1
+    largest = (1 << width) - 1
     made = []
     for index in range(BEATS):
-        share = rng.choice([0.0, 0.2, 0.5, 1.0])
-        match index % 3:
-            case 0:
-                depths = rng.integers(low, high, lanes, endpoint=True)
-            case 1:
-                depths = rng.choice([low, high], lanes)
-            case _:
-                depths = rng.integers(-1, 2, lanes)
-        made.append(((rng.random(lanes) < share).tolist(), depths.tolist()))
+        above = rng.random(lanes) < rng.choice([0.0, 0.2, 0.5, 1.0])
+        weights = rng.integers(1, largest, lanes, endpoint=True) if index % 2 else rng.choice([1, largest], lanes)
+        made.append((above.tolist(), np.where(above, weights, 0).tolist()))
     return made
 
 
@@ -36,20 +29,18 @@ def beats(lanes: int, width: int) -> list[tuple[list[bool], list[int]]]:
 async def random_beats(dut: Any) -> None:
     lanes, width = parameters(dut, "Lanes", "Width")
     sent = beats(lanes, width)
-    mask = (1 << width) - 1
     stimuli = [
         {
             "above": sum(bit << lane for lane, bit in enumerate(above)),
-            "data": sum((depth & mask) << lane * width for lane, depth in enumerate(depths)),
+            "weights": sum(weight << lane * width for lane, weight in enumerate(weights)),
         }
-        for above, depths in sent
+        for above, weights in sent
     ]
     names = [field.name for field in fields(BeatSums)]
     pins = await drive(dut, [*stimuli, *[stimuli[-1]] * latency(lanes)], names)
-    for index, (above, depths) in enumerate(sent):
-        wanted = beat_sums(above, depths)
+    for index, beat in enumerate(sent):
+        wanted = beat_sums(*beat)
         for name, value in asdict(wanted).items():
             if value is not None:
-                pin = pins[name][index + latency(lanes)]
-                have = pin.to_signed() if name in SIGNED else int(pin)
+                have = int(pins[name][index + latency(lanes)])
                 assert have == value, f"{name} of beat {index}: {have}, the model says {value}"

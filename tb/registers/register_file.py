@@ -85,7 +85,7 @@ class Checker(PortChecker):
         """Return the outputs that show settings."""
         values = self.model.values
         control = CONTROL.unpack(values["CONTROL"])
-        names = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
+        names = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
         contact = {name.lower(): values[name] for name in names}
         contact |= {name: control[name] for name in ("hold_contact", "drop_frames")}
         return {

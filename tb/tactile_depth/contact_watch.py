@@ -16,7 +16,7 @@ from tactile_depth.registers.register_map import MAP, REGISTERS
 from tb.register_mirror import RegisterMirror
 
 CONTROL = REGISTERS["CONTROL"]
-SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
+SETTINGS = ("THRESHOLD", "OFF_THRESHOLD", "AREA_THRESHOLD", "MINIMUM_AREA", "DEBOUNCE")
 RECORD = [register.name for register in MAP if register.name.startswith("RECORD_")]
 
 
@@ -37,7 +37,7 @@ class ContactWatch:
         self.dut, self.config, self.takes = dut, config, takes
         self.pixels = config.rows * config.columns
         self.comparator = ThresholdComparator()
-        self.events = ContactEvents(config.rows, config.columns, config.solver == "tridiagonal")
+        self.events = ContactEvents(config.rows, config.columns, config.data_width, config.solver == "tridiagonal")
         self.registers = RegisterMirror(dut, *SETTINGS, "CONTROL")
         self.raised: list[int] = []
         self.packets: list[list[int]] = []

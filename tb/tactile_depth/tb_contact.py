@@ -98,3 +98,7 @@ async def records_at_the_limits(dut: Any) -> None:
         for _ in range(debounce + 1):
             await pipeline.send(pressed)
             await pipeline.check(counters=False)
+    for level in (*chosen, int(depths[-1]) // 2 - 1, (1 << 31) - 1, -(1 << 31)):
+        await pipeline.write("AREA_THRESHOLD", level)
+        await pipeline.send(pressed, pressed)
+        await pipeline.check(counters=False)

@@ -13,30 +13,30 @@ from tactile_depth.contact.centroid import FRACTION, mean
 from tb.structures import ICARUS, VERILATOR, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
-built = of_parameters("PositionWidth AreaWidth")
+built = of_parameters("PositionWidth WeightWidth")
 STRUCTURES = (
-    built(7, 15, on=VERILATOR),
+    built(7, 38, on=VERILATOR),
     built(3, 6, on=ICARUS, mutants=True),
-    built(10, 21),
+    built(10, 52),
     built(2, 4),
     built(5, 9),
 )
 PROOFS = (
     Proof(
         "both means to the nearest, a fixed number of clocks after the last start",
-        f"every area and sum of this width; a bit is found in the same way at any width; {ROUNDING}",
+        f"every weight and moment of this width; a bit is found in the same way at any width; {ROUNDING}",
         {"Latency": centroid.cycles(2)},
         depth=40,
     ),
 )
 
 
-@given(st.lists(st.integers(0, 1023), min_size=1, max_size=300))
-def test_the_mean_is_the_nearest(positions: list[int]) -> None:
-    exact = Fraction(sum(positions), len(positions))
-    assert mean(sum(positions), len(positions), 10) == round(exact * 2**FRACTION)  # of a Fraction: ties to even
+@given(st.lists(st.tuples(st.integers(0, 1023), st.integers(1, 2**32 - 1)), min_size=1, max_size=300))
+def test_the_mean_is_the_nearest(pixels: list[tuple[int, int]]) -> None:
+    moment, weight = sum(position * weight for position, weight in pixels), sum(weight for _, weight in pixels)
+    assert mean(moment, weight, 10) == round(Fraction(moment, weight) * 2**FRACTION)  # of a Fraction: ties to even
 
 
-def test_a_total_beyond_the_largest_position_is_refused() -> None:
-    with pytest.raises(ValueError, match="too large for 3 positions of 4 bits"):
+def test_a_moment_beyond_the_largest_position_is_refused() -> None:
+    with pytest.raises(ValueError, match="too large for a weight of 3 and positions of 4 bits"):
         mean(48, 3, 4)

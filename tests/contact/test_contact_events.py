@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """contact_events: RTL against the model, and the words of a record."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -18,6 +16,7 @@ from tactile_depth.tactile_depth import tactile_depth
 from tb.structures import ICARUS, QUICK_FIRST, VERILATOR, Mutants, of_parameters
 from tests.rtl import test_rtl as test_rtl
 
+WORD, CODE = st.integers(0, 2**32 - 1), st.integers(-(2**31), 2**31 - 1)
 PLACE = st.tuples(st.integers(0, 1023), st.integers(0, 1023))
 
 
@@ -29,6 +28,7 @@ STRUCTURES = (
     built(12, 9, 4, 1, 0),
     built(24, 8, 16, 1, 0),
     built(24, 5, 32, 4, 1),
+    built(16, 8, 32, 8, 0),
     built(12, 4, 16, 2, 0),
 )
 MUTANTS = Mutants(simulators=QUICK_FIRST, outside=("frame",), flat=False)
@@ -44,37 +44,37 @@ REFUSED = {
 PROOFS = (
     Proof(
         "a record at a fixed latency, kept until the next, with number and time of its frame",
-        "rows and columns are only counted; whatever sums, area and centroid come out: they have their own proofs",
-        {"Rows": 3, "Columns": 8, "Latency": contact_events.latency(3, 8)},
+        "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",
+        {"Rows": 4, "Columns": 8, "Latency": contact_events.latency(4, 8)},
         depth=90,
-        free=("sums", "area", "mean_position"),
+        free=("sums", "count", "peak", "middle"),
     ),
 )
 
 
-@given(*(st.integers(0, 2**32 - 1) for _ in range(4)), st.integers(-(2**31), 2**31 - 1), PLACE, PLACE, PLACE, PLACE)
-def test_words_are_read_as_they_were_written(
-    status: Any, frame: Any, time: Any, area: Any, peak: Any, place: Any, least: Any, greatest: Any, middle: Any
-) -> None:
-    sent = Record(status, frame, time, area, peak, place, least, greatest, area, frame, peak << 21, middle)
+RECORDS = st.builds(Record, WORD, WORD, WORD, CODE, PLACE, CODE, WORD, PLACE, PLACE, st.integers(0, 2**64 - 1), PLACE)
+
+
+@given(RECORDS)
+def test_words_are_read_as_they_were_written(sent: Record) -> None:
     assert len(sent.words) == WORDS
     assert record(sent.words) == sent
 
 
 @pytest.mark.parametrize("solver", COLUMNS)
 def test_a_record_tells_the_zero_of_a_frame_whose_mean_is_zero(solver: str) -> None:
-    """Compute the depth at rest under Neumann, where a mean is zero: depths not above have -volume / rest."""
+    """Compute the depth at rest under Neumann, where a mean is zero: depths outside the area have -volume / rest."""
     config = Configuration(columns=32, solver=solver, neumann=True)
     frames = load_frames("bench", (32, 32))
     depths = tactile_depth(frames.pixels, on_grid(load("synthetic"), frames), config)
     for depth in depths:
         threshold = int(depth.max() // 4)
-        settings = Settings(threshold, threshold, 1, 1)
-        events = ContactEvents(32, 32, solver == "tridiagonal")
+        settings = Settings(threshold, threshold, threshold, 1, 1)
+        events = ContactEvents(32, 32, config.data_width, solver == "tridiagonal")
         beats = [(int(code), at == 0, at % 32 == 31, at == depth.size - 1) for at, code in enumerate(depth.ravel())]
         last = [events.beat(*beat, settings, 0) for beat in beats][-1]
         assert last is not None
         assert last.area > 0
-        zero = depth[depth <= threshold].mean()
+        zero = depth[depth <= last.area_threshold].mean()
         untouched = -last.volume / (depth.size - last.area)
         assert abs(untouched - zero) <= np.abs(depth).max() * 1e-5  # measured: 5e-7, 8e-6

@@ -126,7 +126,7 @@ def test_the_python_layer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert model.values["CONTROL"] == REGISTERS["CONTROL"].pack(hold_contact=1)
     device.REFERENCE_CAPTURE.log2_frames.write(6)
     assert device.REFERENCE_CAPTURE.read() == REGISTERS["REFERENCE_CAPTURE"].pack(log2_frames=6)
-    assert device.RECORD_PEAK_POSITION.row.read() == 7
+    assert device.RECORD_PEAK_POSITION.row.read() == 6
     device.TABLE_INDEX.value.write(3)
     device.TABLE_HIGH.write(5)
     device.TABLE_LOW.write(6)

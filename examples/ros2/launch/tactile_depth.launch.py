@@ -11,6 +11,7 @@ PARAMETERS = {
     "calibration": ("", str),
     "reference": ("", str),
     "threshold_mm": ("0.1", float),
+    "area_threshold_mm": ("0.3", float),
     "arithmetic": ("chip", str),
 }
 

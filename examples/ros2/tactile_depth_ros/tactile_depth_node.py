@@ -28,7 +28,8 @@ class TactileDepthNode(Node):
         super().__init__("tactile_depth")
         calibration = self.declare_parameter("calibration", "").value
         self._sensor = td.load(calibration) if calibration else None
-        self._threshold_mm = self.declare_parameter("threshold_mm", 0.1).value
+        names = {"threshold_mm": 0.1, "area_threshold_mm": 0.3}
+        self._thresholds = {name: self.declare_parameter(name, value).value for name, value in names.items()}
         self._arithmetic = self.declare_parameter("arithmetic", "chip").value
         path = self.declare_parameter("reference", "").value
         self._pipeline = None
@@ -49,7 +50,7 @@ class TactileDepthNode(Node):
         """Make the pipeline, with the calibration that was named or the built-in one that the reference looks like."""
         first = reference if reference.ndim == 3 else reference[0]
         sensor = self._sensor or td.identify(first)
-        self._pipeline = td.Pipeline(sensor, reference, threshold_mm=self._threshold_mm, arithmetic=self._arithmetic)
+        self._pipeline = td.Pipeline(sensor, reference, **self._thresholds, arithmetic=self._arithmetic)
         self.get_logger().info(f"calibration {sensor.name}, {self._pipeline.grid[1]} x {self._pipeline.grid[0]} pixels")
 
     def _ask(self, name: str, response: Trigger.Response) -> Trigger.Response:

@@ -39,10 +39,13 @@ UNITS = {
     "subtracted",
     "peak_px, centroid_px": "row, column on the grid",
     "peak_position_mm, centroid_mm": "row, column from the upper left corner of the picture; null without contact",
-    "area_mm2": "area above the threshold",
-    "is_central": "the contact lies wholly in the middle square, where calibration_error was measured; null without "
+    "area_threshold_mm": "depth above which a pixel is in the area: the one chosen, or half the contact's peak if that "
+    "is less, at least threshold_mm",
+    "area_mm2": "area above area_threshold_mm",
+    "centroid": "weighted by what depth is above area_threshold_mm",
+    "is_central": "the area lies wholly in the middle square, where calibration_error was measured; null without "
     "contact",
-    "volume_mm3": "sum of the depths above the threshold times the area of a pixel",
+    "volume_mm3": "sum of the depths in the area times the area of a pixel",
 }
 
 
@@ -162,6 +165,7 @@ def _describe_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> dict[
         "depth_lsb_mm": pipeline.depth_lsb_mm,
         "depth_range_mm": config.depth_range_px * pipeline.pixel_pitch_mm,
         "threshold_mm": pipeline.threshold_mm,
+        "area_threshold_mm": pipeline.area_threshold_mm,
     }
 
 
@@ -174,6 +178,7 @@ def _describe(result: Result) -> dict[str, Any]:
             "peak_mm": contact.peak_mm,
             "peak_px": list(contact.peak_px),
             "peak_position_mm": contact.peak_position_mm,
+            "area_threshold_mm": contact.area_threshold_mm if contact.touching else None,
             "area_mm2": contact.area_mm2,
             "volume_mm3": contact.volume_mm3,
             "centroid_px": list(contact.centroid_px),

@@ -123,13 +123,13 @@ def processed(frames: Iterator[Frame | None], pipeline: Pipeline, counts: Counts
     InputError
         The first frame cannot be processed. Later ones are counted as failed.
     """
-    is_first, light = True, pipeline.light_filter()
+    is_first, stream = True, pipeline.new_stream()
     for frame in frames:
         if frame is None:
             yield None
             continue
         try:
-            result = pipeline(frame.image, light)
+            result = pipeline(frame.image, stream)
         except InputError as error:
             if is_first:
                 raise

@@ -37,6 +37,7 @@ OPTIONS = {
     "reference": "--reference {}",
     "rows": "--grid ..x{}",
     "threshold_mm": "--threshold-mm {}",
+    "area_threshold_mm": "--area-threshold-mm {}",
 }
 
 

@@ -46,6 +46,13 @@ def add_pipeline_arguments(parser: argparse.ArgumentParser) -> None:
         "--threshold-mm", type=float, default=0.1, metavar="MM", help="depth above which a pixel touches (default 0.1)"
     )
     parser.add_argument(
+        "--area-threshold-mm",
+        type=float,
+        default=0.3,
+        metavar="MM",
+        help="depth above which a pixel is in the area of a contact (default 0.3), or half the contact's peak if less",
+    )
+    parser.add_argument(
         "--model", choices=GRADIENT_MODELS, default="", help="gradient model; by default the better of the calibration"
     )
     parser.add_argument(
@@ -95,4 +102,5 @@ def make_pipeline(options: argparse.Namespace, sensor: Sensor, reference: np.nda
         light_gains=False if options.no_light_gains else None,
         arithmetic=options.arithmetic,
         threshold_mm=options.threshold_mm,
+        area_threshold_mm=options.area_threshold_mm,
     )

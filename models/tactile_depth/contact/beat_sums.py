@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/contact/beat_sums.sv: count, sums, limits and peak of depths that leave together."""
+"""Bit-accurate model of hdl/contact/beat_sums.sv: count, weight, moment and limits of depths that leave together."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BeatSums:
-    """Depths of a beat that are above; offsets are places in the beat. Limits and peak are None if none is above."""
+    """Depths of a beat that are above. The moment counts from the last; limits are None if none is above."""
 
     count: int
-    offset_sum: int
-    volume: int
-    peak: int | None
-    peak_offset: int | None
+    weight: int
+    moment: int
     least_offset: int | None
     greatest_offset: int | None
 
@@ -25,12 +23,9 @@ def latency(lanes: int) -> int:
     return lanes.bit_length() - 1
 
 
-def beat_sums(above: Sequence[bool], depths: Sequence[int]) -> BeatSums:
-    """Return the sums of the depths that are above."""
+def beat_sums(above: Sequence[bool], weights: Sequence[int]) -> BeatSums:
+    """Return the sums of the depths that are above; the weight of the others is 0."""
     offsets = [offset for offset, is_above in enumerate(above) if is_above]
-    if not offsets:
-        return BeatSums(0, 0, 0, None, None, None, None)
-    peak = max(depths[offset] for offset in offsets)
-    first = next(offset for offset in offsets if depths[offset] == peak)
-    volume = sum(depths[offset] for offset in offsets)
-    return BeatSums(len(offsets), sum(offsets), volume, peak, first, offsets[0], offsets[-1])
+    moment = sum(weight * (len(weights) - 1 - offset) for offset, weight in enumerate(weights))
+    first, last = (offsets[0], offsets[-1]) if offsets else (None, None)
+    return BeatSums(len(offsets), sum(weights), moment, first, last)

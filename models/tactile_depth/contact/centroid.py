@@ -25,16 +25,16 @@ def cycles(bits: int) -> int:
     return 2 * td_divide.cycles(_quotient_bits(bits))
 
 
-def mean(total: int, area: int, bits: int) -> int:
-    """Return the mean of `area` positions of `bits` bits, rounded to the nearest with ties to even.
+def mean(moment: int, weight: int, bits: int) -> int:
+    """Return the mean of weighted positions of `bits` bits, rounded to the nearest with ties to even.
 
     Raises
     ------
     ValueError
-        The total is too large for so many positions.
+        The moment is too large for the weight.
     """
-    result = td_divide.divide(total << FRACTION + 1, area, _quotient_bits(bits))
+    result = td_divide.divide(moment << FRACTION + 1, weight, _quotient_bits(bits))
     if result is None:
-        raise ValueError(f"a total of {total} is too large for {area} positions of {bits} bits")
+        raise ValueError(f"a moment of {moment} is too large for a weight of {weight} and positions of {bits} bits")
     quotient, remainder = result
     return int(round_half_even(np.array(2 * quotient + (remainder != 0)), 2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/contact/contact_sums.sv: area, sums, limits and peak of what is above the threshold."""
+"""Bit-accurate model of hdl/contact/contact_sums.sv: area, limits, weight and moments of what is above a threshold."""
 
 from __future__ import annotations
 
@@ -10,63 +10,30 @@ import numpy as np
 
 from tactile_depth.contact import beat_sums
 
-WORD_BITS = 32
-CYCLES_TO_AREA = 2  # from the last depth of a frame
-
 
 def cycles_to_sums(lanes: int = 1) -> int:
     """Return the cycles from the last depths of a frame to its sums."""
-    return CYCLES_TO_AREA + beat_sums.latency(lanes) + 1
-
-
-class Thresholds(NamedTuple):
-    """Depth codes, as they stand at the first depth of a frame."""
-
-    on: int
-    off: int
+    return 2 + beat_sums.latency(lanes)
 
 
 class Sums(NamedTuple):
-    """Depths above the threshold in a frame. Positions are (row, column), with rows counted from the top."""
+    """Depths above the threshold in a frame. Positions are (row, column), with rows counted from the top.
+
+    The weight of a depth is what it is above the threshold. Moments count from the last row to come and from the last
+    column.
+    """
 
     area: int = 0
-    peak: int = 0
-    peak_position: tuple[int, int] = (0, 0)
     least: tuple[int, int] = (0, 0)
     greatest: tuple[int, int] = (0, 0)
-    column_sum: int = 0
-    row_sum: int = 0
-    volume: int = 0
-
-    @property
-    def words(self) -> tuple[int, ...]:
-        """Words 4 to 11 of a record."""
-        volume = self.volume % (1 << 2 * WORD_BITS)
-        return (
-            self.peak % (1 << WORD_BITS),
-            *(row << 16 | column for row, column in (self.peak_position, self.least, self.greatest)),
-            self.column_sum,
-            self.row_sum,
-            volume % (1 << WORD_BITS),
-            volume >> WORD_BITS,
-        )
+    weight: int = 0
+    row_moment: int = 0
+    column_moment: int = 0
 
 
-def frame_sums(depths: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> Sums:
-    """Return the sums of depths above the threshold and of their positions, in the order of the stream."""
-    if not len(depths):
-        return Sums()
-    first = int(depths.argmax())  # the first of equal peaks
-    return Sums(
-        len(depths),
-        int(depths[first]),
-        (int(rows[first]), int(columns[first])),
-        (int(rows.min()), int(columns.min())),
-        (int(rows.max()), int(columns.max())),
-        int(columns.sum()),
-        int(rows.sum()),
-        int(depths.sum()),
-    )
+def weight_bits(width: int, rows: int, columns: int) -> int:
+    """Return the bits of a weight, of depth codes of `width` bits."""
+    return width + (rows * columns - 1).bit_length()
 
 
 @dataclass
@@ -75,24 +42,22 @@ class ContactSums:
 
     Attributes
     ----------
-    thresholds
+    threshold : int
         Of the current frame; None before the first frame.
-    above
-        Depth, row and column of those above the threshold so far.
+    codes : list of int
+        Depths of the frame so far.
     """
 
     rows: int
     columns: int
     bottom_first: bool = False
-    thresholds: Thresholds | None = None
-    row: int = 0
-    column: int = 0
-    above: list[tuple[int, int, int]] = field(default_factory=list)
+    threshold: int | None = None
+    codes: list[int] = field(default_factory=list)
 
-    def beat(
-        self, data: int, frame_start: bool, row_end: bool, frame_end: bool, thresholds: Thresholds, touching: bool
-    ) -> Sums | None:
+    def beat(self, data: int, frame_start: bool, frame_end: bool, threshold: int) -> Sums | None:
         """Take a depth code that leaves; return the sums of the frame with its last code, else None.
+
+        The threshold is taken with the first.
 
         Raises
         ------
@@ -100,20 +65,15 @@ class ContactSums:
             No frame has begun.
         """
         if frame_start:
-            self.thresholds, self.above = thresholds, []
-            self.row, self.column = (self.rows - 1 if self.bottom_first else 0), 0
-        if self.thresholds is None:
+            self.threshold, self.codes = threshold, []
+        if self.threshold is None:
             raise ValueError("a depth code left before the first of any frame")
-        if data > (self.thresholds.off if touching else self.thresholds.on):
-            self.above.append((data, self.row, self.column))
-        self.column += 1
-        if row_end:
-            self.row, self.column = self.row + (-1 if self.bottom_first else 1), 0
+        self.codes.append(data)
         if not frame_end:
             return None
-        return frame_sums(*np.array(self.above, np.int64).reshape(-1, 3).T)
+        return self.whole_frame(np.array(self.codes, np.int64).reshape(self.rows, self.columns), self.threshold)
 
-    def whole_frame(self, depths: np.ndarray, thresholds: Thresholds, touching: bool) -> Sums:
+    def whole_frame(self, depths: np.ndarray, threshold: int) -> Sums:
         """Return the sums of a frame whose depth codes leave one after another, as `beat` makes them.
 
         Parameters
@@ -121,8 +81,17 @@ class ContactSums:
         depths : int array (rows, columns)
             In the order in which rows leave.
         """
-        self.thresholds = thresholds
-        above = depths > (thresholds.off if touching else thresholds.on)
-        rows, columns = np.nonzero(above)
+        self.threshold = threshold
+        rows, columns = np.nonzero(depths > threshold)
+        if not rows.size:
+            return Sums()
+        weights = depths[rows, columns].astype(np.int64) - threshold
         upright = self.rows - 1 - rows if self.bottom_first else rows
-        return frame_sums(depths[above].astype(np.int64), upright, columns)
+        return Sums(
+            rows.size,
+            (int(upright.min()), int(columns.min())),
+            (int(upright.max()), int(columns.max())),
+            int(weights.sum()),
+            int((weights * (self.rows - 1 - rows)).sum()),
+            int((weights * (self.columns - 1 - columns)).sum()),
+        )

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""contact_peak against its model: count and peak of each frame, each valid in its cycle only."""
+
+from typing import Any, NamedTuple
+
+import cocotb
+import numpy as np
+from cocotb.triggers import RisingEdge
+
+from tactile_depth.contact.contact_peak import CYCLES_TO_COUNT, ContactPeak, Peak, cycles_to_peak
+from tb.cases import on_bench
+from tb.contact.depth_bench import WORD_LOW, DepthBench
+from tb.stream import REGRESS
+
+FRAMES = 1000 if REGRESS else 200
+
+
+class Thresholds(NamedTuple):
+    """Depth codes of a frame."""
+
+    on: int
+    off: int
+
+
+class Bench(DepthBench):
+    """Driver of one cycle at a time; `touching` changes in the cycle of count_valid, the earliest allowed."""
+
+    def __init__(self, dut: Any, gap: float = 0.0) -> None:
+        super().__init__(dut, gap)
+        self.model = ContactPeak(self.rows, self.columns, bool(self.bottom_first))
+        self.cycles_to_peak = cycles_to_peak(self.lanes)
+        self.thresholds = Thresholds(0, 0)
+        self.touching = False  # of the frame that enters
+        self.received: list[Peak] = []
+        self.due: dict[int, Peak] = {}  # by the cycle of the frame's last depth
+        self.changes: dict[int, bool] = {}  # values of `touching` by cycle
+
+    async def edge(
+        self, valid: bool, depths: list[int], position: tuple[Any, Any, Any], settings: Any = None, time: Any = None
+    ) -> None:
+        self.drive_depth(valid, depths, position)
+        if settings is not None:
+            self.thresholds = settings
+        if valid:
+            self.drive(on_threshold=self.thresholds.on, off_threshold=self.thresholds.off)
+        self.drive(touching=int(self.changes.pop(self.now, self.driven.get("touching", 0))))
+        await RisingEdge(self.dut.clk)
+        self.check()
+        if valid:
+            for depth in self.in_turn(depths, position):
+                peak = self.model.beat(*depth, self.thresholds.off if self.touching else self.thresholds.on)
+            if peak is not None:
+                self.due[self.now] = peak
+                self.touching = bool(self.random.getrandbits(1))
+                self.changes[self.now + CYCLES_TO_COUNT] = self.touching
+        self.now += 1
+
+    def check(self) -> None:
+        dut = self.dut
+        count_of = self.due.get(self.now - CYCLES_TO_COUNT)
+        assert bool(dut.count_valid.value) == (count_of is not None), "count_valid"
+        if count_of is not None:
+            assert int(dut.count.value) == count_of.above, "count"
+        peak = self.due.pop(self.now - self.cycles_to_peak, None)
+        assert bool(dut.peak_valid.value) == (peak is not None), "peak_valid"
+        if peak is not None:
+            assert bool(dut.any_above.value) == bool(peak.above), "any_above"
+            position = int(dut.peak_row.value), int(dut.peak_column.value)
+            assert (dut.peak.value.to_signed(), position) == peak[1:], f"expected {peak}"
+            self.received.append(peak)
+
+    async def reset(self) -> None:
+        self.dut.rst.value = 1
+        await self.edge(False, [0] * self.lanes, (0, 0, 0))
+        self.dut.rst.value = 0
+        self.due.clear()
+        self.received.clear()
+
+    async def settle(self) -> None:
+        await self.idle(self.cycles_to_peak + 1)
+
+
+@on_bench(Bench, milliseconds=100)
+@cocotb.parametrize(gap=[0.0, 0.1])
+async def random_frames(bench: Bench) -> None:
+    """Send maps of every kind, back to back or with gaps, with thresholds near their values."""
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for _ in range(FRAMES):
+        depth = bench.random_map(rng)
+        await bench.frame(depth, Thresholds(*bench.random_thresholds(rng, depth)))
+    await bench.settle()
+    counts = [peak.above for peak in bench.received]
+    assert len(counts) == FRAMES
+    assert counts.count(0) > FRAMES // 50, "the test is void: too few frames have no depth above"
+    assert counts.count(bench.pixels) > FRAMES // 50, "the test is void: too few frames have all depths above"
+
+
+@on_bench(Bench, milliseconds=10)
+async def ties_and_edges(bench: Bench) -> None:
+    """Find the first of equal peaks in stream order, a single one in each corner, and all and no depths above."""
+    maps = bench.edge_maps()
+    for depth in maps:
+        await bench.frame(depth, Thresholds(0, 0))
+    await bench.frame(bench.full(bench.low), Thresholds(WORD_LOW, WORD_LOW))
+    await bench.settle()
+    assert len(bench.received) == len(maps) + 1
+    first_row = bench.rows - 1 if bench.bottom_first else 0
+    assert bench.received[4].position == (first_row, 0), "the peak is not the first of the equal ones"
+
+
+@on_bench(Bench, milliseconds=10)
+async def interrupted_frames(bench: Bench) -> None:
+    """Begin a frame inside another one: it is measured alone, with its own thresholds."""
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for words in [*range(1, bench.beats), *rng.integers(1, bench.beats, 20)]:
+        await bench.frame(bench.random_map(rng), Thresholds(-3, 5), words=int(words))
+        if words % 3 == 0:
+            await bench.frame(bench.random_map(rng), Thresholds(0, 0))
+            await bench.settle()
+    assert len(bench.received) > bench.beats // 3 - 1
+
+
+@on_bench(Bench, milliseconds=20)
+async def resets(bench: Bench) -> None:
+    """Reset in any cycle of a frame and after it: nothing of it remains."""
+    rng = np.random.default_rng(cocotb.RANDOM_SEED)
+    for clocks in range(1, bench.beats + bench.cycles_to_peak + 2):
+        await bench.frame(bench.random_map(rng), Thresholds(0, -1), words=clocks)
+        await bench.idle(max(0, clocks - bench.beats))
+        await bench.reset()
+        await bench.idle(int(rng.integers(0, bench.cycles_to_peak + 2)))
+        await bench.frame(bench.random_map(rng), Thresholds(0, 0))
+        await bench.settle()
+        assert len(bench.received) == 1

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""contact_peak: RTL against the model, and the model against numpy on whole maps."""
+
+from typing import Any
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from formal.entries import Proof
+from tactile_depth.contact.contact_peak import ContactPeak, Peak
+from tb.structures import ICARUS, VERILATOR, Refused, of_parameters
+from tests.rtl import test_rtl as test_rtl
+
+built = of_parameters("Width Rows Columns Lanes BottomFirst")
+STRUCTURES = (
+    built(24, 5, 8, 1, 0, on=VERILATOR),
+    built(6, 5, 8, 1, 1, on=ICARUS, mutants=True),
+    built(6, 5, 8, 4, 1, on=ICARUS, mutants=True),
+    built(6, 5, 8, 1, 0),
+    built(32, 5, 16, 1, 1),
+    built(12, 9, 4, 1, 0),
+    built(24, 5, 16, 2, 0),
+    built(12, 3, 64, 32, 1),
+    built(32, 5, 16, 8, 1),
+)
+REFUSED = {
+    "Lanes=3": Refused(
+        "Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns", {"verilator": "can't find definition of 'some'"}
+    ),
+    "Lanes=64": "Lanes_must_be_a_power_of_two_up_to_32_that_divides_Columns",
+}
+PROOFS = tuple(
+    Proof(
+        "count 2 and peak 3 + log2(Lanes) clocks after a frame's last beat; the peak is none below what is above, and "
+        "is attained first",
+        "positions are only counted; either order of rows; the peak of a beat of several depths is proven of beat_peak",
+        {"BottomFirst": bottom_first, "Columns": columns, "Lanes": lanes},
+        depth=30,
+    )
+    for bottom_first, columns, lanes in ((0, 3, 1), (1, 3, 1), (0, 4, 2), (1, 4, 2))
+)
+
+
+@given(arrays(np.int64, (5, 8), elements=st.integers(-8, 7)), st.integers(-9, 8), st.booleans())
+def test_the_peak_is_that_of_numpy(depth: Any, threshold: int, bottom_first: bool) -> None:
+    model = ContactPeak(5, 8, bottom_first)
+    stream = depth[::-1] if bottom_first else depth
+    for index, code in enumerate(stream.ravel()):
+        found = model.beat(int(code), index == 0, index % 8 == 7, index == 39, threshold)
+    assert found == ContactPeak(5, 8, bottom_first).whole_frame(stream, threshold)
+    count = int(np.count_nonzero(depth > threshold))
+    if not count:
+        assert found == Peak()
+        return
+    assert found is not None
+    assert (found.above, found.peak) == (count, int(depth.max()))
+    assert depth[found.position] == found.peak
+    row, column = found.position
+    place = (4 - row if bottom_first else row) * 8 + column
+    assert (stream.ravel()[:place] < found.peak).all(), "not the first of equal peaks"
