@@ -46,7 +46,7 @@ PROOFS = (
         "a record at a fixed latency, kept until the next, with number and time of its frame",
         "rows and columns are only counted; whatever count, peak, sums and centroid come out: these have proofs",
         {"Rows": 4, "Columns": 8, "Latency": contact_events.latency(4, 8)},
-        depth=90,
+        depth=110,
         free=("sums", "count", "peak", "middle"),
     ),
 )
