@@ -16,7 +16,6 @@ from tests import real_data
 
 CAMERA, PITCH = (112, 160), 0.1  # rows and columns, mm per pixel
 SENSITIVITY = 0.7  # deviation of a colour per unit of slope towards its light
-GRID = 64
 BALLS = {6.0: 17.0, 8.0: 20.0}  # contact radius in pixels by diameter in mm
 COLUMNS = ["frame", "diameter_mm", "centre_x_px", "centre_y_px", "contact_radius_px", "ball_radius_px"]
 

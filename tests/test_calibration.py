@@ -89,7 +89,7 @@ def test_an_all_zero_table_has_a_gradient_limit() -> None:
 
 
 def test_the_fitted_calibration_is_small() -> None:
-    assert (FOLDER / "gelsight-mini.npz").stat().st_size < 100 * 1024
+    assert (FOLDER / "gelsight-mini.npz").stat().st_size < 120 * 1024
 
 
 # Files.

@@ -2,6 +2,7 @@
 """fit and evaluate on presses drawn with known slopes and colours, and on real presses."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,25 +21,20 @@ from tactile_depth.evaluation import scores_of
 from tactile_depth.fitting import (
     FITTED_SHARE,
     FRACTION_BITS,
-    FURTHEST_SHIFT,
     fit_presses,
     fit_quadratic,
     fit_table,
-    held_out_presses,
-    recentred,
 )
 from tactile_depth.frames import read_picture
 from tactile_depth.gradient.flat_field import captured_gains
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.press_folder import read_presses
-from tactile_depth.presses import GridPress
 from tactile_depth.reference import quadratic_coefficients, quadratic_terms, weighted
 from tactile_depth.scenes import LIGHTS
 from tactile_depth.sensor import MODELS
 from tactile_depth.tactile_depth import slope_codes, solve
 from tests.ball_presses import (
     CAMERA,
-    GRID,
     PITCH,
     SENSITIVITY,
     pictures,
@@ -63,11 +59,6 @@ def presses(folder: Path) -> Any:
 
 
 @pytest.fixture(scope="module")
-def fitted(presses: Any) -> Any:
-    return held_out_presses(presses)[0]
-
-
-@pytest.fixture(scope="module")
 def sensor(folder: Path) -> Any:
     return td.fit(folder, exposure_us=8000)
 
@@ -85,77 +76,92 @@ def real_presses(real: Any) -> Any:
 # The fit of drawn presses, whose slopes are known.
 
 
-def test_the_quadratics_of_the_lights_are_recovered(presses: Any, fitted: Any) -> None:
-    coefficients, _ = fit_quadratic(fitted, presses.grid_pitch_mm)
-    terms = quadratic_terms(GRID, GRID, presses.grid_pitch_mm)
+def test_the_quadratics_of_the_lights_are_recovered(presses: Any) -> None:
+    coefficients = fit_quadratic(presses.views, presses.grid_pitch_mm)
+    rows, columns = presses.grid
+    terms = quadratic_terms(rows, columns, presses.grid_pitch_mm)
     by_colour = np.einsum("ant,rct->rcan", coefficients, terms)
     # Three colours span two slopes, so coefficients are known only along the directions of the lights.
     response = by_colour @ (SENSITIVITY * LIGHTS)
     want = weakness(terms[..., 1], terms[..., 2])[..., None, None] * np.eye(2)
     middle = np.hypot(terms[..., 1], terms[..., 2]) < 5
-    assert np.abs(response - want)[middle].max() < 0.05  # measured: 0.029
+    assert np.abs(response - want)[middle].max() < 0.06  # measured: 0.055
 
 
 @pytest.mark.parametrize(
-    ("model", "r2", "bias", "spread"), [("quadratic", 0.985, 0.03, 0.03), ("lut", 0.93, 0.05, 0.08)]
+    ("model", "rms_mm", "bias", "spread"), [("quadratic", 0.012, 0.03, 0.03), ("lut", 0.03, 0.05, 0.08)]
 )
-def test_presses_held_out_come_out_as_the_balls_are(
-    presses: Any, model: Any, r2: Any, bias: Any, spread: float
+def test_presses_left_out_come_out_as_the_balls_are(
+    presses: Any, model: Any, rms_mm: float, bias: Any, spread: float
 ) -> None:
     evaluation = fit_presses(presses).evaluation
     error = evaluation.height_error(model)
-    assert error.presses == len(evaluation.presses) >= 4
-    assert evaluation.slope_r2(model) > r2
+    assert error.presses == sum(evaluation.central) >= 4
+    assert len(evaluation.presses) > error.presses
+    assert evaluation.values(model, "height_rms_mm").mean() < rms_mm
     assert abs(error.mean - 1) < bias
     assert error.spread < spread
 
 
-def test_a_press_held_out_in_turn_is_measured_by_a_fit_to_the_others(presses: Any) -> None:
-    evaluation = fit_presses(presses, ("quadratic",), each_in_turn=True).evaluation
+def test_each_press_is_measured_by_a_fit_to_the_others(presses: Any) -> None:
+    fit = fit_presses(presses, ("quadratic",))
+    evaluation = fit.evaluation
     measured = [view for view in presses.views if view.is_whole]
     assert evaluation.presses == tuple(view.press.name for view in measured)
     others = tuple(view for view in presses.views if view is not measured[-1])
-    coefficients, _ = fit_quadratic(others, presses.grid_pitch_mm)
+    coefficients = fit_quadratic(others, presses.grid_pitch_mm)
+    alone: Any = fit.without[measured[-1].press.name]
+    np.testing.assert_allclose(alone.coefficients, coefficients, rtol=1e-9)
     steepest = max(view.press.largest_slope for view in others)
     sensor = td.Sensor("others", None, PITCH, coefficients, steepest, "quadratic")
     assert scores_of(sensor, presses, measured[-1:], "quadratic")[0] == evaluation.scores["quadratic"][-1]
-    assert evaluation.height_error("quadratic").spread < 0.03
 
 
-def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(fitted: Any) -> None:
-    gradient, is_filled = fit_table(fitted, 4)
+def test_balls_that_contradict_each_other_are_said(presses: Any) -> None:
+    """Give one of the balls a diameter that is 8 % too small: its presses read too high."""
+    wrong = tuple(
+        replace(view, press=replace(view.press, ball_radius=0.92 * view.press.ball_radius))
+        if view.diameter_mm == 6
+        else view
+        for view in presses.views
+    )
+    pattern = r"quadratic, caps by ball: 6 mm (\S+), 8 mm (\S+)(.*)"
+    right, doubtful = (
+        re.search(pattern, fit_presses(replace(presses, views=views), ("quadratic",)).evaluation.summary)
+        for views in (presses.views, wrong)
+    )
+    assert right is not None
+    assert doubtful is not None
+    assert not right[3]
+    assert float(doubtful[1]) < 0.98 * float(doubtful[2].rstrip(";"))
+    assert "the scale is not known better than these" in doubtful[3]
+
+
+def test_the_table_gives_a_bin_the_mean_slope_of_its_pixels(presses: Any) -> None:
+    views = presses.views
+    gradient = fit_table(views, 4)
     assert gradient.shape == (16, 16, 16, 2)
     truth, codes = (
-        np.concatenate([value(view)[view.press.distance(GRID) < FITTED_SHARE] for view in fitted])  # type: ignore[no-untyped-call]
-        for value in (lambda view: view.press.slopes(GRID), lambda view: view.codes >> 4)
+        np.concatenate([value(view)[view.press.distance(view.grid) < FITTED_SHARE] for view in views])  # type: ignore[no-untyped-call]
+        for value in (lambda view: view.press.slopes(view.grid), lambda view: view.codes >> 4)
     )
     index = np.ravel_multi_index(tuple(codes.T), (16, 16, 16))
     steep = np.hypot(*truth.T) > 0.35  # colours that no frame without contact has
     busiest = np.bincount(index[steep]).argmax()
     at = np.unravel_index(busiest, (16, 16, 16))
-    assert is_filled[at]
     np.testing.assert_allclose(gradient[at], truth[index == busiest].mean(axis=0), atol=0.03)
 
 
-def test_a_gel_at_rest_reads_flat_through_the_table(fitted: Any) -> None:
-    gradient, _ = fit_table(fitted, 5)
+def test_a_gel_at_rest_reads_flat_through_the_table(presses: Any) -> None:
+    gradient = fit_table(presses.views, 5)
     assert np.abs(gradient[15:17, 15:17, 15:17]).max() < 0.06  # a step of the codes is 0.09 of slope
-
-
-def test_a_press_moves_to_where_its_ball_is() -> None:
-    ball = GridPress("ball", 30.4, 33.7, 14.0, 26.0)
-    near = recentred(GridPress("ball", 29.8, 34.3, 14.0, 26.0), ball.slopes(64))
-    assert math.hypot(near.x - ball.x, near.y - ball.y) < 0.05
-    far = recentred(GridPress("ball", 20.0, 33.7, 14.0, 26.0), ball.slopes(64))
-    assert abs(far.x - 20) <= FURTHEST_SHIFT * 14 + 1e-9  # no further than that
 
 
 # The fitted sensor.
 
 
 def test_a_sensor_knows_what_it_was_fitted_to(sensor: Any, presses: Any) -> None:
-    held_out = held_out_presses(presses)
-    steepest = max(view.press.largest_slope for view in held_out[0])
+    steepest = max(view.press.largest_slope for view in presses.views)
     assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)
     assert sensor.flat_field
     assert sensor.model == "quadratic"
@@ -163,7 +169,7 @@ def test_a_sensor_knows_what_it_was_fitted_to(sensor: Any, presses: Any) -> None
     assert sensor.bits_per_channel == 5
     assert sensor.fitted_slope == {"lut": steepest, "quadratic": steepest}
     assert sensor.largest_slope == steepest
-    assert sensor.height_errors["lut"].presses == len(held_out[1])
+    assert sensor.height_errors["lut"].presses == sum(view.press.is_central(view.grid) for view in presses.views)
     assert sensor.name == "presses"
 
 
@@ -192,7 +198,8 @@ def test_presses_in_memory_give_the_same_sensor(sensor: Any) -> None:
     balls = [
         td.BallPress(pictures()[name], diameter, (x, y, contact), name) for name, diameter, x, y, contact, _ in places()
     ]
-    again = td.fit(balls, pictures()["background.png"], pitch_mm=PITCH, models="quadratic", name="mine")
+    background = pictures()["background.png"]
+    again = td.fit(balls, background, pitch_mm=PITCH, models="quadratic", name="mine", quiet=True)
     np.testing.assert_array_equal(again.coefficients, sensor.coefficients)
     assert again.gradient is None
     assert again.name == "mine"
@@ -232,26 +239,26 @@ def test_presses_without_depth_are_refused(presses: Any) -> None:
 # evaluate.
 
 
-def test_an_evaluation_on_the_held_out_presses_is_that_of_the_fit(sensor: Any, presses: Any) -> None:
-    fit = fit_presses(presses)
-    names = set(fit.evaluation.presses)
-    balls = [
-        td.BallPress(pictures()[name], diameter, (x, y, contact), name)
-        for name, diameter, x, y, contact, _ in places()
-        if name in names
-    ]
-    evaluation = td.evaluate(sensor, balls, pictures()["background.png"])
-    assert evaluation.scores == fit.evaluation.scores
-    assert evaluation.height_error("lut") == sensor.height_errors["lut"]
+def test_an_evaluation_on_the_fitted_presses_is_a_little_better_than_that_of_the_fit(
+    sensor: Any, folder: Path, presses: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    evaluation, fit = td.evaluate(sensor, folder), fit_presses(presses)
+    assert evaluation.presses == fit.evaluation.presses
+    for model in MODELS:
+        among, alone = (each.values(model, "height_rms_mm").mean() for each in (evaluation, fit.evaluation))
+        assert 0.8 * alone < among < 1.01 * alone
     assert evaluation.better_model == sensor.model
+    td.fit(folder, models="quadratic")
+    assert capsys.readouterr().out == fit_presses(presses, ("quadratic",)).evaluation.summary + "\n"
 
 
-def test_presses_that_the_square_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:
+def test_presses_that_the_picture_cuts_are_left_out_with_a_note(sensor: Any, folder: Path, presses: Any) -> None:
     evaluation = td.evaluate(sensor, folder)
     cut = [view.press.name for view in presses.views if not view.is_whole]
     assert cut
     assert len(evaluation.presses) == 24 - len(cut)
     assert [note.split(":")[0] for note in evaluation.notes] == cut
+    assert evaluation.central == tuple(view.press.is_central(view.grid) for view in presses.views if view.is_whole)
     assert "cuts the contact: left out" in evaluation.notes[0]
 
 
@@ -259,10 +266,12 @@ def test_the_table_of_an_evaluation_holds_every_press(sensor: Any, folder: Path)
     evaluation = td.evaluate(sensor, folder)
     text = str(evaluation)
     assert all(name in text for name in evaluation.presses)
-    error = evaluation.height_error("quadratic")
-    mean, spread = (next(line for line in text.splitlines() if line.startswith(word)) for word in ("mean", "spread"))
-    assert mean.endswith(f"{error.mean:.3f}")
-    assert spread.endswith(f"{error.spread:.3f}")
+    assert text.endswith(evaluation.summary)
+    central = np.array(evaluation.central)
+    rms = 1000 * evaluation.values("quadratic", "height_rms_mm")[central].mean()
+    assert f"quadratic, {central.sum()} presses in the middle: height RMS in the contact {rms:.1f} um; caps " in text
+    assert f"quadratic, {(~central).sum()} presses at the sides: " in text
+    assert text.count("at the side\n") == (~central).sum()
 
 
 def test_larger_pictures_of_the_same_camera_give_nearly_the_same(sensor: Any, folder: Path, tmp_path: Path) -> None:
@@ -287,8 +296,8 @@ def test_an_evaluation_refuses_what_is_not_of_the_sensor(sensor: Any, folder: Pa
         td.evaluate(sensor, narrow, background[:, :100])
     with pytest.raises(InputError, match=r"presses has 0\.05 mm/pixel, which contradicts presses"):
         td.evaluate(replace(sensor, pixel_pitch_mm=PITCH / 2), folder)
-    with pytest.raises(InputError, match="presses: none of 1 can be used: press 1: the picture's middle square cuts"):
-        td.evaluate(sensor, [td.BallPress(background, 6.0, (30, 50, 17))], background)
+    with pytest.raises(InputError, match="presses: none of 1 can be used: press 1: the edge of the picture cuts"):
+        td.evaluate(sensor, [td.BallPress(background, 6.0, (10, 50, 17))], background)
     with pytest.warns(InputWarning, match="does not look like the sensor of presses"):
         td.evaluate(sensor, [td.BallPress(background, 6.0, (80, 50, 17))], background // np.array((1, 1, 3), np.uint8))
 
@@ -296,68 +305,41 @@ def test_an_evaluation_refuses_what_is_not_of_the_sensor(sensor: Any, folder: Pa
 # The real presses.
 
 
-@pytest.mark.parametrize(("model", "r2", "spread"), [("lut", 0.93, 0.10), ("quadratic", 0.96, 0.07)])
-def test_real_presses_held_out_keep_their_height_through_the_bit_accurate_models(
-    real_presses: Any, model: Any, r2: Any, spread: float
-) -> None:
-    sensor, (_, held_out) = td.load("gelsight-mini"), held_out_presses(real_presses)
-    names = tuple(view.press.name for view in held_out)
-    evaluation = td.Evaluation(names, {model: scores_of(sensor, real_presses, held_out, model)})
-    error = evaluation.height_error(model)
-    assert error.presses >= 10
-    assert evaluation.slope_r2(model) >= r2  # measured: 0.943, 0.969
-    assert 0.93 <= error.mean <= 1.07  # measured: 1.017, 0.992
-    assert error.spread <= spread  # measured: 0.071, 0.065
-    stored = sensor.height_errors[model]
-    assert (stored.mean, stored.spread, stored.presses) == pytest.approx((error.mean, error.spread, error.presses))
+BARS = {  # height RMS in um, cap RMS, in the middle and at the sides, of real presses left out
+    "lut": ((25.5, 0.106), (53.5, 0.216)),
+    "quadratic": ((21.3, 0.077), (35.7, 0.1)),
+}
 
 
-def check_real(evaluation: td.Evaluation) -> None:
-    """Compare both models with their bars on real presses."""
-    errors = {model: evaluation.height_error(model) for model in MODELS}
-    assert evaluation.slope_r2("quadratic") >= 0.96
-    assert evaluation.slope_r2("lut") >= 0.93
-    assert all(0.93 <= error.mean <= 1.07 for error in errors.values())
-    assert errors["quadratic"].spread <= 0.06
-    assert errors["lut"].spread <= 0.10
+def test_real_presses_left_out_keep_their_heights_through_the_bit_accurate_models(real_presses: Any) -> None:
+    """docs/calibrate.md states these numbers."""
+    evaluation = fit_presses(real_presses).evaluation
+    central = np.array(evaluation.central)
+    assert (central.sum(), (~central).sum()) == (22, 12)
+    for model, bars in BARS.items():
+        rms, caps = (evaluation.values(model, name) for name in ("height_rms_mm", "cap_height"))
+        for among, (rms_um, cap_rms) in zip((central, ~central), bars, strict=True):
+            assert 0.97 * rms_um < 1000 * rms[among].mean() < rms_um, model
+            assert 0.97 * cap_rms < np.sqrt(((caps[among] - 1) ** 2).mean()) < cap_rms, model
+        error = evaluation.height_error(model)
+        shipped = td.load("gelsight-mini").height_errors[model]
+        assert (shipped.mean, shipped.spread, shipped.presses) == pytest.approx(
+            (error.mean, error.spread, error.presses), abs=1e-3
+        )
+    assert (
+        "quadratic, caps by ball: 6.31 mm 0.943, 9.5 mm 1.045; the scale is not known better than these 11 %"
+        in evaluation.summary
+    )
 
 
-@pytest.mark.regress  # 22 fits, most of a minute
-def test_every_whole_real_press_held_out_in_turn(real_presses: Any) -> None:
-    evaluation = fit_presses(real_presses, each_in_turn=True).evaluation
-    assert len(evaluation.presses) == 22
-    check_real(evaluation)  # measured: R2 0.971, lut 0.951; mean 0.995, 1.010; spread 0.058, 0.095
-
-
-def test_real_presses_measured_by_the_circles_of_their_pictures_differ_less(real: Any) -> None:
-    """Measure by the circles in the pictures, because the table has radii in whole pixels, and half a pixel in 26 is 4
-    % of the height of a cap."""
-    evaluation = fit_presses(read(real, find_circles=True)).evaluation
-    assert len(evaluation.presses) >= 10
-    check_real(evaluation)  # measured: R2 0.973, lut 0.932; mean 0.984, 1.058; spread 0.054, 0.078
-
-
-def test_real_presses_beside_the_middle_square_have_a_larger_error(real: Any) -> None:
-    """On whole pictures; presses that the square cuts are in the fit, and still lose height at the sides."""
-    pipeline = td.Pipeline(td.load("gelsight-mini"), real / "background.png")
-    rows, columns = pipeline.grid
-    ratios: dict[bool, list[float]] = {True: [], False: []}
-    for press in read_presses(real)[0]:
-        result = pipeline(press.image)
-        scale = pipeline.sensor.camera.columns / columns  # type: ignore[union-attr]
-        first = np.array([0.5, 0.5, 0])  # centre of the first pixel
-        x, y, radius = (np.array(press.circle) + first) / scale - first
-        left, right = min(x, columns - 1 - x) - radius, (columns - rows) / 2
-        if min(left, min(y, rows - 1 - y) - radius) < 0:
-            continue  # the edge of the picture cuts it
-        on_grid = GridPress(press.name, x, y, radius, press.ball_radius_px / scale)  # type: ignore[operator]
-        ratios[left >= right].append(on_grid.recovered(result.height_mm / pipeline.pixel_pitch_mm))
-    central, beside = np.array(ratios[True]), np.array(ratios[False])
-    assert (len(central), len(beside)) == (22, 12)
-    # docs/calibrate.md states these numbers.
-    assert (central.mean(), central.std()) == pytest.approx((0.985, 0.054), abs=0.001)
-    assert (beside.mean(), beside.std()) == pytest.approx((0.894, 0.087), abs=0.001)
-    assert (beside.min(), beside.max()) == pytest.approx((0.77, 1.09), abs=0.005)
+def test_real_presses_measured_by_the_circles_of_their_pictures_differ_as_much(real: Any) -> None:
+    """Measure by the circles in the pictures: the table has radii in whole pixels, and half a pixel in 26 is 4 % of the
+    height of a cap."""
+    evaluation = fit_presses(read(real, find_circles=True), ("quadratic",)).evaluation
+    error = evaluation.height_error("quadratic")
+    assert error.presses >= 20
+    assert abs(error.mean - 1) < 0.02
+    assert error.spread < 0.08
 
 
 def test_the_shipped_calibration_is_what_the_fit_gives(real_presses: Any) -> None:
@@ -384,11 +366,13 @@ def test_captures_bring_the_zero_of_a_real_gel_back_when_its_light_has_drifted(r
 
     Every capture restores the zero offset; heights are restored by a capture of the reference.
     """
-    presses, size, no_contact = real_presses, real_presses.size, real_presses.background_on_grid
-    held_out = held_out_presses(presses)[1]
+    presses, (rows, columns), no_contact = real_presses, real_presses.grid, real_presses.background_on_grid
+    some = [view for view in presses.views if view.is_whole][1::3]
     sensor = replace(td.load("gelsight-mini"), pixel_pitch_mm=presses.grid_pitch_mm, reference=no_contact)
-    config = sensor.configuration(model, columns=size, neumann=True)
-    y, x = np.indices((size, size)) / (size - 1) - 0.5
+    config = sensor.configuration(
+        model, columns=columns, rows=rows, solver="tridiagonal", neumann=True, light_gains=False
+    )
+    y, x = (np.indices((rows, columns)).T / (rows - 1, columns - 1)).T - 0.5
     drift = np.stack([1 + 0.1 * x - 0.05 * y, 1 - 0.08 * y + 0.2 * x * y, 0.92 + 0.06 * x], axis=-1)
 
     def drifted(frame: Any) -> Any:
@@ -401,28 +385,28 @@ def test_captures_bring_the_zero_of_a_real_gel_back_when_its_light_has_drifted(r
         codes = depth_codes(frame, gains)
         if zero is not None:
             codes = zero_offset(codes, zero, config)
-        return codes * config.depth_lsb_px * presses.grid_pitch_mm
+        return codes[..., ::-1, :] * config.depth_lsb_px * presses.grid_pitch_mm
 
     before, captured = captured_gains(no_contact[None], config), captured_gains(drifted(no_contact)[None], config)
-    assert depth_mm(drifted(no_contact), before).std() > 0.1  # measured: 0.14 (lut), 0.31 mm
+    assert depth_mm(drifted(no_contact), before).std() > 0.1  # measured: 0.12 (lut), 0.33 mm
     at_rest = depth_mm(drifted(no_contact), captured)
-    assert at_rest.std() < 0.007  # measured: 0.0020, 0.0062 mm
+    assert at_rest.std() < 0.013  # measured: 0.0031, 0.0107 mm
     # The zero offset captured instead of the reference, and after it.
     alone = captured_zero(depth_codes(drifted(no_contact), before)[None], config)
     both = captured_zero(depth_codes(drifted(no_contact), captured)[None], config)
-    assert depth_mm(drifted(no_contact), before, alone).std() < 0.01  # measured: 0.0057, 0.0084 mm
-    assert depth_mm(drifted(no_contact), captured, both).std() < 0.002  # measured: 0.0011, 0.0016 mm
+    assert depth_mm(drifted(no_contact), before, alone).std() < 0.014  # measured: 0.0076, 0.0127 mm
+    assert depth_mm(drifted(no_contact), captured, both).std() < 0.0035  # measured: 0.0009, 0.0033 mm
 
-    def caps(gains: np.ndarray, zero: np.ndarray | None = None) -> Any:
-        depths = (depth_mm(drifted(view.frame), gains, zero) / presses.grid_pitch_mm for view in held_out)
-        return np.array([view.press.recovered(depth) for view, depth in zip(held_out, depths, strict=True)])
+    def caps(gains: np.ndarray, zero: np.ndarray | None = None, seen: Any = drifted) -> Any:
+        depths = (depth_mm(seen(view.frame), gains, zero) / presses.grid_pitch_mm for view in some)
+        return np.array([view.press.recovered(depth) for view, depth in zip(some, depths, strict=True)])
 
-    as_calibrated = [score.cap_height for score in scores_of(sensor, presses, held_out, model)]
-    for balls in (caps(captured), caps(captured, both)):
-        assert np.abs(balls - as_calibrated).max() < 0.02
-    # A capture of the zero offset alone leaves the error of colours: measured 0.123 (lut), 0.023.
+    as_calibrated = caps(before, seen=lambda frame: frame)
+    for balls, most in ((caps(captured), 0.006), (caps(captured, both), 0.023)):  # measured: 0.005, 0.022
+        assert np.abs(balls - as_calibrated).max() < most
+    # A capture of the zero offset alone leaves the error of colours: measured 0.144 (lut), 0.040.
     off = np.abs(caps(before, alone) - as_calibrated).max()
-    assert off < (0.03 if model == "quadratic" else 0.15)
+    assert off < (0.042 if model == "quadratic" else 0.15)
 
 
 def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real: Any) -> None:

@@ -87,7 +87,7 @@ def test_another_light_changes_no_press(pipeline: td.Pipeline, presses: Any) -> 
 
 
 def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: centroids 0.123 mm off on average, 0.447 at worst; areas 0.78 to 1.35 of the circle's, 1.03 on average.
+    """Measured: centroids 0.080 mm off on average, 0.271 at worst; areas 0.76 to 1.21 of the circle's, 0.99 on average.
 
     docs/depth-map.md states these numbers, and those of all that is above the threshold.
     """
@@ -103,13 +103,13 @@ def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, pres
         for name, values in found.items():
             values.append((np.hypot(*(centroids[name] - np.array([y, x]))), areas[name] / (np.pi * radius**2)))
     (off, area), (all_off, all_area) = (np.transpose(values) for values in found.values())
-    assert off.mean() < 0.13
-    assert off.max() < 0.45
-    assert 1.02 < area.mean() < 1.05
+    assert off.mean() < 0.085
+    assert off.max() < 0.28
+    assert 0.98 < area.mean() < 1
     assert area.min() > 0.75
-    assert area.max() < 1.4
-    assert (all_off.mean(), all_off.max()) == pytest.approx((0.24, 0.70), abs=0.01)
-    assert (all_area.mean(), all_area.min(), all_area.max()) == pytest.approx((1.73, 1.22, 2.47), abs=0.01)
+    assert area.max() < 1.25
+    assert (all_off.mean(), all_off.max()) == pytest.approx((0.23, 0.66), abs=0.01)
+    assert (all_area.mean(), all_area.min(), all_area.max()) == pytest.approx((1.69, 1.21, 2.37), abs=0.01)
 
 
 def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: Any) -> None:
@@ -121,18 +121,18 @@ def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: A
             results = [pipeline(in_light(press.image, light)) for press in presses]
             peaks, areas = ([each(result) for result in results] for each in (peak, area))
             found[on, light] = np.mean(peaks), np.mean(areas)
-    assert found[False, 1] == pytest.approx((0.85, 11.3), rel=0.01)
-    assert found[False, 1.05] == pytest.approx((1.09, 53.7), rel=0.01)
-    assert found[True, 1] == pytest.approx((0.84, 11.2), rel=0.01)
+    assert found[False, 1] == pytest.approx((0.836, 10.9), rel=0.01)
+    assert found[False, 1.05] == pytest.approx((1.17, 60.6), rel=0.01)
+    assert found[True, 1] == pytest.approx((0.824, 10.8), rel=0.01)
     assert found[True, 1.05] == pytest.approx(found[True, 1], rel=0.001)
 
 
 def test_light_gains_take_the_tilt_off_untouched_gel(real: Any, pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: 0.0224 mm RMS and 0.128 mm at most, mean over presses; without light gains 0.048 and 0.163 mm."""
+    """Measured: 0.0216 mm RMS and 0.132 mm at most, mean over presses; without light gains 0.050 and 0.170 mm."""
     without = td.Pipeline(td.load("gelsight-mini"), real / "background.png", light_gains=False)
     tilted, level = ([measured(each, press, each(press.image)) for press in presses] for each in (without, pipeline))
     assert mean(level, "rms").mean() < 0.023
-    assert mean(level, "largest").mean() < 0.13
+    assert mean(level, "largest").mean() < 0.134
     assert mean(level, "rms").mean() < 0.5 * mean(tilted, "rms").mean()
 
 

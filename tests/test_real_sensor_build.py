@@ -36,7 +36,13 @@ def on_grid(sensor: Sensor, presses: GridPresses) -> Sensor:
 
 def real_sensor(sensor: Sensor, presses: GridPresses, words: dict[str, Any]) -> Configuration:
     """Return what a real sensor needs: flat field, quadratic, zero slope at the edge, zero offset."""
-    choices: dict[str, Any] = {"columns": presses.size, "solver": "tridiagonal", "neumann": True, "zero_offset": True}
+    choices: dict[str, Any] = {
+        "columns": presses.grid[1],
+        "rows": presses.grid[0],
+        "solver": "tridiagonal",
+        "neumann": True,
+        "zero_offset": True,
+    }
     return on_grid(sensor, presses).configuration("quadratic", **choices, **words)
 
 
@@ -117,8 +123,8 @@ def test_a_calibration_made_through_a_camera_holds_in_the_rtl(
     fit = fit_presses(presses, ("quadratic",))
     assert fit.sensor.camera is not None
     assert fit.sensor.camera.pixel_format == form
-    views = [view for view in fit.held_out if view.is_whole][:count]
-    sampler = grid_sampler("presses", presses.background.shape[:2], (presses.size, presses.size), choice)
+    views = [view for view in presses.views if view.is_whole][:count]
+    sampler = grid_sampler("presses", presses.background.shape[:2], presses.grid, choice)
     pictures = {press.name: press.image for press in gather(folder).presses}
     words = np.stack([sampler.words(read_picture(Path(str(pictures[view.press.name])))) for view in views])
     config = real_sensor(fit.sensor, presses, FULL_WORDS)

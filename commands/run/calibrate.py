@@ -3,9 +3,9 @@
 
 The folder PRESSES holds background.png, the presses as PNGs or JPEGs, and presses.csv (press_folder.py). Circles that
 presses.csv does not give are measured in the pictures; with CIRCLES=found all are, because half a pixel in a radius of
-26 is 4 % of the height of a cap. HELD_OUT=each measures every whole press by a fit to all others, HELD_OUT=second every
-second press by the written fit. With CAMERA the pictures are converted to the stream of a camera with this pixel format
-and go through the model of its hardware. models/tactile_depth/fitting.py says how the fit is made.
+26 is 4 % of the height of a cap. The calibration is fitted to all presses; every whole press is measured by a fit to
+all others. With CAMERA the pictures are converted to the stream of a camera with this pixel format and go through the
+model of its hardware. models/tactile_depth/fitting.py says how the fit is made.
 """
 
 import os
@@ -29,7 +29,7 @@ from tactile_depth.fitting import DEFAULT_BITS, Fit, fit_presses
 from tactile_depth.presses import GridPresses, View, camera_pitch_mm, gather, to_grid
 from tactile_depth.sensor import BITS_PER_CHANNEL, MODELS
 
-VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "HELD_OUT", "EXPOSURE_US", "CAMERA", "BAYER", "OUT")
+VARIABLES = ("PRESSES", "GRADIENT", "PITCH", "BITS", "CIRCLES", "EXPOSURE_US", "CAMERA", "BAYER", "OUT")
 PRESSES_DRAWN = 3
 PUBLIC_PRESSES = (
     "give PRESSES=<folder with background.png, pictures of ball presses and presses.csv>; real ones are in the public "
@@ -47,7 +47,6 @@ class Request:
     pitch_mm: float | None
     bits: int
     find_circles: bool
-    each_in_turn: bool
     exposure_us: float | None
     camera: CameraChoice | None
     out: Path | None
@@ -66,7 +65,6 @@ def parse(arguments: list[str]) -> Request:
         variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float),
         variables.number(values, "BITS", DEFAULT_BITS, *BITS_PER_CHANNEL),
         variables.choice(values, "CIRCLES", ("table", "found")) == "found",
-        variables.choice(values, "HELD_OUT", ("second", "each")) == "each",
         variables.number(values, "EXPOSURE_US", None, 1e-3, LONGEST_EXPOSURE_US, float),
         camera_choice(values),
         out,
@@ -90,7 +88,7 @@ def run(request: Request) -> int:
     folder = data_folder() if request.presses is None else request.presses
     out = request.out or repository.ROOT / "build" / "calibrate" / f"{folder.resolve().name}.npz"
     names = (out.name, out.with_suffix(".png").name)
-    with files.workspace(out.parent, names, str(out)) as work:  # refused before the fit, which takes half a minute
+    with files.workspace(out.parent, names, str(out)) as work:  # refused before the fit, which takes some seconds
         fit = fit_folder(request, folder, out, work)
         files.replace(work, names, out.parent)
     kibibytes = out.stat().st_size / 1024
@@ -112,22 +110,18 @@ def fit_folder(request: Request, folder: Path, out: Path, work: Path) -> Fit:
         request.bits,
         out.stem,
         request.exposure_us,
-        each_in_turn=request.each_in_turn,
-        progress=_progress,
+        _progress,
     )
-    print(report(fit, presses, request.each_in_turn))
+    print(report(fit, presses))
     fit.sensor.save(work / out.name)
     draw_presses(work / out.with_suffix(".png").name, fit, presses)
     return fit
 
 
-def report(fit: Fit, presses: GridPresses, each_in_turn: bool) -> str:
-    """Return the text of the report: presses of the fit, and its accuracy on the presses held out."""
-    held_out = "every whole press in turn, by a fit to the others" if each_in_turn else "the presses held out"
-    lines = [
-        f"{len(fit.fitted)} presses fitted, {len(fit.held_out)} held out, {presses.pitch_mm:g} mm per pixel, grid of "
-        f"{presses.size}; the fit moved the centres by {fit.centre_shift_px:.1f} pixels (median)"
-    ]
+def report(fit: Fit, presses: GridPresses) -> str:
+    """Return the text of the report: presses of the fit, and its accuracy on each press by a fit to the others."""
+    rows, columns = presses.grid
+    lines = [f"{len(presses.views)} presses fitted, {presses.pitch_mm:g} mm per pixel, grid of {columns} x {rows}"]
     if len(presses.agreement):
         x, y, radius = np.median(presses.agreement, axis=0)
         spread = np.median(np.abs(presses.agreement - (x, y, radius)), axis=0)
@@ -136,49 +130,40 @@ def report(fit: Fit, presses: GridPresses, each_in_turn: bool) -> str:
             f"({spread[0]:.1f}), y {y:+.1f} ({spread[1]:.1f}), radius {radius:+.1f} ({spread[2]:.1f}) pixels, median "
             "(and median deviation)"
         )
-    lines += [f"measured on {held_out}; cap height: recovered / true", str(fit.evaluation)]
-    if fit.bins_fitted is not None and fit.pixels_in_them is not None:
-        bits = fit.sensor.bits_per_channel
-        lines.append(
-            f"table of {bits} bits a colour: the fit filled {100 * fit.bins_fitted:.1f} % of its bins, and "
-            f"{100 * fit.pixels_in_them:.1f} % of the pixels of the contacts held out fall into those"
-        )
+    lines += ["every whole press, by a fit to the others; cap height: recovered / true", str(fit.evaluation)]
     return "\n".join(lines)
 
 
 def draw_presses(path: Path, fit: Fit, presses: GridPresses) -> None:
-    """Draw held-out presses from the first to the last: frame, slopes, depth, and a cut beside the ball."""
-    pitch = presses.grid_pitch_mm
-    indices = np.unique(np.linspace(0, len(fit.held_out) - 1, PRESSES_DRAWN).round().astype(int))
-    views = [fit.held_out[index] for index in indices]
-    maps = {model: slopes_and_depths(fit.sensor, presses, views, model) for model in fit.sensor.models}
+    """Draw presses from the first to the last, by fits to the others: frame, slopes, depth, a cut beside the ball."""
+    pitch, (rows, columns) = presses.grid_pitch_mm, presses.grid
+    measured = [view for view in presses.views if view.press.name in fit.without]
+    indices = np.unique(np.linspace(0, len(measured) - 1, PRESSES_DRAWN).round().astype(int))
     drawn = []
-    for index, view in enumerate(views):
-        press, size = view.press, presses.size
+    for view in (measured[index] for index in indices):
+        press, sensor = view.press, fit.without[view.press.name]
+        maps = {model: slopes_and_depths(sensor, presses, [view], model) for model in sensor.models}
+        slopes, depths = maps[fit.sensor.model][0][0], {model: depth[0] for model, (_, depth) in maps.items()}
         x, y = press.edge()
-        row = min(max(round(press.y + 0.5), 0), size - 1)
-        across = np.arange(size) - press.x - 0.5
-        squared = across**2 + (row - press.y - 0.5) ** 2
-        ball = np.sqrt(np.maximum(press.ball_radius**2 - squared, 0)) - (press.ball_radius - press.cap_height)
-        depths = {model: depth[index] for model, (_, depth) in maps.items()}
+        row = min(max(round(press.y + 0.5), 0), rows - 1)
         drawn.append(
             draw.DrawnPress(
                 name=press.name,
                 frame=view.frame,
-                slopes=maps[fit.sensor.model][0][index],
+                slopes=slopes,
                 depth=depths[fit.sensor.model] * pitch,
                 circle=(x * pitch, y * pitch),
-                across=across * pitch,
-                ball=np.where(squared < press.contact_radius**2, ball * pitch, np.nan),
+                across=(np.arange(columns) - press.x - 0.5) * pitch,
+                ball=press.depth(presses.grid)[row] * pitch,
                 cuts={model: (depth[row] - press.edge_depth(depth)) * pitch for model, depth in depths.items()},
             )
         )
-    title = f"presses held out, {fit.sensor.model}, Neumann, {presses.size} x {presses.size}"
-    draw.draw_presses(path, drawn, presses.size * pitch, title)
+    title = f"presses by fits to the others, {fit.sensor.model}, Neumann, {columns} x {rows}"
+    draw.draw_presses(path, drawn, (columns * pitch, rows * pitch), title)
 
 
 def _progress(views: list[View]) -> Iterable[View]:
-    return tqdm(views, "holding out", leave=False, disable=None)
+    return tqdm(views, "leaving out", leave=False, disable=None)
 
 
 def main() -> None:

@@ -119,9 +119,10 @@ class DrawnPress:
     cuts: dict[str, np.ndarray]  # of the depth by each model, height over the contact circle
 
 
-def draw_presses(path: Path, presses: list[DrawnPress], width_mm: float, title: str) -> None:
+def draw_presses(path: Path, presses: list[DrawnPress], size_mm: tuple[float, float], title: str) -> None:
     """Draw frame, both slopes, depth and a cut through the contact, one row per press."""
-    extent = (0, width_mm, width_mm, 0)
+    width_mm, height_mm = size_mm
+    extent = (0, width_mm, height_mm, 0)
     figure, axes = plt.subplots(
         len(presses), 5, figsize=(17, 3 * len(presses) + 0.6), squeeze=False, layout="constrained"
     )
@@ -136,7 +137,7 @@ def draw_presses(path: Path, presses: list[DrawnPress], width_mm: float, title: 
         figure.colorbar(shown, ax=row[3], label="mm", shrink=0.85)
         for axis in row[:4]:
             axis.plot(*press.circle, color="white" if axis in (row[0], row[3]) else "black", linewidth=0.7)
-            axis.set(xlim=(0, width_mm), ylim=(width_mm, 0))
+            axis.set(xlim=(0, width_mm), ylim=(height_mm, 0))
         for model, cut in press.cuts.items():
             row[4].plot(press.across, cut, label=model)
         row[4].plot(press.across, press.ball, "k--", label="ball")

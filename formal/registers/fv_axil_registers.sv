@@ -149,7 +149,8 @@ module fv_axil_registers
         || offset == TimeoutOffset || offset == TableSelectOffset || offset == TableIndexOffset
         || offset == TableHighOffset || offset == TableCommitOffset || offset == DarkLevelOffset
         || offset == InterruptStatusOffset || offset == InterruptMaskOffset || offset == PitchOffset
-        || offset == OffThresholdOffset || offset == MinimumAreaOffset || offset == DebounceOffset
+        || offset == OffThresholdOffset || offset == AreaThresholdOffset || offset == MinimumAreaOffset
+        || offset == DebounceOffset
         || offset == LightOffset || offset == LightGainRedOffset || offset == LightGainGreenOffset
         || offset == LightGainBlueOffset
         || (offset == ReferenceCaptureOffset && (ReferenceWords != 0 || !(data[ReferenceCaptureStartBit] && strobes[ReferenceCaptureStartBit/8])))
@@ -397,8 +398,7 @@ module fv_axil_registers
       outputs: assert (contact_settings.threshold == limit && timeout == silence
           && contact_settings.hold_contact == hold);
       contact_words: assert (contact_settings.off_threshold == off && contact_settings.area_threshold == level
-          && contact_settings.minimum_area == area
-          && 32'(contact_settings.debounce) == frames_needed);
+          && contact_settings.minimum_area == area && 32'(contact_settings.debounce) == frames_needed);
       stream_settings: assert (contact_settings.drop_frames == drop && 32'(dark_level) == dim
           && 32'(reference_command.log2_frames) == averaged && 32'(zero_command.log2_frames) == zero_averaged);
       interrupt: assert (irq == raised);

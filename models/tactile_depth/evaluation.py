@@ -25,6 +25,8 @@ from tactile_depth.presses import (
 from tactile_depth.sensor import HeightError, Sensor
 from tactile_depth.tactile_depth import light_of, slope_codes, slope_tables, solve
 
+BALLS_AGREE = 0.03  # largest relative difference between the heights of balls
+
 
 @dataclass(frozen=True)
 class Score:
@@ -32,27 +34,32 @@ class Score:
 
     Attributes
     ----------
-    slope_r2 : float
-        Coefficient of determination of the slopes inside the contact.
+    height_rms_mm : float
+        Standard deviation of depth from the ball in the contact.
     cap_height : float
         Recovered over true height of the ball's cap.
-    rest_slope : float
-        RMS slope where nothing touches; NaN where the contact fills the grid.
+    rest_slope, rest_mm : float
+        RMS slope where nothing touches, and RMS of the depth, less its mean; NaN where the contact fills the grid.
     """
 
-    slope_r2: float
+    height_rms_mm: float
     cap_height: float
     rest_slope: float
+    rest_mm: float
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Scores of a calibration press by press; `str` returns them as a table.
+    """Scores of a calibration press by press; `str` returns them as a table with the `summary`.
 
     Attributes
     ----------
     presses : tuple of str
         Names of the presses.
+    diameters_mm : tuple of float
+        Of the balls.
+    central : tuple of bool
+        The contact lies wholly in the picture's middle square.
     scores : mapping of str to tuple of Score
         Scores of the presses, by gradient model.
     notes : tuple of str
@@ -60,44 +67,77 @@ class Evaluation:
     """
 
     presses: tuple[str, ...]
+    diameters_mm: tuple[float, ...]
+    central: tuple[bool, ...]
     scores: Mapping[str, tuple[Score, ...]]
     notes: tuple[str, ...] = ()
 
-    def slope_r2(self, model: str) -> float:
-        """Return the mean of `slope_r2` over the presses."""
-        return float(np.mean([score.slope_r2 for score in self.scores[model]]))
+    def values(self, model: str, name: str) -> np.ndarray:
+        """Return one number of the scores of each press, float64 (presses,)."""
+        return np.array([getattr(score, name) for score in self.scores[model]])
 
     def height_error(self, model: str) -> HeightError:
-        """Return mean and standard deviation of the recovered over the true height."""
-        ratios = [score.cap_height for score in self.scores[model]]
-        return HeightError(float(np.mean(ratios)), float(np.std(ratios)), len(ratios))
-
-    def rest_slope(self, model: str) -> float:
-        """Return the mean of `rest_slope` over the presses that leave part of the grid untouched; NaN without any."""
-        slopes = [score.rest_slope for score in self.scores[model] if not math.isnan(score.rest_slope)]
-        return float(np.mean(slopes)) if slopes else math.nan
+        """Return mean and standard deviation of recovered over true height in the middle square, else of all."""
+        central = np.array(self.central)
+        ratios = self.values(model, "cap_height")[central if central.any() else ~central]
+        return HeightError(float(ratios.mean()), float(ratios.std()), len(ratios))
 
     @property
     def better_model(self) -> str:
-        """The model with the larger `slope_r2`."""
-        return max(self.scores, key=self.slope_r2)
+        """The model with the smaller error of heights in the contacts."""
+        return min(self.scores, key=lambda model: float(self.values(model, "height_rms_mm").mean()))
+
+    @property
+    def summary(self) -> str:
+        """The mean errors in the middle square and beside it, and what the balls say of the scale."""
+        lines = []
+        for model in self.scores:
+            rms, cap, *rest = (
+                self.values(model, name) for name in ("height_rms_mm", "cap_height", "rest_slope", "rest_mm")
+            )
+            for where, among in (("in the middle", np.array(self.central)), ("at the sides", ~np.array(self.central))):
+                if among.any():
+                    flat = among & ~np.isnan(rest[0] + rest[1])
+                    slope, depth = (each[flat].mean() for each in rest) if flat.any() else (math.nan, math.nan)
+                    lines.append(
+                        f"{model}, {among.sum()} presses {where}: height RMS in the contact "
+                        f"{1000 * rms[among].mean():.1f} um; caps {cap[among].mean():.3f} of their height, RMS error "
+                        f"{np.sqrt(((cap[among] - 1) ** 2).mean()):.3f}; RMS where nothing touches: slope {slope:.3f}, "
+                        f"depth {1000 * depth:.1f} um"
+                    )
+            lines += self._of_balls(model)
+        return "\n".join(lines)
+
+    def _of_balls(self, model: str) -> list[str]:
+        """Return the ratio of each ball, if there are several, and whether they contradict each other."""
+        caps, diameters = self.values(model, "cap_height"), np.array(self.diameters_mm)
+        ratios = {ball: float(caps[diameters == ball].mean()) for ball in sorted(set(self.diameters_mm))}
+        if len(ratios) < 2:
+            return []
+        apart = max(ratios.values()) / min(ratios.values()) - 1
+        doubt = f"; the scale is not known better than these {100 * apart:.0f} %" if apart > BALLS_AGREE else ""
+        return [f"{model}, caps by ball: {', '.join(f'{b:g} mm {r:.3f}' for b, r in ratios.items())}{doubt}"]
 
     def __str__(self) -> str:
         label = f"{'press':<22}"
         lines = [
             " " * len(label) + "".join(f"{model:>24}" for model in self.scores),
-            label + f"{'slope R2':>12}{'cap height':>12}" * len(self.scores),
+            label + f"{'RMS, um':>12}{'cap height':>12}" * len(self.scores),
         ]
-        for index, name in enumerate(self.presses):
+        for index, (name, is_central) in enumerate(zip(self.presses, self.central, strict=True)):
             rows = [scores[index] for scores in self.scores.values()]
-            cells = "".join(f"{row.slope_r2:>12.3f}{row.cap_height:>12.3f}" for row in rows)
-            lines.append(f"{name[-21:]:<22}{cells}")
-        errors = {model: self.height_error(model) for model in self.scores}
-        means = "".join(f"{self.slope_r2(model):>12.3f}{errors[model].mean:>12.3f}" for model in self.scores)
-        spreads = "".join(f"{error.spread:>24.3f}" for error in errors.values())
-        at_rest = "".join(f"{self.rest_slope(model):>24.3f}" for model in self.scores)
-        lines += [f"{'mean':<22}{means}", f"{'spread':<22}{spreads}", f"{'RMS slope at rest':<22}{at_rest}"]
-        return "\n".join(lines)
+            cells = "".join(f"{1000 * row.height_rms_mm:>12.1f}{row.cap_height:>12.3f}" for row in rows)
+            lines.append(f"{name[-21:]:<22}{cells}{'' if is_central else '  at the side'}")
+        return "\n".join([*lines, self.summary])
+
+
+def evaluation_of(
+    presses: GridPresses, views: Sequence[View], scores: Mapping[str, tuple[Score, ...]], notes: tuple[str, ...] = ()
+) -> Evaluation:
+    """Return the evaluation of presses whose scores are known."""
+    names = tuple(view.press.name for view in views)
+    central = tuple(view.press.is_central(presses.grid) for view in views)
+    return Evaluation(names, tuple(view.diameter_mm for view in views), central, scores, presses.notes + notes)
 
 
 def evaluate(
@@ -109,8 +149,8 @@ def evaluate(
 ) -> Evaluation:
     """Measure each gradient model of a calibration on presses of balls.
 
-    Depth is computed as by the hardware with zero slope at the edge, on the largest square grid within the pictures.
-    A press that the square cuts is left out.
+    Depth is computed as by the hardware with zero slope at the edge, on the grid that covers the pictures. A press that
+    the edge of the picture cuts is left out.
 
     Parameters
     ----------
@@ -141,19 +181,22 @@ def evaluate(
     sensor.check_lighting(pictures.background)
     on_grid = to_grid(pictures, pitch, find_circles)
     measured = [view for view in on_grid.views if view.is_whole]
-    cut = [f"{view.press.name}: the picture's middle square cuts the contact: left out" for view in on_grid.views]
-    notes = on_grid.notes + tuple(note for note, view in zip(cut, on_grid.views, strict=True) if not view.is_whole)
+    cut = (view.press.name for view in on_grid.views if not view.is_whole)
+    notes = tuple(f"{name}: the edge of the picture cuts the contact: left out" for name in cut)
     if not measured:
-        problem = f": none of {len(pictures.presses)} can be used{f': {notes[0]}' if notes else ''}"
+        first = (*on_grid.notes, *notes)[:1]
+        problem = f": none of {len(pictures.presses)} can be used{''.join(f': {note}' for note in first)}"
         raise InputError(Argument("presses"), problem)
     scores = {model: scores_of(sensor, on_grid, measured, model) for model in sensor.models}
-    return Evaluation(tuple(view.press.name for view in measured), scores, notes)
+    return evaluation_of(on_grid, measured, scores, notes)
 
 
 def scores_of(sensor: Sensor, presses: GridPresses, views: Sequence[View], model: str) -> tuple[Score, ...]:
     """Return the scores of a gradient model on presses."""
     slopes, depths = slopes_and_depths(sensor, presses, views, model)
-    return tuple(_score(view, *maps) for view, *maps in zip(views, slopes, depths, strict=True))
+    pitch_mm = presses.grid_pitch_mm
+    maps = zip(views, slopes, depths, strict=True)
+    return tuple(_score(view, slope, depth, pitch_mm) for view, slope, depth in maps)
 
 
 def slopes_and_depths(
@@ -163,20 +206,20 @@ def slopes_and_depths(
 
     Returns
     -------
-    float64 arrays (presses, size, size, 2), pixels per pixel, and (presses, size, size), grid pixels
+    float64 arrays (presses, rows, columns, 2), pixels per pixel, and (presses, rows, columns), grid pixels
     """
     on_grid = replace(sensor, pixel_pitch_mm=presses.grid_pitch_mm, reference=presses.background_on_grid)
-    config = on_grid.configuration(model, columns=presses.size, neumann=True)
+    rows, columns = presses.grid
+    config = on_grid.configuration(model, columns=columns, rows=rows, solver="tridiagonal", neumann=True)
     frames, tables = np.stack([view.frame for view in views]), slope_tables(on_grid, config)
     codes = slope_codes(frames, on_grid, config, tables=tables, light=light_of(frames, tables, config))
-    return codes * config.gradient_lsb, solve(divergence(codes, config.neumann), config) * config.depth_lsb_px
+    depth = solve(divergence(codes, config.neumann), config)[:, ::-1]
+    return codes * config.gradient_lsb, depth * config.depth_lsb_px
 
 
-def _score(view: View, slopes: np.ndarray, depth: np.ndarray) -> Score:
-    press, size = view.press, len(depth)
-    truth, distance = press.slopes(size), press.distance(size)
-    inside, outside = distance < 1, distance > NOTHING_TOUCHES
-    error = ((slopes - truth)[inside] ** 2).sum()
-    r2 = 1 - error / ((truth[inside] - truth[inside].mean(axis=0)) ** 2).sum()
-    rest = math.sqrt((slopes[outside] ** 2).mean()) if outside.any() else math.nan
-    return Score(float(r2), press.recovered(depth), rest)
+def _score(view: View, slopes: np.ndarray, depth: np.ndarray, pitch_mm: float) -> Score:
+    outside = view.press.distance(view.grid) > NOTHING_TOUCHES
+    slope = math.sqrt((slopes[outside] ** 2).mean()) if outside.any() else math.nan
+    far = view.press.untouched(view.grid)
+    rest_mm = float(depth[far].std()) * pitch_mm if far.any() else math.nan
+    return Score(view.press.height_rms(depth) * pitch_mm, view.press.recovered(depth), slope, rest_mm)

@@ -13,6 +13,8 @@ from tactile_depth.camera_configuration import CameraChoice, CameraConfiguration
 from tactile_depth.errors import InputError, Part
 from tactile_depth.resampling import Resampling, resampling
 
+LARGEST_COLUMNS = 128  # of a grid that is chosen for pictures
+
 
 @dataclass(frozen=True)
 class GridSampler:
@@ -46,6 +48,18 @@ class GridSampler:
             return camera_front_end(self.words(picture), self.camera)
         assert self.plan is not None
         return np.rint(self.plan.average(picture)).astype(np.uint8)
+
+
+def picture_grid(picture: tuple[int, int], solver: str = "tridiagonal", least_ratio: int = 1) -> tuple[int, int]:
+    """Return rows and columns of the grid that covers pictures (rows, columns): 96 x 128 for pictures of 4:3.
+
+    Columns are the largest power of two up to 128 of which each is `least_ratio` camera pixels or more. For the
+    spectral solver the grid is square.
+    """
+    rows, columns = picture
+    most = min(LARGEST_COLUMNS, (columns if solver == "tridiagonal" else min(rows, columns)) // least_ratio)
+    across = 1 << (max(most, 1).bit_length() - 1)
+    return (round(across * rows / columns) if solver == "tridiagonal" else across), across
 
 
 def grid_sampler(

@@ -24,7 +24,7 @@ from tactile_depth.frames import camera_scale, read_pictures, read_stack
 from tactile_depth.gradient.flat_field import captured_gains, dark_pixels, require_light, unit_gains
 from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.reference_capture import largest_log2_frames
-from tactile_depth.grid_sampler import GridSampler, grid_sampler
+from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presets import SENSOR
 from tactile_depth.result import Result
@@ -40,7 +40,6 @@ from tactile_depth.tactile_depth import (
     zeroed,
 )
 
-LARGEST_DEFAULT_COLUMNS = 128
 SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 BOUNDARIES = ("neumann", "dirichlet")
@@ -69,16 +68,10 @@ class Stream:
 
 
 def default_grid(sensor: Sensor, solver: str = "tridiagonal") -> tuple[int, int]:
-    """Return rows and columns of the grid that covers the full picture: 96 x 128 for a camera of 4:3.
-
-    Columns are the largest power of two up to 128 that the camera has. For the spectral solver the grid is square.
-    """
+    """Return rows and columns of the grid that covers the full picture of a sensor, as `picture_grid`."""
     if sensor.camera is None:
         return SYNTHETIC_GRID
-    rows, columns = sensor.camera.rows, sensor.camera.columns
-    most = min(LARGEST_DEFAULT_COLUMNS, columns if solver == "tridiagonal" else min(rows, columns))
-    across = 1 << (most.bit_length() - 1)
-    return (round(across * rows / columns) if solver == "tridiagonal" else across), across
+    return picture_grid((sensor.camera.rows, sensor.camera.columns), solver)
 
 
 class Pipeline:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ball presses: pictures of balls of known diameter pressed into a gel, on the grid, with their true slopes."""
+"""Ball presses: pictures of balls of known diameter pressed into a gel, on the grid, with true slopes and depth."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
@@ -17,14 +18,16 @@ from tactile_depth.circles import find_circle, require_circle_finder
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import Argument, InputError, Part
 from tactile_depth.frames import read_picture
-from tactile_depth.gradient.flat_field import captured_gains, deviations, flat_codes, require_light
-from tactile_depth.grid_sampler import GridSampler, grid_sampler
+from tactile_depth.gradient.flat_field import captured_gains, flat_codes, ratios, require_light
+from tactile_depth.gradient.light_gains import Light, settled
+from tactile_depth.grid_sampler import GridSampler, grid_sampler, picture_grid
 from tactile_depth.press_folder import background_path, read_presses
 
-LARGEST_GRID, SMALLEST_GRID = 128, 16
+SMALLEST_GRID = 16  # columns
 PITCHES_AGREE = 0.02  # largest relative difference between the given pitch and the pitch from the balls' radii
 FITTED_SHARE = 0.9  # fraction of the contact's radius: beyond it the gel leaves the ball
 NOTHING_TOUCHES = 2.0  # distance from the centre in contact radii: beyond it the gel is flat
+AT_REST = 2.5  # distance from the centre in contact radii: beyond it depth is that of untouched gel
 LARGEST_CONTACT = 0.999  # fraction of the ball's radius: slopes grow without bound towards 1
 LARGEST_CIRCLE = 0.8  # largest circle that is searched for, as a fraction of the ball's radius
 BACKGROUND = Argument("background")
@@ -33,7 +36,10 @@ TOP_PX = 2  # radius of the top of a cap, in grid pixels
 
 @dataclass(frozen=True)
 class GridPress:
-    """Geometry of a press on a square grid; lengths are in grid pixels, x along the columns, y down the rows."""
+    """Geometry of a press on a grid; lengths are in grid pixels, x along the columns, y down the rows.
+
+    A depth map is shifted by half a pixel up and to the left (divergence.py): it shows the centre at x + 0.5, y + 0.5.
+    """
 
     name: str
     x: float
@@ -51,29 +57,48 @@ class GridPress:
         """Slope of the ball at the contact circle."""
         return self.contact_radius / math.sqrt(self.ball_radius**2 - self.contact_radius**2)
 
-    def margin(self, size: int) -> float:
-        """Return the distance from the contact circle to the nearest edge of a square grid; negative if it is cut."""
-        return min(self.x, self.y, size - 1 - self.x, size - 1 - self.y) - self.contact_radius
+    def margin(self, grid: tuple[int, int]) -> float:
+        """Return the distance from the contact circle to the nearest edge of a grid; negative if it is cut."""
+        rows, columns = grid
+        return min(self.x, self.y, columns - 1 - self.x, rows - 1 - self.y) - self.contact_radius
 
-    def distance(self, size: int) -> np.ndarray:
-        """Return the distance of each pixel from the centre in contact radii, float64 (size, size)."""
-        rows, columns = np.indices((size, size))
+    def is_central(self, grid: tuple[int, int]) -> bool:
+        """Return True if the contact lies completely in the middle square of a grid."""
+        side = min(grid)
+        top, left = ((length - side) / 2 for length in grid)
+        return replace(self, x=self.x - left, y=self.y - top).margin((side, side)) >= 0
+
+    def distance(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the distance of each pixel from the centre in contact radii, float64 (rows, columns)."""
+        rows, columns = np.indices(grid)
         return np.hypot(columns - self.x, rows - self.y) / self.contact_radius
 
-    def slopes(self, size: int) -> np.ndarray:
-        """Return the slopes of the depth, float64 (size, size, 2): those of the ball in the contact, 0 elsewhere."""
-        rows, columns = np.indices((size, size), dtype=np.float64)
+    def slopes(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the slopes of the depth, float64 (rows, columns, 2): those of the ball in the contact, 0 elsewhere."""
+        rows, columns = np.indices(grid, dtype=np.float64)
         offset = np.stack((columns - self.x, rows - self.y), axis=-1)
         squared = (offset**2).sum(axis=-1)
         touches = squared < self.contact_radius**2
         drop = np.sqrt(np.where(touches, self.ball_radius**2 - squared, 1))
         return np.where(touches[..., None], -offset / drop[..., None], 0)
 
-    def edge(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return points of the contact circle in a depth map: columns, rows, float64 (360,) each.
+    def _squared(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the squared distance of each depth of a map from the centre."""
+        rows, columns = np.indices(grid)
+        return (columns - self.x - 0.5) ** 2 + (rows - self.y - 0.5) ** 2
 
-        A depth map is shifted by half a pixel up and to the left (divergence.py). The points include this shift.
-        """
+    def depth(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the depth of the ball above the contact circle, float64 (rows, columns), NaN outside."""
+        squared = self._squared(grid)
+        height = np.sqrt(np.maximum(self.ball_radius**2 - squared, 0)) - (self.ball_radius - self.cap_height)
+        return np.where(squared < self.contact_radius**2, height, np.nan)
+
+    def untouched(self, grid: tuple[int, int]) -> np.ndarray:
+        """Return the depths of a map that are so far from the contact that the gel is at rest, bool (rows, columns)."""
+        return self._squared(grid) > (AT_REST * self.contact_radius) ** 2
+
+    def edge(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return points of the contact circle in a depth map: columns, rows, float64 (360,) each."""
         angle = np.linspace(0, 2 * np.pi, 360, endpoint=False)
         return (
             self.x + 0.5 + self.contact_radius * np.cos(angle),
@@ -88,11 +113,16 @@ class GridPress:
     def recovered(self, depth: np.ndarray) -> float:
         """Return the ratio of recovered to true height of the cap, from a depth map (rows, columns) in grid pixels.
 
-        The recovered height is the mean depth within `TOP_PX` of the centre minus that on the contact circle.
+        A height is the mean depth within `TOP_PX` of the centre minus that on the contact circle, of the map and of the
+        ball alike.
         """
-        rows, columns = np.indices(depth.shape)
-        top = depth[np.hypot(columns - self.x - 0.5, rows - self.y - 0.5) <= TOP_PX].mean()
-        return float((top - self.edge_depth(depth)) / self.cap_height)
+        grid = (len(depth), depth.shape[1])
+        top = self._squared(grid) <= TOP_PX**2
+        return float((depth[top].mean() - self.edge_depth(depth)) / np.nanmean(self.depth(grid)[top]))
+
+    def height_rms(self, depth: np.ndarray) -> float:
+        """Return the standard deviation of a depth map (rows, columns) from the ball in the contact, in grid pixels."""
+        return float(np.nanstd(depth - self.depth((len(depth), depth.shape[1]))))
 
 
 @dataclass(frozen=True)
@@ -102,19 +132,26 @@ class View:
     Attributes
     ----------
     press : GridPress
-    frame, codes : uint8 array (size, size, 3)
-    deviations : int64 array (size, size, 3), in units of `DEVIATION.lsb`
+    diameter_mm : float
+    frame, codes : uint8 array (rows, columns, 3)
+    deviations : int64 array (rows, columns, 3), in units of `DEVIATION.lsb`, with light gains
     """
 
     press: GridPress
+    diameter_mm: float
     frame: np.ndarray
     codes: np.ndarray
     deviations: np.ndarray
 
     @property
+    def grid(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return len(self.frame), self.frame.shape[1]
+
+    @property
     def is_whole(self) -> bool:
         """True if the contact lies completely on the grid."""
-        return self.press.margin(len(self.frame)) >= 0
+        return self.press.margin(self.grid) >= 0
 
 
 @dataclass(frozen=True)
@@ -152,7 +189,7 @@ class GridPresses:
     views : tuple of View
     background : uint8 array (rows, columns, 3)
         Picture of the sensor without contact, in camera pixels.
-    background_on_grid : uint8 array (size, size, 3)
+    background_on_grid : uint8 array (rows, columns, 3)
     pitch_mm : float
         Millimetres per camera pixel.
     scale : float
@@ -176,9 +213,9 @@ class GridPresses:
     pixel_format: str = "rgb888"
 
     @property
-    def size(self) -> int:
+    def grid(self) -> tuple[int, int]:
         """Rows and columns of the grid."""
-        return len(self.background_on_grid)
+        return len(self.background_on_grid), self.background_on_grid.shape[1]
 
     @property
     def grid_pitch_mm(self) -> float:
@@ -259,7 +296,7 @@ def to_grid(
     compare_circles: bool = False,
     choice: CameraChoice | None = None,
 ) -> GridPresses:
-    """Resample presses to the largest square grid within their pictures; `notes` names the presses left out and why.
+    """Resample presses to `picture_grid`, which covers their pictures; `notes` names the presses left out and why.
 
     Parameters
     ----------
@@ -280,18 +317,19 @@ def to_grid(
     background = pictures.background
     camera = background.shape[:2]
     least = 1 if choice is None else FORMATS[choice.pixel_format].least_ratio
-    size = min(LARGEST_GRID, 1 << ((min(camera) // least).bit_length() - 1))
-    if size < SMALLEST_GRID:
+    grid = picture_grid((camera[0], camera[1]), least_ratio=least)
+    if min(grid) < SMALLEST_GRID:
         raise InputError(BACKGROUND, f": {camera[0]} x {camera[1]} pixels", accepted=f"{SMALLEST_GRID} x or more")
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
-    config = Configuration(columns=size)
-    sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), (size, size), choice)
+    shape: dict[str, Any] = {"columns": grid[1], "rows": grid[0], "solver": "tridiagonal"}
+    config = Configuration(**shape, flat_field=True, gradient_model="quadratic", light_gains=True)
+    sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), grid, choice)
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)
     require_light(gains, config, BACKGROUND)
     notes, agreement = list(pictures.notes), []
-    geometry: list[GridPress] = []
+    geometry: list[tuple[GridPress, float]] = []
     frames: list[np.ndarray] = []
     for press in pictures.presses:
         try:
@@ -302,23 +340,26 @@ def to_grid(
                 largest = min(LARGEST_CIRCLE * ball, min(camera) / 2)
                 seen = Circle(*circle) if (circle := find_circle(image, background, largest)) else None
             given = None if press.circle is None else Circle(*press.circle)
-            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, size)
+            at = _grid_press(press.name, seen if find_circles else given or seen, ball, sampler, grid)
         except InputError as error:
             notes.append(str(InputError(f"{error}: left out")))
             continue
         if given and seen:
             agreement.append(np.subtract(seen, given))
-        geometry.append(at)
+        geometry.append((at, press.diameter_mm))
         frames.append(sampler.frame(image))
-    stack = np.array(frames, np.uint8).reshape(-1, size, size, 3)
-    codes, colours = flat_codes(stack, gains, config), deviations(stack, gains, config)
-    views = tuple(View(*parts) for parts in zip(geometry, stack, codes, colours, strict=True))
+    stack = np.array(frames, np.uint8).reshape(-1, *grid, 3)
+    codes, relative, light = flat_codes(stack, gains, config), ratios(stack, gains, config), Light.of(config)
+    colours = light.deviations(relative, settled(relative, light)[:, None, None])
+    views = tuple(View(*at, *parts) for at, *parts in zip(geometry, stack, codes, colours, strict=True))
     differences = np.array(agreement).reshape(-1, 3)
     presses = GridPresses(pictures.name, views, background, rest, pitch_mm, sampler.scale, tuple(notes), differences)
     return presses if choice is None else replace(presses, pixel_format=choice.pixel_format)
 
 
-def _grid_press(name: str, circle: Circle | None, ball: float, sampler: GridSampler, size: int) -> GridPress:
+def _grid_press(
+    name: str, circle: Circle | None, ball: float, sampler: GridSampler, grid: tuple[int, int]
+) -> GridPress:
     """Return the geometry of a circle and a ball's radius in camera pixels; raise InputError if it cannot be used."""
     if circle is None:
         raise InputError(f"{name}: no circle to be seen")
@@ -332,8 +373,8 @@ def _grid_press(name: str, circle: Circle | None, ball: float, sampler: GridSamp
         circle.radius / sampler.scale,
         ball / sampler.scale,
     )
-    if not (press.distance(size) < FITTED_SHARE).any():
-        raise InputError(f"{name}: the press is outside the picture's middle square")
+    if not (press.distance(grid) < FITTED_SHARE).any():
+        raise InputError(f"{name}: the press is outside the picture")
     return press
 
 

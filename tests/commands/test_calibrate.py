@@ -44,7 +44,7 @@ def test_the_command_writes_a_calibration_a_picture_and_a_table(
     assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)  # type: ignore[union-attr]
     assert read_picture(out.with_suffix(".png")).shape[1] > 1000
     assert str(fit.evaluation) in report.out
-    for words in ("of its bins", "circles found in 24 pictures", "the better model is quadratic"):
+    for words in ("24 presses fitted", "circles found in 24 pictures", "the better model is quadratic"):
         assert words in report.out
     assert sorted(path.name for path in out.parent.iterdir()) == ["mine.npz", "mine.png"]
 
@@ -58,17 +58,6 @@ def test_one_model_alone_is_written_alone(made: Any, tmp_path: Path, model: Any)
     assert tuple(sensor.height_errors) == tuple(sensor.fitted_slope) == (model,)
     if model == "lut":
         assert sensor.bits_per_channel == 3
-
-
-@pytest.mark.regress  # tests/test_fitting.py has the fits
-def test_presses_held_out_in_turn_are_in_the_file(
-    made: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "each.npz"
-    assert run(parse([f"PRESSES={made}", f"OUT={out}", "GRADIENT=quadratic", "HELD_OUT=each"])) == 0
-    count = sum(view.is_whole for view in read(made).views)
-    assert load(str(out)).height_errors["quadratic"].presses == count
-    assert "every whole press in turn" in capsys.readouterr().out
 
 
 def test_a_table_of_frames_and_diameters_alone_serves(folder: Path, tmp_path: Path) -> None:
