@@ -46,8 +46,8 @@ override need_icarus := command -v iverilog > /dev/null || { \
 
 # Targets that run the command of their name; those of WITH_ICARUS need Icarus whatever the variables say.
 override WITH_ICARUS := lint mutate netlists quick regress test upsets
-override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes formal fpga reflex registers \
-  report sign-off sim sweep synth tune wrap
+override COMMANDS := $(WITH_ICARUS) asic baselines calibrate certify coverage extremes formal fpga presses reflex \
+  registers report sign-off sim sweep synth tune wrap
 
 .PHONY: help live-test system-tools setup clean $(COMMANDS)
 override .DEFAULT_GOAL := sim
@@ -117,6 +117,9 @@ report: $(STAMP)
 
 # Fit a calibration file to ball presses of known diameter. PRESSES=folder OUT=mine.npz
 calibrate: $(STAMP)
+
+# Measure heights, contacts and untouched gel on real ball presses, and play them through the RTL. PRESSES=folder
+presses: $(STAMP)
 
 # Measure area, slack and power in standard cells of any Liberty file. LIB=file NODE_NM=180
 asic: $(HARDWARE)

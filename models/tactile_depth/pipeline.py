@@ -270,6 +270,11 @@ class Pipeline:
         light = LightFilter(Light.of(self.config)) if self.config.light_gains else None
         return Stream(light, ContactEvents(*self.grid, self.config.data_width, self.config.solver == "tridiagonal"))
 
+    @property
+    def zero_codes(self) -> np.ndarray:
+        """Zero offset at its nodes, depth codes in the order of the stream, int64 (node rows, node columns)."""
+        return self._zero
+
     def capture_reference(self, pictures: Pictures) -> None:
         """Take the mean of pictures without contact as the reference, as the hardware's capture does.
 

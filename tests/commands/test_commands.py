@@ -47,7 +47,7 @@ REFUSED = {
     "calibrate CIRCLES=drawn": "CIRCLES=drawn is unknown: accepted are table, found",
     "calibrate EXPOSURE_US=0": "EXPOSURE_US=0: accepted is a number",
     "calibrate GRADIENT=cubic": "GRADIENT=cubic is unknown: accepted are both, lut, quadratic",
-    "calibrate HELD_OUT=all": "HELD_OUT=all is unknown: accepted are second, each",
+    "calibrate HELD_OUT=all": "HELD_OUT=all: unknown variable",
     "calibrate OUT=x.txt": "OUT=x.txt: give the name of an .npz file",
     "calibrate PITCH=0": "PITCH=0",
     "calibrate PITCH=nan": "PITCH=nan: accepted is a number from 1e-06 to 1,000",

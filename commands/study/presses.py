@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make presses`: what the pipeline makes of real ball presses, each by a calibration from all others, and in RTL.
+
+Heights, caps, untouched gel, centroid and area of each whole press, `PRESET=sensor` and 24 bits, alone and in other
+light; then each press through the RTL with its own calibration, every code against the model. The folder is that of
+`make calibrate`. RTL=0: model only. Exit status: 1 if a code differs, 2 on bad input.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+import tactile_depth as td
+from commands.common import markdown, variables
+from commands.common import simulator as simulation
+from commands.run import bench
+from commands.run.calibrate import data_folder
+from tactile_depth.calibration_file import PIXEL_PITCHES_MM
+from tactile_depth.configuration import LIGHT_GAIN
+from tactile_depth.fitting import fit_presses
+from tactile_depth.frames import read_picture
+from tactile_depth.presses import GridPress, PressPictures, camera_pitch_mm, gather, to_grid
+from tactile_depth.registers.axil_registers import GAINS
+
+VARIABLES = ("PRESSES", "PITCH", "SIM", "RTL")
+LIGHTS = ((0.8,) * 3, (0.9,) * 3, (0.95,) * 3, (1.05,) * 3, (1.1,) * 3, (1.05, 1.0, 0.95), (0.95, 1.0, 1.05))
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One press: lengths in mm, areas over that of the contact circle.
+
+    Attributes
+    ----------
+    height_rms, cap : float
+        Standard deviation of depth from the ball in the contact; recovered over true height of the cap.
+    rest_rms, rest_largest : float
+        RMS and largest depth of untouched gel, less its mean.
+    centroid : float
+        Distance from the ball's centre.
+    area : float
+    """
+
+    height_rms: float
+    cap: float
+    rest_rms: float
+    rest_largest: float
+    centroid: float
+    area: float
+
+
+def measured(result: td.Result, press: GridPress) -> Measured:
+    """Measure the result of a picture of a press whose geometry is on the same grid."""
+    rows, columns = result.codes.shape
+    pitch, depth = result.pixel_pitch_mm, result.depth_mm
+    rest = depth[press.untouched((rows, columns))]
+    rest = np.abs(rest - rest.mean())
+    row, column = result.contact.centroid_px  # of the depth map, whose centre of the ball is at y + 0.5, x + 0.5
+    return Measured(
+        press.height_rms(depth / pitch) * pitch,
+        press.recovered(depth / pitch),
+        float(np.sqrt((rest**2).mean())),
+        float(rest.max()),
+        float(np.hypot(row - press.y - 0.5, column - press.x - 0.5)) * pitch,
+        result.contact.area_mm2 / (np.pi * (press.contact_radius * pitch) ** 2),
+    )
+
+
+def in_light(picture: np.ndarray, light: Sequence[float]) -> np.ndarray:
+    """Return a picture, uint8 (rows, columns, 3), in light that is so many times as strong in each colour."""
+    return np.rint(picture * np.array(light)).clip(0, 255).astype(np.uint8)
+
+
+def codes_differ(simulator: str, pipeline: td.Pipeline, picture: np.ndarray, result: td.Result) -> int:
+    """Play a picture through the RTL with the calibration of a pipeline; return how many codes differ."""
+    config, rows = pipeline.config, len(result.codes)
+    assert result.light_gains is not None
+    gains = np.rint(result.light_gains / LIGHT_GAIN.lsb).astype(int)
+    entries = np.concatenate(
+        [
+            np.array([bench.entry(side, bench.chance(0)) for side in ("sink", "source")], np.uint32),
+            bench.frame_entries(picture[None]),
+        ]
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        played = bench.play(
+            simulator,
+            config,
+            pipeline.sensor,
+            entries,
+            Path(folder),
+            clocks=20 * picture.shape[0] * picture.shape[1],
+            total_frames=1,
+            registers=dict(zip(GAINS, gains.tolist(), strict=True)),
+            zero=pipeline.zero_codes,
+        )
+    return int(np.count_nonzero(played.codes.reshape(rows, -1)[::-1] != result.codes))
+
+
+def table(values: Sequence[Measured], central: np.ndarray) -> str:
+    """Return the means of presses in the middle and at the sides, and over all."""
+    numbers = {field.name: np.array([getattr(value, field.name) for value in values]) for field in fields(Measured)}
+    rows = []
+    for where, among in (("middle", central), ("sides", ~central), ("all", np.full(len(values), True))):
+        of = {name: each[among] for name, each in numbers.items()}
+        rows.append(
+            [
+                f"{where}, {among.sum()}",
+                f"{1000 * of['height_rms'].mean():.1f}",
+                f"{of['cap'].mean():.3f}",
+                f"{np.sqrt(((of['cap'] - 1) ** 2).mean()):.3f}",
+                f"{of['rest_rms'].mean():.4f}, {of['rest_largest'].mean():.3f}",
+                f"{of['centroid'].mean():.3f}, {of['centroid'].max():.3f}",
+                f"{of['area'].mean():.2f}, {of['area'].min():.2f} to {of['area'].max():.2f}",
+            ]
+        )
+    head = [
+        *("presses", "height RMS, um", "caps, mean", "RMS error", "untouched gel, RMS and largest, mm"),
+        *("centroid off, mean and most, mm", "area over circle, mean and range"),
+    ]
+    return markdown.table(head, rows)
+
+
+def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
+    """Print the tables; return the exit status. `simulator` None: no RTL."""
+    presses = to_grid(pictures, pitch_mm)
+    fit = fit_presses(presses, ("quadratic",))
+    images = {press.name: press.image for press in pictures.presses}
+    views = [view for view in presses.views if view.press.name in fit.without]
+    same, lit, differing = list[Measured](), {light: list[Measured]() for light in LIGHTS}, 0
+    for view in tqdm(views, "presses", leave=False, disable=None):
+        name = view.press.name
+        image = images[name]
+        picture = image if isinstance(image, np.ndarray) else read_picture(Path(image))
+        sensor = replace(fit.without[name], camera=fit.sensor.camera)
+        pipeline = td.Pipeline(sensor, presses.background)
+        result = pipeline(picture)
+        same.append(measured(result, view.press))
+        for light, values in lit.items():
+            values.append(measured(pipeline(in_light(picture, light)), view.press))
+        if simulator is not None:
+            differing += codes_differ(simulator, pipeline, view.frame, result)
+    print(f"each press by a calibration from all others, {presses.grid[1]} x {presses.grid[0]}, {pictures.name}\n")
+    print(table(same, np.array([view.press.is_central(view.grid) for view in views])))
+    rows = []
+    for light, values in lit.items():
+        caps, areas = (
+            np.array([getattr(value, name) / getattr(alike, name) for value, alike in zip(values, same, strict=True)])
+            for name in ("cap", "area")
+        )
+        rows.append(
+            [
+                " ".join(f"{x:g}" for x in light),
+                f"{caps.mean():.4f}",
+                f"{100 * np.abs(caps - 1).max():.1f} %",
+                f"{areas.mean():.4f}",
+            ]
+        )
+    head = ["light, of red, green, blue", "caps over those in the same light, mean", "largest change", "areas, mean"]
+    print(f"\n{markdown.table(head, rows)}")
+    if simulator is not None:
+        total = len(views) * presses.grid[0] * presses.grid[1]
+        print(f"\nRTL on {simulator}: {total - differing:,} of {total:,} codes equal the model's")
+    return variables.MISMATCH if differing else variables.EQUAL
+
+
+def main() -> None:
+    with variables.reported("presses"):
+        values = variables.given(sys.argv[1:], VARIABLES)
+        pitch = variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float)
+        simulator = variables.choice(values, "SIM", simulation.SIMULATORS)
+        if variables.choice(values, "RTL", ("1", "0")) == "1":
+            simulation.check(simulator)
+        else:
+            simulator = None
+        pictures = gather(Path(values["PRESSES"]) if "PRESSES" in values else data_folder())
+        sys.exit(run(pictures, camera_pitch_mm(pictures, pitch), simulator))
