@@ -176,9 +176,8 @@ def main() -> None:
         values = variables.given(sys.argv[1:], VARIABLES)
         pitch = variables.number(values, "PITCH", None, *PIXEL_PITCHES_MM, float)
         simulator = variables.choice(values, "SIM", simulation.SIMULATORS)
-        if variables.choice(values, "RTL", ("1", "0")) == "1":
+        in_rtl = variables.choice(values, "RTL", ("1", "0")) == "1"
+        if in_rtl:
             simulation.check(simulator)
-        else:
-            simulator = None
         pictures = gather(Path(values["PRESSES"]) if "PRESSES" in values else data_folder())
-        sys.exit(run(pictures, camera_pitch_mm(pictures, pitch), simulator))
+        sys.exit(run(pictures, camera_pitch_mm(pictures, pitch), simulator if in_rtl else None))
