@@ -47,6 +47,7 @@ INSTANCES = {  # in the units and solvers
     "u_column_inverse": "dst_inverse",
     "u_zero_offset": "zero_offset",
     "u_capture": "zero_capture",
+    "u_events": "contact_events",
 }
 
 

@@ -32,7 +32,7 @@ KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
     *("flat_field", "gradient_lookup", "light_gains", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
-    *("corner_turn", "zero_offset", "zero_capture"),
+    *("corner_turn", "zero_offset", "zero_capture", "contact_events"),
 )
 LONGEST_SHIFT = 4  # delays up to this are registers, hdl/common/td_delay_line.sv
 PIXEL_MARKS = 1 + 4  # dark, and the position: they travel with a pixel through td_node_map
@@ -143,7 +143,16 @@ def _pipeline(p: dict[str, int]) -> Parts:
         *[Memory("row buffers", data, 2 * size, last_rows)] * lanes,
         *(_tridiagonal(p) if p["Tridiagonal"] else _spectral(p)),
         *_zero(p),
+        *_contact(p),
     ]
+
+
+def _contact(p: dict[str, int]) -> Parts:
+    """Count the delay of contact_events.sv, which is a memory with several lanes, registers with one."""
+    lanes = p["Lanes"]
+    if lanes == 1:
+        return []
+    return [Memory("delay lines", lanes * p["DataWidth"] + DEPTH_MARKS, lanes.bit_length() + 3, "contact_events")]
 
 
 def _colours(p: dict[str, int]) -> Parts:
