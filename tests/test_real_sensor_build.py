@@ -116,7 +116,7 @@ def test_caps_keep_their_height_at_the_words_of_the_real_sensor_build(tmp_path: 
 def test_a_calibration_made_through_a_camera_holds_in_the_rtl(
     where: str, runs_on: str, count: int, form: str, tmp_path: Path
 ) -> None:
-    """Fitted to what the camera sends, in the model; what the camera sends of presses held out, in the RTL."""
+    """Fitted to what the camera sends, in the model; what the camera sends of presses, in the RTL."""
     folder = real_folder() if where == "real" else write_folder(tmp_path / "presses")
     choice = CameraChoice(form)
     presses = read(folder, choice=choice)

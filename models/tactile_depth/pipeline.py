@@ -44,7 +44,7 @@ SYNTHETIC_GRID = (128, 128)
 ARITHMETICS = ("chip", "float")
 BOUNDARIES = ("neumann", "dirichlet")
 PARAMETERS = "parameters.json"
-THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # registers, by field of Settings
+THRESHOLDS = {"THRESHOLD": "on_threshold", "AREA_THRESHOLD": "area_threshold"}  # fields of Settings, by register
 PICTURES = Argument("pictures")
 PIXELS_AT_ONCE = 1 << 16  # pixels of a batch of frames, whose arrays stay in a cache
 
@@ -53,7 +53,7 @@ Pictures = np.ndarray | str | Path
 
 @dataclass
 class Stream:
-    """What a stream of pictures has left behind for the next.
+    """State that a stream of pictures leaves for its next one.
 
     Attributes
     ----------
