@@ -22,7 +22,7 @@ from tactile_depth.gradient.flat_field import (
     pixel_gains,
     unit_gains,
 )
-from tactile_depth.gradient.quadratic_gradient import DROPPED, coefficient_map, polynomial_words, quadratic_gradient
+from tactile_depth.gradient.polynomial_gradient import DROPPED, coefficient_map, polynomial_words, polynomial_gradient
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.sensor import Sensor
 from tactile_depth.tactile_depth import slope_codes, slope_tables, solve
@@ -103,7 +103,7 @@ def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
     drifted = np.clip(np.rint(before * (0.9 + 0.1 * np.stack([x, y, x * y], axis=-1))), 0, 255).astype(np.uint8)
 
     def zero(frames: Any, gains: Any) -> Any:
-        slopes = quadratic_gradient(deviations(frames[:1], gains, config), words, config)
+        slopes = polynomial_gradient(deviations(frames[:1], gains, config), words, config)
         return np.std(solve(divergence(slopes, True), config)) * config.depth_lsb_px
 
     calibrated = zero(before, captured_gains(before, config))
@@ -238,7 +238,7 @@ def test_slopes_are_near_double_precision(seed: int, choices: Any) -> None:
     pitch = 15 / config.columns
     codes = np.random.default_rng(seed).integers(-4096, 4096, (2, config.rows, config.columns, 3))
     monitor = Monitor()
-    result = quadratic_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
+    result = polynomial_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
     coefficients = reference.quadratic_coefficients(config.rows, config.columns, calibration, pitch)
     want = reference.weighted(codes * DEVIATION.lsb, coefficients)
     assert not monitor.saturations
@@ -250,10 +250,10 @@ def test_slopes_saturate_and_are_counted() -> None:
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit)
     monitor = Monitor()
     codes = np.full((1, 16, 16, 3), 8191)
-    result = quadratic_gradient(codes, polynomial_words(calibration, config, 1.0), config, monitor)
+    result = polynomial_gradient(codes, polynomial_words(calibration, config, 1.0), config, monitor)
     limit = 2 ** (config.gradient.width - 1)
     assert set(np.unique(np.abs(result))) & {limit, limit - 1}
-    assert monitor.saturations["quadratic_gradient"] == np.count_nonzero((result == -limit) | (result == limit - 1))
+    assert monitor.saturations["polynomial_gradient"] == np.count_nonzero((result == -limit) | (result == limit - 1))
 
 
 def test_coefficients_beyond_the_words_are_named() -> None:

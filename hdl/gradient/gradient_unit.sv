@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // gradient_unit: the slopes of the gel from the colours of its pixels.
 //
-//   pixel --> [flat_field] --> gradient_lookup or [light_gains] --> quadratic_gradient --> slope
+//   pixel --> [flat_field] --> gradient_lookup or [light_gains] --> polynomial_gradient --> slope
 //         \-> [reference_capture]
 //
 // In brackets: with FlatField, which makes colours relative to a frame without contact; with LightGains, which follow
@@ -139,7 +139,7 @@ module gradient_unit
   // Their slopes.
 
   if (Quadratic != 0) begin : g_quadratic
-    quadratic_gradient #(
+    polynomial_gradient #(
       .TableFolder(TableFolder), .Width(GradientWidth), .DeviationWidth(ColourWidth), .CoeffWidth(ColourCoeffWidth),
       .WordWidth(PolynomialWidth), .Drop(SlopeDrop)
     ) u_quadratic (

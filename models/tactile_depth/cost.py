@@ -30,7 +30,7 @@ from tactile_depth.tactile_depth import top_parameters
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
-    *("flat_field", "gradient_lookup", "light_gains", "quadratic_gradient", "divergence", "row_reorder", "dst_forward"),
+    *("flat_field", "gradient_lookup", "light_gains", "polynomial_gradient", "divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
     *("corner_turn", "zero_offset", "zero_capture", "contact_events"),
 )
@@ -167,7 +167,7 @@ def _colours(p: dict[str, int]) -> Parts:
     if p["LightGains"]:
         parts += [Multiplier(RATIO.width + 1, LIGHT_GAIN.width + 1, "light_gains")] * 3
     if p["Quadratic"]:
-        core, width, words = "quadratic_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
+        core, width, words = "polynomial_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
         parts += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
         return [*parts, *[Memory("tables", width, words // 6, core)] * 12]
     return [*parts, *[Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2]

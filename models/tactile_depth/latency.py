@@ -11,7 +11,7 @@ from tactile_depth.camera_configuration import CameraConfiguration
 from tactile_depth.common import td_axis_skid
 from tactile_depth.configuration import Configuration
 from tactile_depth.depth import zero_offset
-from tactile_depth.gradient import flat_field, gradient_lookup, light_gains, quadratic_gradient
+from tactile_depth.gradient import flat_field, gradient_lookup, light_gains, polynomial_gradient
 from tactile_depth.poisson import divergence, spectral_solver, tridiagonal_solver
 from tactile_depth.video import frame_guard
 
@@ -25,7 +25,7 @@ def by_core(config: Configuration) -> list[tuple[str, str, int]]:
         ("video_unit", "frame_guard", frame_guard.LATENCY),
         ("gradient_unit", "flat_field", flat_field.LATENCY if config.flat_field else 0),
         ("gradient_unit", "light_gains", light_gains.LATENCY if config.light_gains else 0),
-        ("gradient_unit", "quadratic_gradient", quadratic_gradient.LATENCY)
+        ("gradient_unit", "polynomial_gradient", polynomial_gradient.LATENCY)
         if config.gradient_model == "quadratic"
         else ("gradient_unit", "gradient_lookup", gradient_lookup.LATENCY),
         ("poisson_unit", "divergence", divergence.LATENCY),

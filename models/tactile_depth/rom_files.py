@@ -97,7 +97,7 @@ def write_nodes(folder: Path, name: str, nodes: np.ndarray, width: int, side: in
 
 
 def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
-    """Write words (2, 3, 6) as the tables of quadratic_gradient.sv read them: one file for each polynomial."""
+    """Write words (2, 3, 6) as the tables of polynomial_gradient.sv read them: one file for each polynomial."""
     for polynomial, terms in enumerate(words.reshape(-1, words.shape[-1])):
         write_words(folder / f"quadratic_{polynomial}.hex", pack((terms,), width), width)
 

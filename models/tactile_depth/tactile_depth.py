@@ -43,11 +43,11 @@ from tactile_depth.gradient.flat_field import (
 )
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
 from tactile_depth.gradient.light_gains import Light, LightFilter, settled
-from tactile_depth.gradient.quadratic_gradient import (
+from tactile_depth.gradient.polynomial_gradient import (
     coefficient_map,
     gradient_parameters,
     polynomial_words,
-    quadratic_gradient,
+    polynomial_gradient,
 )
 from tactile_depth.gradient.reference_capture import reference_capture_parameters
 from tactile_depth.latency import frame_latency
@@ -183,7 +183,7 @@ def slope_codes(
             deviation = _lit_deviations(frames, tables.gains, config, dark_level, monitor, light)
         else:
             deviation = deviations(frames, tables.gains, config, dark_level, monitor)
-        return quadratic_gradient(deviation, tables.slopes, config, monitor)
+        return polynomial_gradient(deviation, tables.slopes, config, monitor)
     if tables.gains is not None:
         frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
     return gradient_lookup(frames, tables.slopes, config.bits_per_channel)

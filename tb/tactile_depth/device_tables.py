@@ -18,7 +18,7 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import pixel_gains, unit_gains
 from tactile_depth.gradient.gradient_lookup import gradient_codes
-from tactile_depth.gradient.quadratic_gradient import coefficient_map, polynomial_words
+from tactile_depth.gradient.polynomial_gradient import coefficient_map, polynomial_words
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS, TABLES
 from tactile_depth.sensor import COEFFICIENTS

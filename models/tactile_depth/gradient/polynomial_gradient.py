@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bit-accurate model of hdl/gradient/quadratic_gradient.sv: slopes, linear in the deviations of three colours.
+"""Bit-accurate model of hdl/gradient/polynomial_gradient.sv: slopes, linear in the deviations of three colours.
 
     slope of an axis = sum over red, green, blue of C[axis][colour](column, row) * deviation[colour]
 
@@ -100,7 +100,7 @@ def _evaluate(words: np.ndarray, rows: int, columns: int) -> np.ndarray:
     return a + b * c + d * (c * (c - 1) // 2) + e * r + f * (r * (r - 1) // 2) + h * (c * r)
 
 
-def quadratic_gradient(
+def polynomial_gradient(
     deviation: np.ndarray, words: np.ndarray, config: Configuration, monitor: Monitor | None = None
 ) -> np.ndarray:
     """Return slope codes: int64 (..., rows, columns, 3) of `DEVIATION` to int64 (..., rows, columns, 2).
@@ -126,11 +126,11 @@ def slope_codes(
         np.multiply(red, of_red, out=slope)
         slope += green * of_green
         slope += blue * of_blue
-    return round_saturate(np.moveaxis(slopes, 0, -1), drop, width, monitor, "quadratic_gradient")
+    return round_saturate(np.moveaxis(slopes, 0, -1), drop, width, monitor, "polynomial_gradient")
 
 
 def gradient_parameters(config: Configuration) -> dict[str, int]:
-    """Parameters of hdl/gradient/quadratic_gradient.sv."""
+    """Parameters of hdl/gradient/polynomial_gradient.sv."""
     return {
         "Width": config.gradient.width,
         "DeviationWidth": DEVIATION.width,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""quadratic_gradient: RTL against the model, the model against the additions that the RTL makes."""
+"""polynomial_gradient: RTL against the model, the model against the additions that the RTL makes."""
 
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from formal.entries import ROUNDING, Proof
 from formal.tables import quadratic_roms
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
-from tactile_depth.gradient.quadratic_gradient import coefficients, gradient_parameters, slope_codes
+from tactile_depth.gradient.polynomial_gradient import coefficients, gradient_parameters, slope_codes
 from tactile_depth.rom_files import write_quadratic
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
@@ -76,7 +76,7 @@ def test_a_sum_of_products_is_rounded_once_to_even_and_saturated() -> None:
     factors = np.broadcast_to(factors, (2, 3, 4, 1))
     codes = slope_codes(deviation, factors, 2, 5, monitor)
     assert codes[0, :, 0].tolist() == [[2, 0], [0, 0], [2, 2], [15, 15]]  # 6/4, 2/4; 1/4; 6/4; out of range
-    assert monitor.saturations["quadratic_gradient"] == 2
+    assert monitor.saturations["polynomial_gradient"] == 2
 
 
 def test_files_hold_every_word(tmp_path: Path) -> None:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_quadratic_gradient: frames of two rows or more, of four pixels or more, cut short by a reset alone; how long
+// protocol_polynomial_gradient: frames of two rows or more, of four pixels or more, cut short by a reset alone; how long
 // they are is left open. Nothing is written while a change of bank is due, or in the clock of a read. Inputs stay while
 // en is low.
 
 `default_nettype none
 
-module protocol_quadratic_gradient (
+module protocol_polynomial_gradient (
   input  logic       clk,
   input  logic       rst,
   input  logic       en,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fv_quadratic_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that stood
+// fv_polynomial_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that stood
 // in the bank which the frame began with, from power-up or as last written; valid and place travel with the pixel, 11
 // enabled clocks; while en is low all outputs hold. A word read stands on the bus 3 clocks later and until the
 // next: that of the bank not in use. A colour's words change over 1, 2 or 3 enabled clocks behind the first pixel.
@@ -9,7 +9,7 @@
 
 `default_nettype none
 
-module fv_quadratic_gradient
+module fv_polynomial_gradient
   import td_types_pkg::*;
 #(
   parameter int Polynomial = 0,
@@ -46,7 +46,7 @@ module fv_quadratic_gradient
   logic [1:0] saturations;
   logic signed [Width-1:0] out_gx, out_gy, slope;
   assign slope = Axis != 0 ? out_gy : out_gx;
-  quadratic_gradient #(
+  polynomial_gradient #(
     .Width(Width), .DeviationWidth(2), .CoeffWidth(WordWidth), .WordWidth(WordWidth), .Drop(0)
   ) dut (
     .*, .in_red(Colour == 0 ? deviation : 2'd0), .in_green(Colour == 1 ? deviation : 2'd0),

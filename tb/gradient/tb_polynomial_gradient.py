@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""quadratic_gradient against its model: both banks, rewritten and read while frames stream; gaps, limits, reset.
+"""polynomial_gradient against its model: both banks, rewritten and read while frames stream; gaps, limits, reset.
 
 The reference follows the pins in every cycle: a frame uses the words that its bank held as the frame began.
 """
@@ -13,7 +13,7 @@ import numpy as np
 from cocotb.triggers import ClockCycles, RisingEdge
 
 from tactile_depth.common.td_round_saturate import Monitor
-from tactile_depth.gradient.quadratic_gradient import LATENCY, coefficients, slope_codes
+from tactile_depth.gradient.polynomial_gradient import LATENCY, coefficients, slope_codes
 from tactile_depth.registers.register_map import TABLES
 from tb.cases import on_bench
 from tb.stream import Bench, StreamDriver, StreamMonitor, parameters, send_apart

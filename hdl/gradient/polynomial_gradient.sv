@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// quadratic_gradient: slopes of a pixel from the deviations of its colours, linear in the three.
+// polynomial_gradient: slopes of a pixel from the deviations of its colours, linear in the three.
 //
 //   slope of an axis = sat( round( sum over red, green, blue of C[axis][colour] * deviation[colour] / 2^Drop ) )
 //   C = upper CoeffWidth bits of A + B c + D c (c - 1) / 2 + E r + F r (r - 1) / 2 + H c r, column c, row r from 0
@@ -9,11 +9,11 @@
 //
 // Table port: docs/streams.md; the 36 words, at (3 axis + colour) 6 + term, terms A, B, D, E, F, H, modulo 2^WordWidth.
 // table_in_use follows a frame's first pixel after 4 cycles. Both banks hold the calibration at power-up. Bit-accurate
-// model: models/tactile_depth/gradient/quadratic_gradient.py; models/tactile_depth/rom_files.py writes the words.
+// model: models/tactile_depth/gradient/polynomial_gradient.py; models/tactile_depth/rom_files.py writes the words.
 
 `default_nettype none
 
-module quadratic_gradient
+module polynomial_gradient
   import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
