@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_depth.camera.camera_setup import Entry, Kind
 from tactile_depth.camera.register_lists import write_list
-from tactile_depth.rom_files import write_nodes, write_quadratic, write_words, write_zero
+from tactile_depth.rom_files import write_nodes, write_polynomials, write_words, write_zero
 
 
 def gradient_rom(folder: Path) -> None:
@@ -19,10 +19,10 @@ def gradient_rom(folder: Path) -> None:
     write_words(folder / "gradient.hex", [bin * 5 % 4 for bin in range(8)], 2)
 
 
-def quadratic_roms(folder: Path) -> None:
+def polynomial_roms(folder: Path) -> None:
     """Words of one bit, arbitrary ones, another order in every polynomial."""
     choose = random.Random(1)
-    write_quadratic(folder, np.array([-choose.getrandbits(1) for _ in range(36)]).reshape(2, 3, 6), 1)
+    write_polynomials(folder, np.array([-choose.getrandbits(1) for _ in range(60)]).reshape(2, 3, 10), 1)
 
 
 def gain_rom(nodes: int) -> Callable[[Path], None]:

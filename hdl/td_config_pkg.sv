@@ -8,8 +8,9 @@
 package td_config_pkg;
 
   localparam int GuardBits = 3;  // bits of the arithmetic below a stored word
-  localparam int PolynomialWords = 36;  // of the quadratic model: slopes, colours, terms
+  localparam int PolynomialWords = 60;  // of the polynomial models: slopes, colours, terms
   localparam int PolynomialWidth = 32;  // bits of such a word
+  localparam int CorrectionWidth = 8;  // bits of a correction by colour
   localparam int ColourCoeffWidth = 18;  // its upper bits, which are multiplied
   localparam int DeviationWidth = 17;  // bits of a colour relative to the reference
   localparam int DeviationFraction = 15;  // fraction bits of it
@@ -22,7 +23,7 @@ package td_config_pkg;
   localparam int ZeroLog2 = 8;  // base-2 logarithm of the most frames in a capture of the zero offset
 
   // A configuration is one vector: 32 bits for each number, by its field.
-  localparam int ConfigBits = 1696;
+  localparam int ConfigBits = 1792;
   localparam int ColumnsField = 0;
   localparam int RowsField = 1;
   localparam int LanesField = 2;
@@ -43,39 +44,42 @@ package td_config_pkg;
   localparam int GradientFractionField = 17;
   localparam int FrameLatencyField = 18;
   localparam int FlatFieldField = 19;
-  localparam int QuadraticField = 20;
+  localparam int PolynomialField = 20;
   localparam int LightGainsField = 21;
-  localparam int BlockLog2Field = 22;
-  localparam int ColourDropField = 23;
-  localparam int GainWidthField = 24;
-  localparam int CaptureLog2Field = 25;
-  localparam int SlopeDropField = 26;
-  localparam int ZeroOffsetField = 27;
-  localparam int DepthMantissaField = 28;
-  localparam int DepthExponentField = 29;
-  localparam int SlopeMantissaField = 30;
-  localparam int SlopeExponentField = 31;
-  localparam int PitchNmField = 32;
-  localparam int TableWordsField = 33;
-  localparam int SettledWidthField = 34;
-  localparam int LastShiftWidthField = 35;
-  localparam int MomentDropField = 36;
-  localparam int MeanReciprocalField = 37;
-  localparam int MeanDropField = 38;
-  localparam int WordsPerRowField = 39;
-  localparam int CameraField = 40;
-  localparam int CameraNumeratorField = 41;
-  localparam int CameraDenominatorField = 42;
-  localparam int CameraFormatField = 43;
-  localparam int CameraPhaseField = 44;
-  localparam int CameraPictureColumnsField = 45;
-  localparam int CameraPictureRowsField = 46;
-  localparam int CameraWindowXField = 47;
-  localparam int CameraWindowYField = 48;
-  localparam int CameraBlackLevelField = 49;
-  localparam int CameraRedGainField = 50;
-  localparam int CameraGreenGainField = 51;
-  localparam int CameraBlueGainField = 52;
+  localparam int CorrectionsField = 22;
+  localparam int BlockLog2Field = 23;
+  localparam int ColourDropField = 24;
+  localparam int GainWidthField = 25;
+  localparam int CaptureLog2Field = 26;
+  localparam int SlopeDropField = 27;
+  localparam int FineBitsField = 28;
+  localparam int CorrectionUnitField = 29;
+  localparam int ZeroOffsetField = 30;
+  localparam int DepthMantissaField = 31;
+  localparam int DepthExponentField = 32;
+  localparam int SlopeMantissaField = 33;
+  localparam int SlopeExponentField = 34;
+  localparam int PitchNmField = 35;
+  localparam int TableWordsField = 36;
+  localparam int SettledWidthField = 37;
+  localparam int LastShiftWidthField = 38;
+  localparam int MomentDropField = 39;
+  localparam int MeanReciprocalField = 40;
+  localparam int MeanDropField = 41;
+  localparam int WordsPerRowField = 42;
+  localparam int CameraField = 43;
+  localparam int CameraNumeratorField = 44;
+  localparam int CameraDenominatorField = 45;
+  localparam int CameraFormatField = 46;
+  localparam int CameraPhaseField = 47;
+  localparam int CameraPictureColumnsField = 48;
+  localparam int CameraPictureRowsField = 49;
+  localparam int CameraWindowXField = 50;
+  localparam int CameraWindowYField = 51;
+  localparam int CameraBlackLevelField = 52;
+  localparam int CameraRedGainField = 53;
+  localparam int CameraGreenGainField = 54;
+  localparam int CameraBlueGainField = 55;
 
   // The default configuration; options that it leaves out have the numbers of a configuration with the option.
   localparam logic [ConfigBits-1:0] DefaultConfig = {
@@ -105,13 +109,16 @@ package td_config_pkg;
     -32'sd41,  // DepthExponent
     32'd9437184,  // DepthMantissa
     32'd0,  // ZeroOffset
+    32'd2097152,  // CorrectionUnit
+    32'd4,  // FineBits
     32'd9,  // SlopeDrop
     32'd8,  // CaptureLog2
     32'd24,  // GainWidth
     32'd20,  // ColourDrop
     32'd3,  // BlockLog2
+    32'd0,  // Corrections
     32'd0,  // LightGains
-    32'd0,  // Quadratic
+    32'd0,  // Polynomial
     32'd0,  // FlatField
     32'd17221,  // FrameLatency
     32'd20,  // GradientFraction

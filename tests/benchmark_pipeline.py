@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time from uint8 pictures of a camera to depth in mm: bit-accurate, in double precision, and bit-accurate in a batch.
 
-Area average to 128 x 128, flat field, quadratic slopes, divergence, tridiagonal solve (Neumann), scale. Tables are
+Area average to 128 x 128, flat field, cubic slopes, divergence, tridiagonal solve (Neumann), scale. Tables are
 prepared first. Pictures are a scene of the project. The suite does not collect this file: docs/commands.md.
 """
 
@@ -23,7 +23,7 @@ CAMERA = (240, 320)  # picture size of a GelSight Mini
 def test_picture_to_depth(benchmark: Any, arithmetic: str, pictures: int) -> None:
     no_contact = render("flat", *CAMERA, press=Press(noise=0)).frames[0]
     frames = render("bench", *CAMERA).frames
-    sensor = replace(synthetic(), camera=Camera(*CAMERA), model="quadratic")
+    sensor = replace(synthetic(), camera=Camera(*CAMERA), model="cubic")
     pipeline = Pipeline(sensor, no_contact, grid=(128, 128), zero_offset=False, arithmetic=arithmetic)
     result = benchmark(pipeline, frames[np.arange(pictures) % len(frames)])
     benchmark.extra_info["pictures"] = pictures

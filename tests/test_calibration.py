@@ -17,7 +17,7 @@ from tactile_depth.calibration_file import BUILT_IN, CAMERA_KEYS, FOLDER
 from tactile_depth.configuration import Configuration
 from tactile_depth.errors import InputError, InputWarning
 from tactile_depth.scenes import GAIN, LIGHTS, REST
-from tactile_depth.sensor import BITS_PER_CHANNEL, Camera, Sensor
+from tactile_depth.sensor import BITS_PER_CHANNEL, FORMAT_VERSION, Camera, Sensor
 
 OLD = {"gradient": np.zeros((4, 4, 4, 2)), "pixel_pitch_mm": 0.05}
 CAMERA = {
@@ -30,6 +30,7 @@ CAMERA = {
 }
 GOOD = {**OLD, **CAMERA}
 QUADRATIC = {"coefficients": np.zeros((2, 3, 6)), "largest_slope": 0.7}
+CUBIC = {"cubic": np.zeros((2, 3, 10)), "corrections": np.zeros((16, 16, 16, 2)), "largest_slope": 0.7}
 
 
 def saved(folder: Path, **changed: Any) -> Any:
@@ -89,7 +90,7 @@ def test_an_all_zero_table_has_a_gradient_limit() -> None:
 
 
 def test_the_fitted_calibration_is_small() -> None:
-    assert (FOLDER / "gelsight-mini.npz").stat().st_size < 120 * 1024
+    assert (FOLDER / "gelsight-mini.npz").stat().st_size < 140 * 1024
 
 
 # Files.
@@ -105,6 +106,19 @@ def test_quadratics_are_read_as_written(tmp_path: Path, table: Any, dtype: Any) 
     assert calibration.model == "quadratic"
     assert calibration.gradient_limit == 2
     assert (calibration.gradient is not None) == table
+
+
+@pytest.mark.parametrize("version", [2, FORMAT_VERSION])
+def test_cubics_are_read_as_written(tmp_path: Path, version: Any) -> None:
+    rng = np.random.default_rng(1)
+    changed = {"cubic": rng.normal(size=(2, 3, 10)), "corrections": rng.normal(size=(16, 16, 16, 2)).astype("f4")}
+    path = saved(tmp_path, **CUBIC | changed, model="cubic", format_version=version, fitted_slope_cubic=0.6)
+    sensor: Any = load(str(path))
+    sensor.save(tmp_path / "again.npz")
+    for read in (sensor, load(str(tmp_path / "again.npz"))):
+        np.testing.assert_array_equal(read.cubic, changed["cubic"])
+        np.testing.assert_array_equal(read.corrections, changed["corrections"])
+        assert (read.model, read.models, read.fitted_slope) == ("cubic", ("lut", "cubic"), {"cubic": 0.6})
 
 
 def test_a_file_says_nothing_of_its_model_and_has_the_one_it_holds(tmp_path: Path) -> None:
@@ -154,8 +168,13 @@ def test_a_file_that_is_no_calibration_is_named(tmp_path: Path, case: str) -> No
 @pytest.mark.parametrize(
     ("changed", "part"),
     [
-        ({"gradient": None}, "no `gradient` and no `coefficients`"),
+        ({"gradient": None}, "no `gradient`, `coefficients` or `cubic`"),
         ({"coefficients": np.zeros((2, 3, 6))}, "no `largest_slope`"),
+        ({"cubic": np.zeros((2, 3, 10)), "largest_slope": 0.7}, "no `corrections`"),
+        (CUBIC | {"cubic": np.zeros((2, 3, 6))}, "`cubic` is float64 (2, 3, 6)"),
+        (CUBIC | {"corrections": np.zeros((16, 16, 2))}, "`corrections` is float64 (16, 16, 2)"),
+        (CUBIC | {"corrections": np.full((16, 16, 16, 2), np.inf)}, "`corrections` holds NaN or infinity"),
+        (CUBIC | {"corrections": np.full((16, 16, 16, 2), 1e3)}, "`corrections` reach 1e+03: accepted is up to 64"),
         (QUADRATIC | {"coefficients": np.zeros((2, 3, 5))}, "(2, 3, 5)"),
         (QUADRATIC | {"coefficients": np.zeros((2, 3, 6), int)}, "int64"),
         (QUADRATIC | {"coefficients": np.full((2, 3, 6), np.nan)}, "holds NaN"),
@@ -183,7 +202,7 @@ def test_a_file_that_is_no_calibration_is_named(tmp_path: Path, case: str) -> No
         ({"pixel_pitch_mm": "0.1"}, "<U3"),
         ({"pixel_pitch_mm": 1e-300}, "accepted are 1e-06 to 1000"),
         ({"pixel_pitch_mm": 1e300}, "accepted are 1e-06 to 1000"),
-        ({"format_version": 3}, "`format_version` is 3: accepted is 2: a newer file needs a newer package"),
+        ({"format_version": 4}, "`format_version` is 4: accepted are 2, 3: a newer file needs a newer package"),
         ({"format_version": 2.0}, "`format_version` is float64"),
         ({"camera_size": np.array((0, 320))}, "(0, 320): accepted are rows and columns"),
         ({"camera_size": np.array((240.0, 320.0))}, "(240.0, 320.0): accepted"),

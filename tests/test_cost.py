@@ -31,7 +31,7 @@ CASES = [
 INSTANCES = {  # in the units and solvers
     "u_flat_field": "flat_field",
     "u_lookup": "gradient_lookup",
-    "u_quadratic": "polynomial_gradient",
+    "u_polynomial": "polynomial_gradient",
     "u_divergence": "divergence",
     "u_row_in": "row_reorder",
     "u_row_out": "row_reorder",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models of the flat field and of the quadratic gradient against their formulas in double precision."""
+"""Models of the flat field and of the polynomial gradient against their formulas in double precision."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,19 @@ from tactile_depth.gradient.flat_field import (
     pixel_gains,
     unit_gains,
 )
-from tactile_depth.gradient.polynomial_gradient import DROPPED, coefficient_map, polynomial_words, polynomial_gradient
+from tactile_depth.gradient.polynomial_gradient import (
+    UNIT_BITS,
+    coefficient_map,
+    correction_codes,
+    correction_entries,
+    correction_unit,
+    correction_units,
+    fine_bits,
+    polynomial_gradient,
+    polynomial_words,
+)
 from tactile_depth.poisson.divergence import divergence
-from tactile_depth.sensor import Sensor
+from tactile_depth.sensor import CORRECTIONS, Sensor
 from tactile_depth.tactile_depth import slope_codes, slope_tables, solve
 
 SHAPES = [
@@ -46,22 +57,28 @@ def lit(config: Configuration, seed: int, count: int = 1) -> np.ndarray:
     return np.clip(np.rint(frame + chance.normal(size=(count, *frame.shape))), 20, 255).astype(np.uint8)
 
 
-def quadratics(seed: int, largest: float = 0.9) -> Sensor:
-    scale = np.array([1, 0.1, 0.1, 0.01, 0.01, 0.01])
-    coefficients = np.random.default_rng(seed).uniform(-1, 1, (2, 3, 6)) * scale
-    return Sensor("any", None, 0.1, coefficients, largest, "quadratic")
+def polynomials(seed: int, largest: float = 0.9, model: str = "cubic") -> Sensor:
+    """Return a sensor with one model, whose coefficients fall with their degree, and corrections."""
+    scale = np.array([1, 0.1, 0.1, 0.01, 0.01, 0.01, 1e-3, 1e-3, 1e-3, 1e-3])
+    coefficients = np.random.default_rng(seed).uniform(-1, 1, (2, 3, 10)) * scale
+    if model == "quadratic":
+        return Sensor("any", None, 0.1, coefficients[..., :6], largest, model)
+    corrections = np.random.default_rng(seed).uniform(-largest / 2, largest / 2, CORRECTIONS)
+    return Sensor("any", None, 0.1, None, largest, model, cubic=coefficients, corrections=corrections)
 
 
 # Tables that are computed once.
 
-MODELS = [{}, {"flat_field": True}, {"flat_field": True, "gradient_model": "quadratic"}]
+POLYNOMIALS: dict[str, Any] = {"flat_field": True, "gradient_model": "cubic"}
+MODELS = [{}, {"flat_field": True}, POLYNOMIALS | {"gradient_model": "quadratic"}, POLYNOMIALS]
 
 
 @pytest.mark.parametrize("choices", MODELS, ids=str)
 def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices: Any) -> None:
     config = Configuration(columns=32, **choices)
     frames = lit(config, 1, 3)
-    calibration = synthetic().scaled(4.0, frames[0] if choices else None)
+    calibration = polynomials(2) if choices == POLYNOMIALS else synthetic()
+    calibration = calibration.scaled(4.0, frames[0] if choices else None)
     tables = slope_tables(calibration, config)
     for level in (0, 90):
         want = slope_codes(frames, calibration, config, dark_level=level)
@@ -73,7 +90,8 @@ def test_slopes_of_prepared_tables_are_those_of_the_calibration(choices: Any) ->
 def test_depth_of_prepared_tables_is_that_of_the_calibration_in_double_precision(choices: Any) -> None:
     config = Configuration(columns=32, **choices)
     frames = lit(config, 2, 3)
-    calibration = synthetic().scaled(4.0, frames[0] if choices else None)
+    calibration = polynomials(2) if choices == POLYNOMIALS else synthetic()
+    calibration = calibration.scaled(4.0, frames[0] if choices else None)
     tables = reference.slope_tables(calibration, config)
     want = reference.depth_of(frames, calibration, config)
     np.testing.assert_array_equal(reference.depth_of(frames, calibration, config, tables), want)
@@ -95,8 +113,8 @@ def test_gains_of_pixels_stand_for_those_of_nodes() -> None:
 
 def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
     """Capture the zero offset under Neumann: drifting lights tilt and bend it, and the capture removes both."""
-    calibration = quadratics(3)
-    config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit)
+    calibration = polynomials(3)
+    config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
     words = polynomial_words(calibration, config, 15 / 64)
     before = lit(config, 4, 16)
     y, x = np.indices((64, 64)) / 64
@@ -189,65 +207,46 @@ def test_a_pixel_whose_reference_is_dark_is_held() -> None:
     assert not dark[0, :3].any()
 
 
-# The quadratic model.
+# The models of polynomials.
 
 
-def raster(words: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the six-word recurrence of the registers, computed with Python's integers."""
-    out = np.zeros((rows, columns), object)
-    a, b, d, e, f, h = (int(word) for word in words)
-    v0, dv0 = a, b
-    for row in range(rows):
-        v, dv = v0, dv0
-        for column in range(columns):
-            out[row, column] = (((v + 2**31) % 2**32) - 2**31) >> DROPPED
-            v, dv = v + dv, dv + d
-        v0, e, dv0 = v0 + e, e + f, dv0 + h
-    return out
-
-
-@settings(max_examples=10)
-@given(st.lists(st.integers(-(2**31), 2**31 - 1), min_size=6, max_size=6))
-def test_the_map_is_the_recurrence_along_the_raster(terms: Any) -> None:
-    config = Configuration(columns=16, rows=9, solver="tridiagonal")
-    words = np.broadcast_to(np.array(terms), (2, 3, 6))
-    result = coefficient_map(words, config)[1, 2]
-    np.testing.assert_array_equal(result, raster(np.array(terms), 9, 16).astype(np.int64))
-
-
+@pytest.mark.parametrize("model", ["quadratic", "cubic"])
 @pytest.mark.parametrize("choices", [*SHAPES, {"columns": 512}], ids=str)
-def test_words_give_the_calibrations_quadratics(choices: Any) -> None:
-    config = Configuration(**choices)
-    calibration = quadratics(4)
+def test_words_give_the_calibrations_polynomials(choices: Any, model: Any) -> None:
+    config = Configuration(**choices, flat_field=True, gradient_model=model)
+    calibration = polynomials(4, model=model)
     pitch = 15 / config.columns
     words = polynomial_words(calibration, config, pitch)
     unit = config.gradient_lsb * 2.0**config.gradient.fraction
     result = coefficient_map(words, config) * COLOUR_COEFFICIENT.lsb * unit
-    terms = reference.quadratic_terms(config.rows, config.columns, pitch)
-    want = np.einsum("ant,rct->anrc", calibration.coefficients, terms)  # type: ignore[arg-type]
-    # Half a unit of the factors, and of three words of second differences, which grow by N^2 / 8.
-    far = 3 / 2 * POLYNOMIAL.lsb * max(config.rows, config.columns) ** 2 / 8
+    want = reference.polynomials_at_pixels(config.rows, config.columns, calibration.polynomials(model), pitch)
+    # Half a unit of the factors, of three words of second differences, which grow by N^2 / 8, and of four of third
+    # ones, of which lower degrees leave N^3 / 192 (along one axis) and N^3 / 32 (along two).
+    side = max(config.rows, config.columns)
+    far = 3 / 2 * POLYNOMIAL.lsb * side**2 / 8
+    if model == "cubic":
+        far += 2 ** -fine_bits(config) / 2 * POLYNOMIAL.lsb * side**3 * (2 / 192 + 2 / 32)
     assert np.abs(result - want).max() <= (COLOUR_COEFFICIENT.lsb / 2 + far) * unit * 1.01
 
 
 @settings(max_examples=20)
 @given(SEED, st.sampled_from(SHAPES))
 def test_slopes_are_near_double_precision(seed: int, choices: Any) -> None:
-    calibration = quadratics(seed, largest=7.9)
-    config = Configuration(**choices, gradient_limit=calibration.gradient_limit)
+    calibration = polynomials(seed, largest=7.9)
+    config = Configuration(**choices, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
     pitch = 15 / config.columns
     codes = np.random.default_rng(seed).integers(-4096, 4096, (2, config.rows, config.columns, 3))
     monitor = Monitor()
     result = polynomial_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
-    coefficients = reference.quadratic_coefficients(config.rows, config.columns, calibration, pitch)
+    coefficients = reference.polynomials_at_pixels(config.rows, config.columns, calibration.cubic, pitch)  # type: ignore[arg-type]
     want = reference.weighted(codes * DEVIATION.lsb, coefficients)
     assert not monitor.saturations
     assert np.abs(result * config.gradient_lsb - want).max() < 3 * COLOUR_COEFFICIENT.lsb + config.gradient_lsb
 
 
 def test_slopes_saturate_and_are_counted() -> None:
-    calibration = quadratics(5, largest=0.1)
-    config = Configuration(columns=16, gradient_limit=calibration.gradient_limit)
+    calibration = polynomials(5, largest=0.1)
+    config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
     monitor = Monitor()
     codes = np.full((1, 16, 16, 3), 8191)
     result = polynomial_gradient(codes, polynomial_words(calibration, config, 1.0), config, monitor)
@@ -257,9 +256,33 @@ def test_slopes_saturate_and_are_counted() -> None:
 
 
 def test_coefficients_beyond_the_words_are_named() -> None:
-    config = Configuration(columns=16)
-    steep = Sensor("steep", None, 0.1, np.full((2, 3, 6), 9.0), 0.9, "quadratic")
-    with pytest.raises(InputError, match=r"steep: `coefficients` reach .* accepted is less than 8"):
+    config = Configuration(columns=16, **POLYNOMIALS)
+    steep = replace(polynomials(1), name="steep", cubic=np.full((2, 3, 10), 9.0))
+    with pytest.raises(InputError, match=r"steep: the coefficients of cubic reach .* accepted is less than 8"):
         polynomial_words(steep, config, 0.1)
-    with pytest.raises(InputError, match="no `coefficients`"):
+    with pytest.raises(InputError, match="gradient_model=cubic: table holds only lut"):
         polynomial_words(Sensor("table", np.zeros((2, 2, 2, 2)), 0.1), config, 0.1)
+
+
+# Corrections by colour.
+
+
+def test_the_entry_of_a_colour_is_the_nearest() -> None:
+    deviation = np.array([-1, -0.9999, -15 / 16, -1 / 16, 0, 0.06, 1 / 16, 0.9, 1.99]) / DEVIATION.lsb
+    codes = correction_codes(deviation.astype(np.int64))
+    assert (codes >> 4).tolist() == [0, 0, 1, 8, 8, 8, 9, 15, 15]
+
+
+@settings(max_examples=20)
+@given(SEED)
+def test_corrections_are_added_to_slopes_in_whole_units(seed: int) -> None:
+    calibration = polynomials(seed)
+    config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
+    words, table = polynomial_words(calibration, config, 0.1), correction_entries(calibration.corrections, config)  # type: ignore[arg-type]
+    deviation = np.random.default_rng(seed).integers(-3000, 3000, (1, 16, 16, 3))
+    plain, corrected = (polynomial_gradient(deviation, words, config, table=added) for added in (None, table))
+    red, green, blue = np.moveaxis(np.floor(8 * (deviation * DEVIATION.lsb + 1) + 0.5).astype(int), -1, 0)
+    want = calibration.corrections[red, green, blue]  # type: ignore[index]
+    want = correction_units(want, config.gradient_limit) * correction_unit(config.gradient_limit)
+    near = np.abs(want) * 2.0**-UNIT_BITS + config.gradient_lsb
+    assert (np.abs((corrected - plain) * config.gradient_lsb - want) <= near).all()

@@ -43,7 +43,7 @@ def on_grid(height_mm: Any, grid: Any) -> Any:
 def test_defaults_suit_a_real_sensor(pipeline: Any) -> None:
     config = pipeline.config
     assert pipeline.grid == (96, 128)
-    assert (config.solver, config.neumann, config.gradient_model) == ("tridiagonal", True, "quadratic")
+    assert (config.solver, config.neumann, config.gradient_model) == ("tridiagonal", True, "cubic")
     assert (config.data_width, config.coefficient_width, config.zero_offset) == (24, 18, True)
     assert (pipeline.arithmetic, pipeline.threshold_mm) == ("chip", 0.1)
 
@@ -296,7 +296,7 @@ def test_a_capture_that_the_pipeline_has_not_is_refused(ball: Any) -> None:
 
 
 def test_slopes_outside_the_calibrated_range_are_flagged(ball: Any) -> None:
-    narrow = replace(ball.sensor, fitted_slope={"quadratic": 0.4})
+    narrow = replace(ball.sensor, fitted_slope={"cubic": 0.4})
     result = td.Pipeline(narrow, ball.reference)(ball.image)
     steep = np.hypot(*np.moveaxis(result.slopes, -1, 0)) > 0.4
     assert 0 < steep.sum() < steep.size / 10
@@ -325,9 +325,9 @@ def test_the_error_of_the_calibration_comes_with_the_result() -> None:
     mini = td.load("gelsight-mini")
     no_contact = np.clip(np.kron(mini.lighting * 90, np.ones((60, 80, 1))), 0, 255).astype(np.uint8)  # type: ignore[operator]
     result = td.Pipeline(mini, no_contact)(no_contact)
-    assert result.height_error == mini.height_errors["quadratic"]
-    assert 0.05 < result.height_error.relative < 0.08
-    assert result.fitted_slope == mini.fitted_slope["quadratic"]
+    assert result.height_error == mini.height_errors["cubic"]
+    assert 0.03 < result.height_error.relative < 0.05
+    assert result.fitted_slope == mini.fitted_slope["cubic"]
 
 
 # For the RTL.
@@ -388,7 +388,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, small: Any) ->
         ({"arithmetic": "exact"}, "arithmetic=exact is unknown: accepted are chip, float"),
         ({"boundary": "periodic"}, "boundary=periodic is unknown: accepted are neumann, dirichlet"),
         ({"solver": "multigrid"}, "solver=multigrid is unknown"),
-        ({"model": "cubic"}, "gradient_model=cubic: sample holds only lut, quadratic"),
+        ({"model": "quartic"}, "gradient_model=quartic: sample holds only lut, quadratic, cubic"),
         ({"grid": (24, 33)}, "columns=33 is not a power of two"),
         ({"grid": (256, 512)}, "smaller than the grid"),
         ({"grid": (24, 32), "solver": "spectral"}, "rows=24"),

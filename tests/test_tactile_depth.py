@@ -88,7 +88,7 @@ STRUCTURES = (
 )
 MUTANTS = Mutants(simulators=VERILATOR, flat=False)
 REFUSED = {
-    "Quadratic=1": "Quadratic_needs_FlatField",
+    "Polynomial=1": "Polynomial_needs_FlatField",
     "Rows=64": "the_spectral_solver_takes_square_grids_Rows_must_be_Columns",
     "DataWidth=33": "Width_must_be_2_to_32",
     "ZeroOffset=2": "ZeroOffset_is_0_or_1",

@@ -60,7 +60,7 @@ class Request:
     press: Press
     reference: str | None
     zero: str | None
-    light_gains: bool | None  # None: with the quadratic model
+    light_gains: bool | None  # None: unless the model is lut
     calibration: str
     camera_size: tuple[int, int] | None  # rows, columns
     gradient: str  # a model; "": that of the calibration
@@ -201,7 +201,7 @@ def camera_choice(values: Mapping[str, str]) -> CameraChoice | None:
 
 
 def _light_gains(values: dict[str, str], preset: Preset) -> bool | None:
-    """Return LIGHT_GAINS, else the choice of the preset: none, or with the quadratic model (None)."""
+    """Return LIGHT_GAINS, else the choice of the preset: none, or unless the model is `lut` (None)."""
     if "LIGHT_GAINS" in values:
         return bool(variables.number(values, "LIGHT_GAINS", 0, 0, 1))
     return None if preset.light_gains else False

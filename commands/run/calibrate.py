@@ -55,7 +55,7 @@ class Request:
 def parse(arguments: list[str]) -> Request:
     """Read KEY=VALUE arguments. Raises InputError."""
     values = variables.given(arguments, VARIABLES)
-    models = {"both": MODELS, **{model: (model,) for model in MODELS}}
+    models = {"all": MODELS, **{model: (model,) for model in MODELS}}
     out = Path(values["OUT"]) if "OUT" in values else None
     if out is not None and out.suffix != ".npz":
         raise InputError(f"OUT={out}: give the name of an .npz file")
@@ -92,7 +92,7 @@ def run(request: Request) -> int:
         fit = fit_folder(request, folder, out, work)
         files.replace(work, names, out.parent)
     kibibytes = out.stat().st_size / 1024
-    print(f"the better model is {fit.sensor.model}: the default in {os.path.relpath(out)} ({kibibytes:.1f} KiB)")
+    print(f"the best model is {fit.sensor.model}: the default in {os.path.relpath(out)} ({kibibytes:.1f} KiB)")
     print(f"picture: {os.path.relpath(out.with_suffix('.png'))}")
     return 0
 

@@ -12,7 +12,7 @@ from tactile_depth.cost import CORES, KINDS, Cost, cost
 
 PAGE = ROOT / "docs" / "architecture.md"
 BEGIN, END = "<!-- tables: python -m commands.study.architecture -->", "<!-- end of the tables -->"
-SENSOR = {"flat_field": True, "gradient_model": "quadratic", "light_gains": True, "neumann": True, "zero_offset": True}
+SENSOR = {"flat_field": True, "gradient_model": "cubic", "light_gains": True, "neumann": True, "zero_offset": True}
 BUILDS = {
     "tridiagonal, real sensor": Configuration(solver="tridiagonal", **SENSOR),  # type: ignore[arg-type]
     "tridiagonal, as sent": Configuration(solver="tridiagonal"),

@@ -131,7 +131,7 @@ def table(values: Sequence[Measured], central: np.ndarray) -> str:
 def run(pictures: PressPictures, pitch_mm: float, simulator: str | None) -> int:
     """Print the tables; return the exit status. `simulator` None: no RTL."""
     presses = to_grid(pictures, pitch_mm)
-    fit = fit_presses(presses, ("quadratic",))
+    fit = fit_presses(presses, ("cubic",))
     images = {press.name: press.image for press in pictures.presses}
     views = [view for view in presses.views if view.press.name in fit.without]
     same, lit, differing = list[Measured](), {light: list[Measured]() for light in LIGHTS}, 0

@@ -98,7 +98,6 @@ def cone_script(cone: Cone, config: Configuration) -> str:
     """Return the Yosys script of one structural proof; every memory of the data path has the name words."""
     parameters = " ".join(f"-G{name}={value}" for name, value in hdl_parameters(config).items())
     outputs = " ".join(f"o:{name} o:{name}[*" for name in HANDSHAKES)
-    quadratic = config.gradient_model == "quadratic"
     lines = [
         f"read_slang --threads 1 --top {cone.core} {parameters} {' '.join(file.name for file in sources())}",
         f"prep -flatten -top {cone.core}",
@@ -120,7 +119,7 @@ def cone_script(cone: Cone, config: Configuration) -> str:
         "select -set cone_of_depth o:m_axis_tdata* %ci*",
         f"select -assert-min {3 * config.bits_per_channel} @cone_of_depth @pixels %i",
         "select -assert-min 10 @cone_of_depth @memories %i",
-        f"select -assert-any @cone_of_depth */*{'u_quadratic' if quadratic else 'u_lookup'}.*words %i",
+        f"select -assert-any @cone_of_depth */*{'u_polynomial' if config.polynomials else 'u_lookup'}.*words %i",
     ]
     return "\n".join(lines) + "\n"
 

@@ -28,7 +28,7 @@ from tactile_depth.camera.register_lists import pins, write_list
 from tactile_depth.configuration import COLUMNS, POLYNOMIAL, Configuration
 from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import unit_gains
-from tactile_depth.rom_files import write_gains, write_nodes, write_quadratic, write_words, write_zero
+from tactile_depth.rom_files import write_gains, write_nodes, write_polynomials, write_words, write_zero
 from tactile_depth.tactile_depth import default_parameters, hdl_parameters, write_roms
 from tb.settings import RunSettings
 
@@ -90,7 +90,7 @@ def structures() -> list[Structure]:
         for choices in (
             {"columns": 16, "gradient_model": "quadratic"},
             {"solver": "tridiagonal"},
-            {"solver": "tridiagonal", "lanes": 4, "gradient_model": "quadratic", "zero_offset": True},
+            {"solver": "tridiagonal", "lanes": 4, "gradient_model": "cubic", "zero_offset": True},
         )
     ]
     return flat + [
@@ -173,7 +173,7 @@ def yosys_cores(cores: Sequence[str], files: Sequence[Path]) -> str:
     write_gains(folder, unit_gains(Configuration()), Configuration().gain_width)
     write_zero(folder, no_zero(Configuration()), Configuration().depth.width)
     write_nodes(folder, "nodes", no_zero(Configuration())[..., None], 1)
-    write_quadratic(folder, np.zeros((2, 3, 6), np.int64), POLYNOMIAL.width)
+    write_polynomials(folder, np.zeros((2, 3, 10), np.int64), POLYNOMIAL.width)
     write_list(folder, [pins(False, True, 0)] * DEFAULT_ENTRIES)
     return yosys([Structure(name) for name in cores], files, folder)
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // fv_polynomial_gradient: the coefficient that a pixel meets is that of its place in its frame, from the words that stood
-// in the bank which the frame began with, from power-up or as last written; valid and place travel with the pixel, 11
+// in the bank which the frame began with, from power-up or as last written; valid and place travel with the pixel, 12
 // enabled clocks; while en is low all outputs hold. A word read stands on the bus 3 clocks later and until the
 // next: that of the bank not in use. A colour's words change over 1, 2 or 3 enabled clocks behind the first pixel.
 //
-// One polynomial is followed: the deviations of the other colours are zero. Assumed, as axil_registers and frame_guard
+// One polynomial is followed: the deviations of the other colours are zero, and the corrections, which the simulation
+// checks. Assumed, as axil_registers and frame_guard
 // have it: nothing is written while a change-over is due or in the clock of a read; frames are whole.
 
 `default_nettype none
@@ -14,9 +15,9 @@ module fv_polynomial_gradient
 #(
   parameter int Polynomial = 0,
   parameter int Rows       = 2,
-  parameter int Columns    = 4,
+  parameter int Columns    = 8,
   parameter int WordWidth  = 1,
-  localparam int Terms = 6,
+  localparam int Terms = 10,
   localparam int IndexWidth = 6
 ) (
   input logic                        clk,
@@ -28,7 +29,7 @@ module fv_polynomial_gradient
   input logic signed [1:0]           deviation
 );
 
-  localparam int Latency = 11;
+  localparam int Latency = 12;
   localparam int Colour = Polynomial % 3;
   localparam int Axis = Polynomial / 3;
   localparam int Width = WordWidth + 1;  // twice the lowest coefficient does not fit
@@ -47,9 +48,10 @@ module fv_polynomial_gradient
   logic signed [Width-1:0] out_gx, out_gy, slope;
   assign slope = Axis != 0 ? out_gy : out_gx;
   polynomial_gradient #(
-    .Width(Width), .DeviationWidth(2), .CoeffWidth(WordWidth), .WordWidth(WordWidth), .Drop(0)
+    .Width(Width), .DeviationWidth(2), .CoeffWidth(WordWidth), .WordWidth(WordWidth), .FineBits(0), .CorrectionWidth(1),
+    .CorrectionUnit(1), .Drop(0)
   ) dut (
-    .*, .in_red(Colour == 0 ? deviation : 2'd0), .in_green(Colour == 1 ? deviation : 2'd0),
+    .*, .correction_gx(1'b0), .correction_gy(1'b0), .in_red(Colour == 0 ? deviation : 2'd0), .in_green(Colour == 1 ? deviation : 2'd0),
     .in_blue(Colour == 2 ? deviation : 2'd0)
   );
 
@@ -68,13 +70,13 @@ module fv_polynomial_gradient
   // The words as the register map describes them.
   logic [WordWidth-1:0] words_0[Terms], words_1[Terms];  // of both banks
   initial begin
-    $readmemh({"quadratic_", 8'(48 + Polynomial), ".hex"}, words_0);
-    $readmemh({"quadratic_", 8'(48 + Polynomial), ".hex"}, words_1);
+    $readmemh({"polynomial_", 8'(48 + Polynomial), ".hex"}, words_0);
+    $readmemh({"polynomial_", 8'(48 + Polynomial), ".hex"}, words_1);
   end
   logic own;
-  logic [2:0] term;
+  logic [3:0] term;
   assign own = 32'(table_index) >= Terms * Polynomial && 32'(table_index) < Terms * (Polynomial + 1);
-  assign term = 3'(table_index - IndexWidth'(Terms * Polynomial));
+  assign term = 4'(table_index - IndexWidth'(Terms * Polynomial));
 
   logic in_use = 1'b0;  // by the frame that is taken, or was
   logic used, named, of_colour, reported;
@@ -84,10 +86,15 @@ module fv_polynomial_gradient
   assign colour_used = en && begun[Colour] ? named : of_colour;
 
   // The polynomial at once, where it stands after the pixel that is taken.
-  logic [WordWidth-1:0] value, step, row_value, row_step, row_rise, value_now, step_now;
-  assign value_now = begins ? (used ? words_1[0] : words_0[0]) : begins_row ? row_value + row_rise : value + step;
-  assign step_now = begins ? (used ? words_1[1] : words_0[1])
-      : begins_row ? row_step + (used ? words_1[5] : words_0[5]) : step + (used ? words_1[2] : words_0[2]);
+  logic [Terms-1:0][WordWidth-1:0] words;  // of the bank in use
+  for (genvar t = 0; t < Terms; t++) begin : g_term
+    assign words[t] = used ? words_1[t] : words_0[t];
+  end
+  logic [WordWidth-1:0] value, step, second, value_now, step_now, second_now;
+  logic [WordWidth-1:0] row_value, row_step, row_second, value_rise, value_bend, step_rise;
+  assign value_now = begins ? words[0] : begins_row ? row_value + value_rise : value + step;
+  assign step_now = begins ? words[1] : begins_row ? row_step + step_rise : step + second;
+  assign second_now = begins ? words[2] : begins_row ? row_second + words[9] : second + words[3];
 
   logic [Latency-1:0] valid;
   logic [4*Latency-1:0] place;
@@ -111,10 +118,14 @@ module fv_polynomial_gradient
     if (en && in_valid) begin
       value <= value_now;
       step <= step_now;
+      second <= second_now;
       if (begins || begins_row) begin
         row_value <= value_now;
         row_step <= step_now;
-        row_rise <= begins ? (used ? words_1[3] : words_0[3]) : row_rise + (used ? words_1[4] : words_0[4]);
+        row_second <= second_now;
+        value_rise <= begins ? words[4] : value_rise + value_bend;
+        value_bend <= begins ? words[5] : value_bend + words[7];
+        step_rise <= begins ? words[6] : step_rise + words[8];
       end
       column <= column == 4'(Columns - 1) ? '0 : column + 4'd1;
       if (column == 4'(Columns - 1)) row <= row == 4'(Rows - 1) ? '0 : row + 4'd1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// protocol_polynomial_gradient: frames of two rows or more, of four pixels or more, cut short by a reset alone; how long
+// protocol_polynomial_gradient: frames of two rows or more, of eight pixels or more, cut short by a reset alone; how long
 // they are is left open. Nothing is written while a change of bank is due, or in the clock of a read. Inputs stay while
 // en is low.
 
@@ -27,14 +27,14 @@ module protocol_polynomial_gradient (
 
   logic reset, live = 1'b0, begun = 1'b0, second_row = 1'b0, named = 1'b0, still = 1'b0, valid_before, place_legal;
   logic write, legal, known;
-  logic [1:0] column = '0;  // pixels of this row so far, up to three
+  logic [2:0] column = '0;  // pixels of this row so far, up to seven
   logic [3:0] place_before;
   assign reset = rst | ~holds;
-  assign place_legal = begun ? ~in_position[1] | (column == 2'd3 & (~in_position[0] | second_row)) : &in_position[1:0];
+  assign place_legal = begun ? ~in_position[1] | (column == 3'd7 & (~in_position[0] | second_row)) : &in_position[1:0];
   assign holds = (~in_valid | rst | place_legal)
       & (~still | rst | (in_valid == valid_before & (~in_valid | in_position == place_before)))
       & (rst | ~write | (table_bank == table_in_use & named == table_in_use)) & legal;
-  table_accesses #(.Select(td_register_map_pkg::TableSelectCoefficients), .Entries(36)) u_accesses (
+  table_accesses #(.Select(td_register_map_pkg::TableSelectCoefficients), .Entries(60)) u_accesses (
     .clk, .rst, .holds, .table_command, .write, .read(), .index(), .idle(), .legal, .known
   );
   always_ff @(posedge clk) begin
@@ -45,7 +45,7 @@ module protocol_polynomial_gradient (
     if (reset || (en && in_valid && &in_position[1:0])) named <= table_bank;
     if (en && in_valid) begin
       begun <= 1'b1;
-      column <= in_position[1] ? '0 : column + 2'(column != 2'd3);
+      column <= in_position[1] ? '0 : column + 3'(column != 3'd7);
       if (in_position[1]) second_row <= ~in_position[0];
     end
     if (reset) begin

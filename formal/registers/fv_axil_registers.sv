@@ -12,7 +12,8 @@ module fv_axil_registers
   import td_register_map_pkg::*;
   import td_types_pkg::*;
 #(
-  parameter int Quadratic        = 0,
+  parameter int Polynomial       = 0,
+  parameter int Corrections      = 0,
   parameter int Camera           = 0,
   parameter int DepthMantissa    = 24'hABCDEF,
   parameter int DepthExponent    = -41,
@@ -25,8 +26,8 @@ module fv_axil_registers
   localparam int GradientWidth    = 21,
   localparam int GradientFraction = 20,
   localparam int BitsPerChannel   = 4,
-  localparam int GradientWords    = Quadratic != 0 ? 0 : 1 << 3 * BitsPerChannel,
-  localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0,
+  localparam int GradientWords    = Polynomial != 0 && Corrections == 0 ? 0 : 1 << 3 * BitsPerChannel,
+  localparam int CoefficientWords = Polynomial != 0 ? PolynomialWords : 0,
   localparam int ZeroWords       = 4 * 8,
   localparam int ReferenceWords   = 4 * ZeroWords,
   localparam int Tables = TableSelectSelectCount,
@@ -84,8 +85,9 @@ module fv_axil_registers
     configuration[32*GradientFractionField+:32] = GradientFraction;
     configuration[32*BitsPerChannelField+:32] = BitsPerChannel;
     configuration[32*FlatFieldField+:32] = 1;
-    configuration[32*QuadraticField+:32] = Quadratic;
-    configuration[32*LightGainsField+:32] = Quadratic;
+    configuration[32*PolynomialField+:32] = Polynomial;
+    configuration[32*CorrectionsField+:32] = Corrections;
+    configuration[32*LightGainsField+:32] = Polynomial;
     configuration[32*ZeroOffsetField+:32] = 1;
     configuration[32*BlockLog2Field+:32] = 1;
     configuration[32*DepthMantissaField+:32] = DepthMantissa;
@@ -224,7 +226,7 @@ module fv_axil_registers
     if (read_offset == IdOffset) word = IdReset;
     else if (read_offset == GridOffset) word = 32'(Columns * 65536 + Rows);
     else if (read_offset == FormatOffset) begin
-      word = 32'((((Quadratic != 0 ? 0 : BitsPerChannel) * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
+      word = 32'((((GradientWords != 0 ? BitsPerChannel : 0) * 256 + GradientFraction) * 256 + GradientWidth) * 256 + DataWidth);
     end
     else if (read_offset == ControlOffset) begin
       word[ControlHoldContactBit] = hold;
@@ -260,14 +262,14 @@ module fv_axil_registers
     else if (read_offset == DebounceOffset) word = frames_needed;
     else if (read_offset == InterruptStatusOffset) word = interrupts;
     else if (read_offset == InterruptMaskOffset) word = unmasked;
-    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Quadratic * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
+    else if (read_offset == DeviceOffset) word = 32'h0000011b | 32'(Polynomial * 36) | (value(DefaultConfig, GainWidthField) << DeviceGainWidthLsb);
     else if (read_offset == DepthUnitOffset) word = {8'(DepthExponent), 24'(DepthMantissa)};
     else if (read_offset == SlopeUnitOffset) word = {8'(SlopeExponent), 24'(SlopeMantissa)};
     else if (read_offset == PitchOffset) word = width_nm;
     else if (read_offset == LightOffset) word = light;
-    else if (read_offset == LightGainRedOffset) word = Quadratic != 0 ? 32'(light_gains[0]) : '0;
-    else if (read_offset == LightGainGreenOffset) word = Quadratic != 0 ? 32'(light_gains[1]) : '0;
-    else if (read_offset == LightGainBlueOffset) word = Quadratic != 0 ? 32'(light_gains[2]) : '0;
+    else if (read_offset == LightGainRedOffset) word = Polynomial != 0 ? 32'(light_gains[0]) : '0;
+    else if (read_offset == LightGainGreenOffset) word = Polynomial != 0 ? 32'(light_gains[1]) : '0;
+    else if (read_offset == LightGainBlueOffset) word = Polynomial != 0 ? 32'(light_gains[2]) : '0;
     else if (read_offset >= RecordEventOffset && read_offset <= RecordCentroidOffset) begin
       word = 32'(record >> 8 * (read_offset - RecordEventOffset));
     end

@@ -2,13 +2,13 @@
 // gradient_unit: the slopes of the gel from the colours of its pixels.
 //
 //   pixel --> [flat_field] --> gradient_lookup or [light_gains] --> polynomial_gradient --> slope
-//         \-> [reference_capture]
+//         \-> [reference_capture]                          \-> [gradient_lookup] -^
 //
 // In brackets: with FlatField, which makes colours relative to a frame without contact; with LightGains, which follow
-// the light. Without FlatField colours are as the camera sent them. Stream in: pixels R in 23:16, B in 15:8,
-// G in 7:0, raster order. Stream out: slopes gx along the row and gy down the column, signed codes of GradientWidth
-// bits; the tables say how many are fraction bits. Latency: models/tactile_depth/latency.py; a gap in, a gap out.
-// Model: slope_codes in models/tactile_depth/tactile_depth.py.
+// the light; with Corrections of slopes by colour. Without FlatField colours are as the camera sent them. Stream in:
+// pixels R in 23:16, B in 15:8, G in 7:0, raster order. Stream out: slopes gx along the row and gy down the column,
+// signed codes of GradientWidth bits; the tables say how many are fraction bits. Latency:
+// models/tactile_depth/latency.py; a gap in, a gap out. Model: slope_codes in models/tactile_depth/tactile_depth.py.
 
 `default_nettype none
 
@@ -24,13 +24,16 @@ module gradient_unit
   localparam int GradientWidth  = value(Config, GradientWidthField),
   localparam int BitsPerChannel = value(Config, BitsPerChannelField),  // of a colour that index the table
   localparam int FlatField      = value(Config, FlatFieldField),
-  localparam int Quadratic      = value(Config, QuadraticField),  // 1 needs FlatField
-  localparam int LightGains     = value(Config, LightGainsField),  // 1 needs Quadratic
+  localparam int Polynomial     = value(Config, PolynomialField),  // 1 needs FlatField
+  localparam int Corrections    = value(Config, CorrectionsField),  // 1 needs Polynomial
+  localparam int LightGains     = value(Config, LightGainsField),  // 1 needs Polynomial
   localparam int BlockLog2      = value(Config, BlockLog2Field),  // from here: FlatField
   localparam int GainWidth      = value(Config, GainWidthField),
   localparam int CaptureLog2    = value(Config, CaptureLog2Field),
   localparam int ColourDrop     = value(Config, ColourDropField),
-  localparam int SlopeDrop      = value(Config, SlopeDropField)  // Quadratic
+  localparam int SlopeDrop      = value(Config, SlopeDropField),  // from here: Polynomial
+  localparam int FineBits       = value(Config, FineBitsField),
+  localparam int CorrectionUnit = value(Config, CorrectionUnitField)
 ) (
   input  wire                             clk,
   input  wire                             rst,
@@ -59,11 +62,11 @@ module gradient_unit
   output logic signed [GradientWidth-1:0] slope_gy   // slope code
 );
 
-  localparam int SlopeTable = Quadratic != 0 ? TableSelectCoefficients : TableSelectGradient;
-  logic slope_in_use, reference_in_use;
-  table_answer_t slope_answer, reference_answer;
-  assign table_answer = slope_answer | reference_answer;
-  assign table_in_use = (4'(slope_in_use) << SlopeTable) | (4'(reference_in_use) << TableSelectReference);
+  logic coefficients_in_use, gradient_in_use, reference_in_use;
+  table_answer_t coefficients_answer, gradient_answer, reference_answer;
+  assign table_answer = coefficients_answer | gradient_answer | reference_answer;
+  assign table_in_use = (4'(coefficients_in_use) << TableSelectCoefficients)
+      | (4'(gradient_in_use) << TableSelectGradient) | (4'(reference_in_use) << TableSelectReference);
   logic unused_banks;  // of other tables
   assign unused_banks = ^table_bank;
 
@@ -71,7 +74,7 @@ module gradient_unit
 
   logic colour_valid;
   position_t colour_position;
-  localparam int ColourWidth = Quadratic != 0 ? DeviationWidth : CodeWidth;
+  localparam int ColourWidth = Polynomial != 0 ? DeviationWidth : CodeWidth;
   logic [ColourWidth-1:0] red, green, blue;
   logic [1:0] ratio_saturations, light_saturations, slope_saturations;
   assign saturations = 4'(ratio_saturations) + 4'(light_saturations) + 4'(slope_saturations);
@@ -86,8 +89,8 @@ module gradient_unit
     flat_field #(
       .TableFolder(TableFolder),
       .Rows(Rows), .Columns(Columns), .BlockLog2(BlockLog2), .GainWidth(GainWidth), .Drop(ColourDrop),
-      .Offset(Quadratic != 0 && LightGains == 0 ? 1 << DeviationFraction : 0), .OutWidth(RelativeWidth),
-      .Flat(Quadratic != 0 ? 0 : FlatCode)
+      .Offset(Polynomial != 0 && LightGains == 0 ? 1 << DeviationFraction : 0), .OutWidth(RelativeWidth),
+      .Flat(Polynomial != 0 ? 0 : FlatCode)
     ) u_flat_field (
       .clk, .rst, .en, .dark_level,
       .table_command, .table_answer(reference_answer), .table_bank(table_bank[TableSelectReference]),
@@ -138,14 +141,44 @@ module gradient_unit
 
   // Their slopes.
 
-  if (Quadratic != 0) begin : g_quadratic
+  if (Polynomial != 0) begin : g_polynomial
+    logic signed [CorrectionWidth-1:0] correction_gx, correction_gy;
+    if (Corrections != 0) begin : g_corrections
+      // The middle entry has deviation 0 at its centre; what is brighter than the table has its last entry.
+      localparam int PlaceWidth = ColourWidth + 1;
+      localparam int Start = (1 << DeviationFraction) + (1 << (DeviationFraction - BitsPerChannel));
+      logic [2:0][ColourWidth-1:0] colours;
+      logic [2:0][7:0] codes;
+      assign colours = {red, green, blue};
+      for (genvar colour = 0; colour < 3; colour++) begin : g_colour
+        logic signed [PlaceWidth-1:0] place;  // from the start of the table; a deviation is -1 or more
+        logic unused_place;
+        assign place = PlaceWidth'($signed(colours[colour])) + PlaceWidth'(Start);
+        assign codes[colour] = place[ColourWidth:DeviationFraction+1] != '0 ? '1 : place[DeviationFraction-:8];
+        assign unused_place = ^place[DeviationFraction-8:0];
+      end
+      logic unused_valid;
+      position_t unused_position;
+      gradient_lookup #(
+        .File({TableFolder, "gradient.hex"}), .Width(CorrectionWidth), .BitsPerChannel(BitsPerChannel)
+      ) u_corrections (
+        .clk, .rst, .en, .table_command, .table_answer(gradient_answer), .table_bank(table_bank[TableSelectGradient]),
+        .table_in_use(gradient_in_use),
+        .in_valid(colour_valid), .in_pixel({codes[2], codes[0], codes[1]}), .in_position(colour_position),
+        .out_valid(unused_valid), .out_position(unused_position), .out_gx(correction_gx), .out_gy(correction_gy)
+      );
+    end else begin : g_no_corrections
+      assign {correction_gx, correction_gy, gradient_in_use, gradient_answer} = '0;
+    end
     polynomial_gradient #(
       .TableFolder(TableFolder), .Width(GradientWidth), .DeviationWidth(ColourWidth), .CoeffWidth(ColourCoeffWidth),
-      .WordWidth(PolynomialWidth), .Drop(SlopeDrop)
-    ) u_quadratic (
-      .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank(table_bank[SlopeTable]),
-      .table_in_use(slope_in_use),
+      .WordWidth(PolynomialWidth), .FineBits(FineBits), .CorrectionWidth(CorrectionWidth),
+      .CorrectionUnit(CorrectionUnit), .Drop(SlopeDrop)
+    ) u_polynomial (
+      .clk, .rst, .en, .table_command, .table_answer(coefficients_answer),
+      .table_bank(table_bank[TableSelectCoefficients]), .table_in_use(coefficients_in_use),
       .in_valid(colour_valid), .in_position(colour_position), .in_red(red), .in_green(green), .in_blue(blue),
+      .correction_gx, .correction_gy,
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy),
       .saturations(slope_saturations)
     );
@@ -153,25 +186,29 @@ module gradient_unit
     gradient_lookup #(
       .File({TableFolder, "gradient.hex"}), .Width(GradientWidth), .BitsPerChannel(BitsPerChannel)
     ) u_lookup (
-      .clk, .rst, .en, .table_command, .table_answer(slope_answer), .table_bank(table_bank[SlopeTable]),
-      .table_in_use(slope_in_use),
+      .clk, .rst, .en, .table_command, .table_answer(gradient_answer), .table_bank(table_bank[TableSelectGradient]),
+      .table_in_use(gradient_in_use),
       .in_valid(colour_valid), .in_pixel({red, blue, green}), .in_position(colour_position),
       .out_valid(slope_valid), .out_position(slope_position), .out_gx(slope_gx), .out_gy(slope_gy)
     );
-    assign slope_saturations = '0;
+    assign {slope_saturations, coefficients_in_use, coefficients_answer} = '0;
   end
 
-  if (Quadratic != 0 && FlatField == 0) begin : g_refused_0
-    Quadratic_needs_FlatField u_refused ();
+  if (Polynomial != 0 && FlatField == 0) begin : g_refused_0
+    Polynomial_needs_FlatField u_refused ();
   end
-  if ((FlatField | Quadratic | LightGains) > 1 || (FlatField | Quadratic | LightGains) < 0) begin : g_refused_1
-    FlatField_Quadratic_and_LightGains_are_0_or_1 u_refused ();
+  localparam int Options = FlatField | Polynomial | Corrections | LightGains;
+  if (Options > 1 || Options < 0) begin : g_refused_1
+    FlatField_Polynomial_Corrections_and_LightGains_are_0_or_1 u_refused ();
   end
   if (FlatField != 0 && (GainWidth < 2 || GainWidth > 32)) begin : g_refused_2
     GainWidth_must_be_2_to_32 u_refused ();
   end
-  if (LightGains != 0 && Quadratic == 0) begin : g_refused_3
-    LightGains_need_Quadratic u_refused ();
+  if (LightGains != 0 && Polynomial == 0) begin : g_refused_3
+    LightGains_need_Polynomial u_refused ();
+  end
+  if (Corrections != 0 && Polynomial == 0) begin : g_refused_4
+    Corrections_need_Polynomial u_refused ();
   end
 
 endmodule

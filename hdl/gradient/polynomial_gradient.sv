@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// polynomial_gradient: slopes of a pixel from the deviations of its colours, linear in the three.
+// polynomial_gradient: slopes of a pixel from the deviations of its colours, linear in the three, and a correction.
 //
-//   slope of an axis = sat( round( sum over red, green, blue of C[axis][colour] * deviation[colour] / 2^Drop ) )
-//   C = upper CoeffWidth bits of A + B c + D c (c - 1) / 2 + E r + F r (r - 1) / 2 + H c r, column c, row r from 0
+//   slope of an axis = sat( round( ( sum over red, green, blue of C[axis][colour] * deviation[colour]
+//                                    + correction[axis] * CorrectionUnit ) / 2^Drop ) )
+//   C = upper CoeffWidth bits of a polynomial of third degree in the column and the row, from 0
 //
-// Stream in: I / reference - 1 of each colour, raster order, gaps anywhere. Stream out: slopes dz/dx, dz/dy, z positive
-// into the gel. Latency: 11 cycles. A frame has two rows or more, of four pixels or more; it begins afresh.
+// With the differences A of a frame's first pixel, B, D, T along its row, and E, F, H, U, G, W from row to row:
+//   C(r, c) = A + B c + D c2 + T c3 + E r + F r2 + U r3 + H c r + G c r2 + W c2 r
+// where x2 = x (x - 1) / 2, x3 = x2 (x - 2) / 3. T, U, G and W have FineBits more fraction bits than the others; all
+// sums are modulo 2^(WordWidth + FineBits).
 //
-// Table port: docs/streams.md; the 36 words, at (3 axis + colour) 6 + term, terms A, B, D, E, F, H, modulo 2^WordWidth.
+// Stream in: I / reference - 1 of each colour, raster order, gaps anywhere; a pixel's correction comes 4 cycles later.
+// Stream out: slopes dz/dx, dz/dy, z positive into the gel. Latency: 12 cycles. A frame has two rows or more, of eight
+// pixels or more; it begins afresh.
+//
+// Table port: docs/streams.md; the 60 words, at (3 axis + colour) 10 + term, terms A, B, D, T, E, F, H, U, G, W.
 // table_in_use follows a frame's first pixel after 4 cycles. Both banks hold the calibration at power-up. Bit-accurate
 // model: models/tactile_depth/gradient/polynomial_gradient.py; models/tactile_depth/rom_files.py writes the words.
 
@@ -18,12 +25,15 @@ module polynomial_gradient
   import td_types_pkg::*;
 #(
   parameter TableFolder = "./",  // of the .hex files, with a / at its end
-  parameter int Width          = 21,  // of a slope
-  parameter int DeviationWidth = 17,
-  parameter int CoeffWidth     = 18,
-  parameter int WordWidth      = 32,
-  parameter int Drop           = 9,   // negative: shift left, exact
-  localparam int Terms = 6,
+  parameter int Width           = 21,  // of a slope
+  parameter int DeviationWidth  = 17,
+  parameter int CoeffWidth      = 18,
+  parameter int WordWidth       = 32,
+  parameter int FineBits        = 4,
+  parameter int CorrectionWidth = 8,
+  parameter int CorrectionUnit  = 1 << 21,
+  parameter int Drop            = 9,   // negative: shift left, exact
+  localparam int Terms = 10,
   localparam int Words = 6 * Terms,
   localparam int IndexWidth = $clog2(Words)
 ) (
@@ -39,6 +49,8 @@ module polynomial_gradient
   input  wire  signed [DeviationWidth-1:0] in_red,      // deviation, F fraction bits
   input  wire  signed [DeviationWidth-1:0] in_green,    // the same
   input  wire  signed [DeviationWidth-1:0] in_blue,     // the same
+  input  wire  signed [CorrectionWidth-1:0] correction_gx,  // of the pixel 4 enabled cycles ago
+  input  wire  signed [CorrectionWidth-1:0] correction_gy,
   output logic                             out_valid,
   output position_t                        out_position,
   output logic signed [Width-1:0]          out_gx,      // slope code, F + G - Drop fraction bits
@@ -48,10 +60,13 @@ module polynomial_gradient
 
   localparam int Colours = 3;
   localparam int TermWidth = $clog2(Terms);
-  localparam int ToCoefficient = 5;  // cycles, of red; a cycle later that of green, then of blue
-  localparam int LastLoad = ToCoefficient + Colours - 1;   // to the last word of a frame's first row
-  localparam int LastUpdate = 3 + Colours - 1;             // of another row
-  localparam int ToSum = ToCoefficient + 3 + Colours - 1;  // operands, product, sum
+  localparam int FrameTerms = 7;     // of a frame's first pixel: the others are of rows
+  localparam int ToCoefficient = 6;  // cycles, of red; a cycle later that of green, then of blue
+  localparam int LastLoad = FrameTerms + 1 + Colours - 1;            // to the last word of a frame's first row
+  localparam int LastUpdate = Terms - FrameTerms + 1 + Colours - 1;  // of another row
+  localparam int ToSum = ToCoefficient + 3 + Colours - 1;            // operands, product, sum
+  localparam int CorrectionDelay = ToCoefficient + 1 - 4;            // to its product with the unit
+  localparam int TotalWidth = WordWidth + FineBits;
   localparam int ProductWidth = DeviationWidth + CoeffWidth;
   localparam int SumWidth = ProductWidth + 2;
 
@@ -97,25 +112,38 @@ module polynomial_gradient
   logic [1:0][Width-1:0] slopes;
   logic [1:0] clipped;
 
+  logic [CorrectionDelay-1:0][1:0][CorrectionWidth-1:0] corrections;
+  always_ff @(posedge clk) begin
+    if (en) corrections <= (2 * CorrectionWidth * CorrectionDelay)'({corrections, correction_gy, correction_gx});
+  end
+
   for (genvar axis = 0; axis < 2; axis++) begin : g_axis
+    logic signed [CorrectionWidth-1:0] correction_q;
+    logic signed [SumWidth-1:0] correction, scaled;
+    assign correction_q = corrections[CorrectionDelay-1][axis];
+    always_comb begin  // a constant of few ones: adders, and no multiplier
+      scaled = '0;
+      for (int i = 0; i < 31; i++) if (CorrectionUnit[i]) scaled = scaled + (SumWidth'(correction_q) <<< i);
+    end
+    always_ff @(posedge clk) if (en) correction <= scaled;
     for (genvar colour = 0; colour < Colours; colour++) begin : g_colour
       localparam int Polynomial = Colours * axis + colour;
       localparam int Before = colour == 0 ? Polynomial : Polynomial - 1;
 
-      // The words of this polynomial, one a cycle: at a frame's first pixel A, B, D, E; at other rows' F, H.
+      // The words of this polynomial, one a cycle: at a frame's first pixel A to H; at other rows' U, G, W.
       logic [IndexWidth-1:0] offset;  // of the entry on the bus
       logic own_entry, fetched;
       logic [WordWidth-1:0] word, free_word;
       logic [TermWidth-1:0] term;
       assign offset = table_index - IndexWidth'(Terms * Polynomial);
       assign own_entry = 32'(offset) < $unsigned(Terms);
-      assign term = first_q[colour] ? TermWidth'(0)
-          : first_q[1+colour] ? TermWidth'(1)
-          : first_q[2+colour] ? TermWidth'(2)
-          : first_q[3+colour] ? TermWidth'(3)
-          : row_q[colour] ? TermWidth'(4) : TermWidth'(5);
+      always_comb begin
+        term = '0;
+        for (int t = Terms - 1; t >= FrameTerms; t--) if (row_q[t-FrameTerms+colour]) term = TermWidth'(t);
+        for (int t = FrameTerms - 1; t >= 0; t--) if (first_q[t+colour]) term = TermWidth'(t);
+      end
       td_banked_table #(
-        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "quadratic_", "0" + 8'(Polynomial), ".hex"})
+        .Width(WordWidth), .Depth(Terms), .Style(0), .File({TableFolder, "polynomial_", "0" + 8'(Polynomial), ".hex"})
       ) u_words (
         .clk, .rst, .en, .table_bank, .table_in_use(in_use[Polynomial]), .frame_start, .change(first_q[colour]),
         .read(1'b1), .read_address(term), .read_word(word),
@@ -125,23 +153,38 @@ module polynomial_gradient
       always_ff @(posedge clk) fetched <= table_read & own_entry;
       assign fetched_words[Polynomial] = fetched ? free_word : '0;
 
-      // Along the raster, by second differences. Those of the row are ready when its first pixel comes; a frame begins
-      // with sums of 0.
+      // Along the raster, by differences: of a row's first pixel (row_), which are ready when it comes, and of the
+      // pixel; from row to row they rise by differences of their own.
       logic begins_row;
       assign begins_row = position_q[ToCoefficient-2+colour].first_column;
-      logic [WordWidth-1:0] row_value, row_step, row_rise, value, step, second_difference;
+      logic [TotalWidth-1:0] coarse, fine;  // the word, with all fraction bits
+      logic [TotalWidth-1:0] row_value, row_step, row_second, third, value, step, second;
+      logic [TotalWidth-1:0] value_rise, value_bend, step_rise;
+      assign coarse = TotalWidth'(word) << FineBits;
+      assign fine = TotalWidth'($signed(word));
       always_ff @(posedge clk) begin
         if (en) begin
-          if (first_q[1+colour]) row_value <= word;
-          if (row_q[1+colour]) row_value <= row_value + row_rise;
-          if (first_q[1+colour]) row_step <= '0;
-          else if (first_q[2+colour] | row_q[2+colour]) row_step <= word + row_step;
-          if (first_q[3+colour]) second_difference <= word;
-          if (first_q[3+colour]) row_rise <= '0;
-          else if (first_q[4+colour] | row_q[1+colour]) row_rise <= word + row_rise;
+          if (first_q[1+colour]) row_value <= coarse;
+          if (first_q[2+colour]) row_step <= coarse;
+          if (first_q[3+colour]) row_second <= coarse;
+          if (first_q[4+colour]) third <= fine;
+          if (first_q[5+colour]) value_rise <= coarse;
+          if (first_q[6+colour]) value_bend <= coarse;
+          if (first_q[7+colour]) step_rise <= coarse;
+          if (row_q[1+colour]) begin
+            row_value <= row_value + value_rise;
+            value_rise <= value_rise + value_bend;
+            value_bend <= value_bend + fine;
+          end
+          if (row_q[2+colour]) begin
+            row_step <= row_step + step_rise;
+            step_rise <= step_rise + fine;
+          end
+          if (row_q[3+colour]) row_second <= row_second + fine;
           if (valid_q[ToCoefficient-2+colour]) begin
             value <= begins_row ? row_value : value + step;
-            step <= begins_row ? row_step : step + second_difference;
+            step <= begins_row ? row_step : step + second;
+            second <= begins_row ? row_second : second + third;
           end
         end
       end
@@ -159,11 +202,11 @@ module polynomial_gradient
         if (en) begin
           waiting <= {waiting[Delay-2:0], deviation[colour]};
           deviation_q <= $signed(waiting[Delay-1]);
-          coefficient_q <= $signed(value[WordWidth-1-:CoeffWidth]);
+          coefficient_q <= $signed(value[TotalWidth-1-:CoeffWidth]);
         end
       end
       logic signed [SumWidth-1:0] sum_before;
-      assign sum_before = colour == 0 ? '0 : $signed(sums[Before]);
+      assign sum_before = colour == 0 ? correction : $signed(sums[Before]);
       always_ff @(posedge clk) if (en) sums[Polynomial] <= sum_before + SumWidth'(product);
     end
 
@@ -186,8 +229,11 @@ module polynomial_gradient
     end
   end
 
-  if (CoeffWidth > WordWidth) begin : g_refused
-    CoeffWidth_must_be_at_most_WordWidth u_refused ();
+  if (CoeffWidth > WordWidth + FineBits) begin : g_refused_0
+    CoeffWidth_must_be_at_most_WordWidth_and_FineBits u_refused ();
+  end
+  if (CorrectionUnit < 0 || CorrectionWidth + $clog2(CorrectionUnit + 1) > SumWidth - 1) begin : g_refused_1
+    a_correction_must_fit_the_sum u_refused ();
   end
 
 endmodule

@@ -29,7 +29,8 @@ module axil_registers
   localparam int GradientFraction = value(Config, GradientFractionField),
   localparam int BitsPerChannel   = value(Config, BitsPerChannelField),
   localparam int FlatField        = value(Config, FlatFieldField),
-  localparam int Quadratic        = value(Config, QuadraticField),
+  localparam int Polynomial       = value(Config, PolynomialField),
+  localparam int Corrections      = value(Config, CorrectionsField),
   localparam int LightGains       = value(Config, LightGainsField),
   localparam int ZeroOffset       = value(Config, ZeroOffsetField),
   localparam int Lanes            = value(Config, LanesField),
@@ -92,27 +93,26 @@ module axil_registers
   input  wire register_answer_t     register_answer    // ignored without Camera
 );
 
-  localparam logic [31:0] GridWord = (Rows << GridRowsLsb) | (Columns << GridColumnsLsb);
-  localparam logic [31:0] FormatWord = (DataWidth << FormatDataWidthLsb) | (GradientWidth << FormatGradientWidthLsb)
-    | (GradientFraction << FormatGradientFractionLsb)
-    | ((Quadratic != 0 ? 0 : BitsPerChannel) << FormatBitsPerChannelLsb);
-  localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
-    | (Quadratic << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (ZeroOffset << DeviceZeroOffsetBit)
-    | (LightGains << DeviceLightGainsBit) | (Lanes << DeviceLanesLsb)
-    | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
-  localparam logic [31:0] DepthUnitWord =
-    (DepthMantissa << DepthUnitMantissaLsb) | (DepthExponent << DepthUnitExponentLsb);
-  localparam logic [31:0] SlopeUnitWord =
-    (SlopeMantissa << SlopeUnitMantissaLsb) | (SlopeExponent << SlopeUnitExponentLsb);
-
-  localparam int GradientWords = Quadratic != 0 ? 0 : 1 << (3 * BitsPerChannel);
-  localparam int CoefficientWords = Quadratic != 0 ? PolynomialWords : 0;
+  localparam int GradientWords = Polynomial != 0 && Corrections == 0 ? 0 : 1 << (3 * BitsPerChannel);
+  localparam int CoefficientWords = Polynomial != 0 ? PolynomialWords : 0;
   localparam int Nodes = nodes(Rows, Columns, BlockLog2);
   localparam int ReferenceWords = FlatField != 0 ? 4 * Nodes : 0;
   localparam int ZeroWords = ZeroOffset != 0 ? Nodes : 0;
   localparam int Present = (int'(GradientWords != 0) << TableSelectGradient)
     | (int'(CoefficientWords != 0) << TableSelectCoefficients)
     | (int'(ReferenceWords != 0) << TableSelectReference) | (int'(ZeroWords != 0) << TableSelectZero);
+  localparam logic [31:0] GridWord = (Rows << GridRowsLsb) | (Columns << GridColumnsLsb);
+  localparam logic [31:0] FormatWord = (DataWidth << FormatDataWidthLsb) | (GradientWidth << FormatGradientWidthLsb)
+    | (GradientFraction << FormatGradientFractionLsb)
+    | ((GradientWords != 0 ? BitsPerChannel : 0) << FormatBitsPerChannelLsb);
+  localparam logic [31:0] DeviceWord = (Tridiagonal << DeviceSolverBit) | (Neumann << DeviceBoundaryBit)
+    | (Polynomial << DeviceGradientModelBit) | (FlatField << DeviceFlatFieldBit) | (ZeroOffset << DeviceZeroOffsetBit)
+    | (LightGains << DeviceLightGainsBit) | (Lanes << DeviceLanesLsb)
+    | ((FlatField != 0 ? GainWidth : 0) << DeviceGainWidthLsb);
+  localparam logic [31:0] DepthUnitWord =
+    (DepthMantissa << DepthUnitMantissaLsb) | (DepthExponent << DepthUnitExponentLsb);
+  localparam logic [31:0] SlopeUnitWord =
+    (SlopeMantissa << SlopeUnitMantissaLsb) | (SlopeExponent << SlopeUnitExponentLsb);
 
   logic write, entry_refused, capture_refused;
   logic read, read_refused, read_late, late_refused;

@@ -135,7 +135,7 @@ package td_register_map_pkg;
   localparam int DeviceDirichlet = 0;
   localparam int DeviceNeumann = 1;
   localparam int DeviceLut = 0;
-  localparam int DeviceQuadratic = 1;
+  localparam int DevicePolynomials = 1;
 
   // Registers that software alone writes, by number, in words of 32 bits, the lowest first.
   localparam int Settings = 14;

@@ -10,7 +10,7 @@ import numpy as np
 from tactile_depth.calibration_file import BUILT_IN, FOLDER, read_calibration
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.scenes import GAIN, LIGHTS, REST, SYNTHETIC_PIXEL_PITCH_MM
-from tactile_depth.sensor import COEFFICIENTS, LIGHTING_AGREES, Sensor
+from tactile_depth.sensor import COEFFICIENTS, CORRECTIONS, CUBIC, LIGHTING_AGREES, Sensor
 
 PICTURE = "uint8 (rows, columns, 3), RGB"
 LARGEST_SLOPE = 0.99  # largest slope of the synthetic table, so that its gradient limit is 1
@@ -91,9 +91,9 @@ def identify(reference: np.ndarray) -> Sensor:
 
 
 def synthetic(bits_per_channel: int = 4) -> Sensor:
-    """Return the synthetic sensor: the least-squares inverse of its colour model, as a table and as quadratics.
+    """Return the synthetic sensor: the least-squares inverse of its colour model, as a table and as polynomials.
 
-    The light is uniform and the colours are linear in the slopes, so only the first term of each quadratic is not 0.
+    The light is uniform and the colours are linear in the slopes, so only the first term of each polynomial is not 0.
     """
     step = 256 >> bits_per_channel
     centre = np.arange(0, 256, step) + (step - 1) / 2
@@ -102,4 +102,7 @@ def synthetic(bits_per_channel: int = 4) -> Sensor:
     within = np.clip(gradient, -LARGEST_SLOPE, LARGEST_SLOPE)
     coefficients = np.zeros(COEFFICIENTS)
     coefficients[..., 0] = REST / GAIN * np.linalg.pinv(LIGHTS)
-    return Sensor("synthetic", within, SYNTHETIC_PIXEL_PITCH_MM, coefficients, LARGEST_SLOPE)
+    cubic, corrections = np.zeros(CUBIC), np.zeros(CORRECTIONS)
+    cubic[..., 0] = coefficients[..., 0]
+    pitch = SYNTHETIC_PIXEL_PITCH_MM
+    return Sensor("synthetic", within, pitch, coefficients, LARGEST_SLOPE, cubic=cubic, corrections=corrections)

@@ -18,6 +18,8 @@ from tactile_depth.npy import is_file, read_header
 from tactile_depth.sensor import (
     BITS_PER_CHANNEL,
     COEFFICIENTS,
+    CORRECTIONS,
+    CUBIC,
     FORMAT_VERSION,
     LIGHTING_BLOCKS,
     MODELS,
@@ -42,8 +44,12 @@ KEYS = (
     *OLD_KEYS,
     *CAMERA_KEYS,
     "lighting",
+    "cubic",
+    "corrections",
     *(f"{what}_{model}" for what in ("fitted_slope", "cap_height") for model in MODELS),
 )
+
+READ_VERSIONS = (2, FORMAT_VERSION)
 
 Arrays = dict[str, np.ndarray]
 
@@ -64,10 +70,11 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         problem = f"{path}: no such file" if path.suffix == ".npz" else f"unknown calibration {name}"
         raise InputError(f"{problem}: accepted are {', '.join(BUILT_IN)}, or the path of an .npz file")
     arrays = _arrays(path)
-    held = {model: key in arrays for model, key in zip(MODELS, ("gradient", "coefficients"), strict=True)}
+    held = {model: key in arrays for model, key in zip(MODELS, ("gradient", "coefficients", "cubic"), strict=True)}
+    has_polynomials = held["quadratic"] or held["cubic"]
     if not any(held.values()):
-        raise InputError(f"{path}: no `gradient` and no `coefficients` in it: a calibration holds one of them or both")
-    needed = ["pixel_pitch_mm", *(["largest_slope"] if held["quadratic"] else [])]
+        raise InputError(f"{path}: no `gradient`, `coefficients` or `cubic` in it: a calibration holds one or more")
+    needed = ["pixel_pitch_mm", *["largest_slope"] * has_polynomials, *["corrections"] * held["cubic"]]
     old = "format_version" not in arrays
     if not old:
         _version(path, arrays["format_version"])
@@ -75,7 +82,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
     for key in needed:
         if key not in arrays:
             raise InputError(f"{path}: no `{key}` in it: a calibration holds {' and '.join(f'`{k}`' for k in needed)}")
-    largest_slope = _slope(path, arrays, "largest_slope") if held["quadratic"] else 0.0
+    largest_slope = _slope(path, arrays, "largest_slope") if has_polynomials else 0.0
     models = [model for model in MODELS if held[model]]
     keys = {model: f"fitted_slope_{model}" for model in models}
     fitted = {model: _slope(path, arrays, key) for model, key in keys.items() if key in arrays}
@@ -85,7 +92,7 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
         name,
         _gradient(path, arrays["gradient"]) if held["lut"] else None,
         _pitch(path, arrays),
-        _coefficients(path, arrays) if held["quadratic"] else None,
+        _polynomials(path, arrays, "coefficients", COEFFICIENTS) if held["quadratic"] else None,
         largest_slope,
         _model(path, arrays.get("model"), models),
         camera=_old_camera(path, camera_size) if old else _camera(path, arrays, camera_size),
@@ -95,6 +102,8 @@ def read_calibration(name: str, path: Path, camera_size: tuple[int, int] | None 
             model: _height_error(path, arrays, model) for model in models if f"cap_height_{model}" in arrays
         },
         lighting=_finite(path, arrays, "lighting", (*LIGHTING_BLOCKS, 3)) if "lighting" in arrays else None,
+        cubic=_polynomials(path, arrays, "cubic", CUBIC) if held["cubic"] else None,
+        corrections=_corrections(path, arrays) if held["cubic"] else None,
     )
 
 
@@ -112,10 +121,10 @@ def _arrays(path: Path) -> Arrays:
 
 
 def _version(path: Path, version: np.ndarray) -> None:
-    if version.shape != () or version.dtype.kind not in "iu" or int(version) != FORMAT_VERSION:
+    if version.shape != () or version.dtype.kind not in "iu" or int(version) not in READ_VERSIONS:
         shown = int(version) if version.shape == () and version.dtype.kind in "iu" else version.dtype
         raise InputError(
-            f"{path}: `format_version` is {shown}: accepted is {FORMAT_VERSION}: a newer file needs a newer package"
+            f"{path}: `format_version` is {shown}: accepted are 2, {FORMAT_VERSION}: a newer file needs a newer package"
         )
 
 
@@ -232,13 +241,21 @@ def _gradient(path: Path, gradient: np.ndarray) -> np.ndarray:
     return gradient.astype(np.float64)
 
 
-def _coefficients(path: Path, arrays: Arrays) -> np.ndarray:
-    coefficients = _checked(path, arrays, "coefficients", COEFFICIENTS, "f", f"float {COEFFICIENTS}")
+def _polynomials(path: Path, arrays: Arrays, key: str, shape: tuple[int, ...]) -> np.ndarray:
+    coefficients = _checked(path, arrays, key, shape, "f", f"float {shape}")
     if not (np.abs(coefficients) <= LARGEST_COEFFICIENT).all():  # NaN is not
         raise InputError(
-            f"{path}: `coefficients` holds NaN, or values over {LARGEST_COEFFICIENT:g}: is x in mm from the centre?"
+            f"{path}: `{key}` holds NaN, or values over {LARGEST_COEFFICIENT:g}: is x in mm from the centre?"
         )
     return coefficients.astype(np.float64)
+
+
+def _corrections(path: Path, arrays: Arrays) -> np.ndarray:
+    corrections = _finite(path, arrays, "corrections", CORRECTIONS)
+    _, high = GRADIENT_LIMITS
+    if np.abs(corrections).max() > high:
+        raise InputError(f"{path}: `corrections` reach {np.abs(corrections).max():.3g}: accepted is up to {high:g}")
+    return corrections
 
 
 def _slope(path: Path, arrays: Arrays, key: str) -> float:

@@ -37,7 +37,7 @@ MOST_LANES = 32
 COLUMNS_PER_LANE = 4  # at least: a lane has the row below so many clocks after it began, the loop of the recursion
 DATA_WIDTHS = (12, 32)
 COEFFICIENT_WIDTHS = (10, 24)
-GRADIENT_MODELS = ("lut", "quadratic")
+GRADIENT_MODELS = ("lut", "quadratic", "cubic")
 GRADIENT_LIMITS = (2.0**-6, 2.0**6)
 
 # Flat-fielding. The reference is smooth, as the lighting is. A grid of 16 block means across the picture causes no
@@ -91,7 +91,12 @@ RATIO = Format(17, 15)
 LIGHT_GAIN = Format(16, 15)
 """Format of the gain of a colour that follows the light, unsigned."""
 POLYNOMIAL = Format(32, 28)
-"""Format of a coefficient of the quadratic model along the raster, as wide as a register of the AXI4-Lite map."""
+"""Format of a coefficient of the polynomial models along the raster, as wide as a register of the AXI4-Lite map."""
+FINE_BITS = (4, 128)
+"""Fraction bits of the words of third degree beyond those of the others, and the largest side of a grid with so many:
+3 more for each doubling of the side, because these words add up to its third power."""
+CORRECTION_BITS, CORRECTION_WIDTH = 4, 8
+"""Top bits of each colour that index the corrections of the model `cubic`, and bits of a correction."""
 COLOUR_COEFFICIENT = Format(18, 14)
 """Format of the upper bits of a coefficient, which are multiplied, as wide as the narrow port of a DSP48E2."""
 
@@ -126,9 +131,9 @@ class Configuration:
     gain_width : int
         Bits of a gain of the flat field.
     gradient_model : str
-        `lut`, a table of colours, or `quadratic`, which needs `flat_field`.
+        `lut`, a table of colours; `quadratic` or `cubic`, polynomials of the position, which need `flat_field`.
     light_gains : bool
-        A gain for each colour follows the light; needs the quadratic model.
+        A gain for each colour follows the light; needs polynomials.
     zero_offset : bool
         The depth that is read without contact is subtracted.
     lanes : int
@@ -155,13 +160,13 @@ class Configuration:
         model, solver = Argument("gradient_model", self.gradient_model), Argument("solver", self.solver)
         columns, data_width = Argument("columns", self.columns), Argument("data_width", self.data_width)
         one_of(model, GRADIENT_MODELS)
-        if self.gradient_model == "quadratic" and not self.flat_field:
+        if self.polynomials and not self.flat_field:
             raise InputError(model, " without a reference: it takes colours relative to one", remedy="give one")
-        if self.light_gains and self.gradient_model != "quadratic":
+        if self.light_gains and not self.polynomials:
             raise InputError(
                 *(Argument("light_gains", True), " with ", model, ": they act on colours relative to a reference, "),
                 "which a table has as 8 bits",
-                remedy=("set ", Argument("gradient_model", "quadratic"), " or ", Argument("light_gains", False)),
+                remedy=("set ", Argument("gradient_model", "cubic"), " or ", Argument("light_gains", False)),
             )
         one_of(solver, COLUMNS)
         within(columns, *COLUMNS[self.solver])
@@ -301,6 +306,11 @@ class Configuration:
     @cached_property
     def row_forward(self) -> Format:
         return Format.holding(self._bounds.row_forward * self.gradient_limit / self.unit_px, self.arithmetic_width)
+
+    @property
+    def polynomials(self) -> bool:
+        """True for a gradient model of polynomials of the position."""
+        return self.gradient_model != "lut"
 
     @property
     def gradient(self) -> Format:

@@ -15,6 +15,7 @@ from functools import cached_property
 from tactile_depth.common import td_node_map
 from tactile_depth.configuration import (
     COLOUR_COEFFICIENT,
+    CORRECTION_WIDTH,
     DEVIATION,
     GUARD_BITS,
     LIGHT_GAIN,
@@ -25,12 +26,20 @@ from tactile_depth.configuration import (
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.latency import first_depth_latency, last_pixel_to_first_depth, last_pixel_to_last_depth
 from tactile_depth.poisson.transform.sdf_fft import stages
-from tactile_depth.sensor import COEFFICIENTS
+from tactile_depth.sensor import CUBIC
 from tactile_depth.tactile_depth import top_parameters
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
-    *("flat_field", "gradient_lookup", "light_gains", "polynomial_gradient", "divergence", "row_reorder", "dst_forward"),
+    *(
+        "flat_field",
+        "gradient_lookup",
+        "light_gains",
+        "polynomial_gradient",
+        "divergence",
+        "row_reorder",
+        "dst_forward",
+    ),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
     *("corner_turn", "zero_offset", "zero_capture", "contact_events"),
 )
@@ -166,10 +175,13 @@ def _colours(p: dict[str, int]) -> Parts:
         parts.append(Memory("delay lines", 3 * 8 + PIXEL_MARKS, td_node_map.latency(1, log2), core))
     if p["LightGains"]:
         parts += [Multiplier(RATIO.width + 1, LIGHT_GAIN.width + 1, "light_gains")] * 3
-    if p["Quadratic"]:
-        core, width, words = "polynomial_gradient", POLYNOMIAL.width, math.prod(COEFFICIENTS)
+    if p["Polynomial"]:
+        core, width, words = "polynomial_gradient", POLYNOMIAL.width, math.prod(CUBIC)
         parts += [Multiplier(DEVIATION.width, COLOUR_COEFFICIENT.width, core)] * 6
-        return [*parts, *[Memory("tables", width, words // 6, core)] * 12]
+        parts += [Memory("tables", width, words // 6, core)] * 12
+        if p["Corrections"]:
+            parts += [Memory("tables", 2 * CORRECTION_WIDTH, 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2
+        return parts
     return [*parts, *[Memory("tables", 2 * p["GradientWidth"], 1 << 3 * p["BitsPerChannel"], "gradient_lookup")] * 2]
 
 

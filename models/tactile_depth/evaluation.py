@@ -83,8 +83,8 @@ class Evaluation:
         return HeightError(float(ratios.mean()), float(ratios.std()), len(ratios))
 
     @property
-    def better_model(self) -> str:
-        """The model with the smaller error of heights in the contacts."""
+    def best_model(self) -> str:
+        """The model with the smallest error of heights in the contacts."""
         return min(self.scores, key=lambda model: float(self.values(model, "height_rms_mm").mean()))
 
     @property

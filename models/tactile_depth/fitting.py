@@ -2,25 +2,28 @@
 """Fits a calibration to ball presses: `fit`.
 
 Pictures are processed as in the hardware: resampled to the grid that covers them, rounded to 8 bits, flat-fielded by
-interpolated gains, with a light gain for each colour (`quadratic`). The slope of a pixel is that of the ball where it
-touches. The calibration is fitted to all presses. Its error is measured on each press that lies completely in the
+interpolated gains, with a light gain for each colour (except for `lut`). The slope of a pixel is that of the ball where
+it touches. The calibration is fitted to all presses. Its error is measured on each press that lies completely in the
 picture, by a fit to all others.
 
-Model `quadratic`. Slopes, depths and heights of the caps are fitted together; all three are linear in the coefficients.
-Slopes of pixels within 0.9 of the contact's radius have weight 1; beyond 0.9 the gel has left the ball. Depths within
-the contact circle, less their mean, have `DEPTH_WEIGHT`, because depth is what is wanted: it takes in the slopes around
-it. The relative error of the height of a whole cap has `CAP_WEIGHT`. Depths far from the contact, less their mean, are
-0 with `FLAT_WEIGHT`: more of it makes untouched gel flatter, and contacts less right. Slopes outside have no weight: a
-pixel of the background's colour reads 0 with any coefficients, and just outside the circle the gel is not flat.
+Models `quadratic` and `cubic`. Slopes, depths and heights of the caps are fitted together; all are linear in the
+coefficients. Slopes of pixels within 0.9 of the contact's radius have weight 1; beyond 0.9 the gel has left the ball.
+Depths within the contact circle, less their mean, have `DEPTH_WEIGHT`, because depth is what is wanted: it takes in the
+slopes around it. The relative error of the height of a whole cap has `CAP_WEIGHT`. Depths far from the contact, less
+their mean, are 0 with `FLAT_WEIGHT`: more of it makes untouched gel flatter, and contacts less right. Slopes outside
+have no weight: a pixel of the background's colour reads 0 with any coefficients, and just outside the circle the gel is
+not flat. `cubic` adds slopes that are polynomials of second and third degree in the colours, the same everywhere: they
+become its table of corrections.
 
 Model `lut`. All pixels beyond twice the contact's radius together have the weight of the contacts. Without them an
 untouched gel would not read flat. Bins with few pixels are close to a polynomial of third degree in the colour.
 
-The weights were chosen by leaving out each press in turn. Neither model knows slopes steeper than those of the balls.
+The weights were chosen by leaving out each press in turn. No model knows slopes steeper than those of the balls.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations_with_replacement
@@ -32,10 +35,11 @@ import numpy as np
 
 from tactile_depth import reference
 from tactile_depth.calibration_file import LONGEST_EXPOSURE_US, PIXEL_PITCHES_MM
-from tactile_depth.configuration import DEVIATION, GRADIENT_LIMITS
+from tactile_depth.configuration import CORRECTION_BITS, DEVIATION, GRADIENT_LIMITS
 from tactile_depth.errors import Argument, InputError, InputWarning
 from tactile_depth.evaluation import Evaluation, Score, evaluation_of, scores_of
 from tactile_depth.gradient.flat_field import FLAT_CODE
+from tactile_depth.gradient.polynomial_gradient import correction_codes, correction_unit, correction_units
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
     FITTED_SHARE,
@@ -47,17 +51,17 @@ from tactile_depth.presses import (
     gather,
     to_grid,
 )
-from tactile_depth.reference import quadratic_terms
-from tactile_depth.sensor import BITS_PER_CHANNEL, MODELS, Camera, Sensor, lighting
+from tactile_depth.reference import pixel_terms
+from tactile_depth.sensor import BITS_PER_CHANNEL, COEFFICIENTS, CORRECTIONS, CUBIC, MODELS, Camera, Sensor, lighting
 
 FEWEST, FEWEST_MEASURED = 8, 2  # presses; those that lie completely in the middle square
 DEPTH_WEIGHT = 0.5  # of the squared error of a depth in grid pixels; that of a slope has weight 1
 RIDGE = 1e-3  # added to the diagonal of equations scaled to 1: colours that hardly vary get small coefficients
-FLAT_WEIGHT = 0.02  # of the squared depth in grid pixels, far from the contact
+FLAT_WEIGHT = 0.01  # of the squared depth in grid pixels, far from the contact
 CAP_WEIGHT = 1000  # of the squared relative error of the height of a cap
 DEFAULT_BITS = 5
 PRIOR_PIXELS = 1.0  # weight of the polynomial in each bin
-PRIOR_DEGREE = 3
+PRIOR_DEGREES, CORRECTION_DEGREES = (0, 1, 2, 3), (2, 3)
 STEEPEST_PRIOR = 0.75
 FRACTION_BITS = 10  # of a slope of the table: finer than the errors of the bins, and coarse enough for a small file
 
@@ -110,7 +114,7 @@ def fit(
     pitch_mm : float, optional
         Millimetres per camera pixel; by default computed from the balls' radii in pixels.
     models : str or sequence of str
-        Gradient models to fit: `lut`, `quadratic`.
+        Gradient models to fit: `lut`, `quadratic`, `cubic`.
     bits : int
         Bits of each colour that index the table of `lut`, 1 to 6.
     find_circles : bool
@@ -149,7 +153,7 @@ def check_arguments(
     """Return the models; raise InputError if an argument of `fit` is not accepted."""
     wanted = (models,) if isinstance(models, str) else tuple(models)
     if not wanted or not set(wanted) <= set(MODELS):
-        raise InputError(Argument("models", ", ".join(map(str, wanted))), accepted=(*MODELS, "one or both"))
+        raise InputError(Argument("models", ", ".join(map(str, wanted))), accepted=(*MODELS, "one or more"))
     low, high = BITS_PER_CHANNEL
     if not isinstance(bits, int) or not low <= bits <= high:
         raise InputError(Argument("bits", bits), accepted=f"a whole number from {low} to {high}")
@@ -203,7 +207,7 @@ def fit_presses(
     rows, columns = presses.background.shape[:2]
     sensor = replace(
         sensor,
-        model=evaluation.better_model,
+        model=evaluation.best_model,
         camera=Camera(rows, columns, presses.pixel_format, exposure_us=exposure_us),
         height_errors={model: evaluation.height_error(model) for model in models},
         lighting=lighting(presses.background),
@@ -213,7 +217,7 @@ def fit_presses(
 
 def _parts(view: View, pitch_mm: float, models: Sequence[str], bits: int) -> dict[str, Any]:
     """Return what a press adds to the fit of each model."""
-    return {model: _table_sums(view, bits) if model == "lut" else _equations(view, pitch_mm) for model in models}
+    return {model: _table_sums(view, bits) if model == "lut" else _equations(view, pitch_mm, model) for model in models}
 
 
 def _fit_models(
@@ -227,40 +231,65 @@ def _fit_models(
             f"{presses.name}: the steepest press has a slope of {steepest:.2g} at the edge of its contact: press balls "
             "deeper, or correct diameter_mm and pitch_mm"
         )
-    has_quadratic = "quadratic" in models
-    return Sensor(
+    cubic, corrections = _cubic(views, by_model["cubic"]) if "cubic" in models else (None, None)
+    sensor = Sensor(
         name,
         filled(by_model["lut"]) if "lut" in models else None,
         presses.pitch_mm,
-        solved(by_model["quadratic"]) if has_quadratic else None,
-        steepest if has_quadratic else 0.0,
+        solved(by_model["quadratic"]).reshape(COEFFICIENTS) if "quadratic" in models else None,
+        0.0 if models == ("lut",) else steepest,
         models[0],
         flat_field=True,
         fitted_slope=dict.fromkeys(models, steepest),
+        cubic=cubic,
+        corrections=corrections,
     )
+    return sensor if corrections is None else replace(sensor, corrections=_as_stored(corrections, sensor))
 
 
-# Quadratics.
-
-
-def fit_quadratic(views: Sequence[View], pitch_mm: float) -> np.ndarray:
-    """Fit the quadratics, float64 (2, 3, 6), to views with a pitch in millimetres per grid pixel."""
-    return solved([_equations(view, pitch_mm) for view in views])
+# Polynomials.
 
 
 def solved(equations: Sequence[Equations]) -> np.ndarray:
-    """Return the coefficients (2, 3, terms) of least squares."""
+    """Return the coefficients (2, n) of least squares, of dz/dx and dz/dy."""
     squares, products = (np.sum(parts, axis=0) for parts in zip(*equations, strict=True))
     scale = 1 / np.sqrt(squares.diagonal())  # of coefficients, whose units are powers of a millimetre
     scaled = squares * np.outer(scale, scale) + RIDGE * np.eye(len(scale))
     solution = np.linalg.solve(scaled, products * scale)
-    return (solution * scale).reshape(2, 3, -1)
+    return (solution * scale).reshape(2, -1)
 
 
-def _equations(view: View, pitch_mm: float) -> Equations:
+def _cubic(views: Sequence[View], equations: Sequence[Equations]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cubics (2, 3, 10) and the corrections (16, 16, 16, 2) by colour.
+
+    Colours that no contact has get no larger corrections than those that one has.
+    """
+    count = math.prod(CUBIC[1:])
+    solution = solved(equations)
+    entries = np.arange(CORRECTIONS[0]) / (CORRECTIONS[0] / 2) - 1  # deviations at their centres
+    colours = np.stack(np.meshgrid(entries, entries, entries, indexing="ij"), axis=-1)
+    corrections = _colour_powers(colours, CORRECTION_DEGREES) @ solution[:, count:].T
+    seen = np.concatenate(
+        [correction_codes(view.deviations[view.press.distance(view.grid) < 1]) >> 8 - CORRECTION_BITS for view in views]
+    )
+    limit = np.abs(corrections[tuple(np.unique(seen, axis=0).T)]).max(axis=0)
+    return solution[:, :count].reshape(CUBIC), corrections.clip(-limit, limit)
+
+
+def _as_stored(corrections: np.ndarray, sensor: Sensor) -> np.ndarray:
+    """Return corrections as the hardware holds them, in 8 bits of half the largest slope."""
+    limit = sensor.gradient_limit
+    return correction_units(corrections, limit) * correction_unit(limit)
+
+
+def _equations(view: View, pitch_mm: float, model: str) -> Equations:
     """Return what a press adds to the normal equations of slopes, depths and the height of its cap."""
-    terms = quadratic_terms(*view.grid, pitch_mm)
-    feature = (view.deviations[..., None] * DEVIATION.lsb * terms[..., None, :]).reshape(*view.grid, -1)
+    is_cubic = model == "cubic"
+    colours = view.deviations * DEVIATION.lsb
+    terms = pixel_terms(*view.grid, pitch_mm)[..., : CUBIC[-1] if is_cubic else COEFFICIENTS[-1]]
+    feature = (colours[..., None] * terms[..., None, :]).reshape(*view.grid, -1)
+    if is_cubic:
+        feature = np.concatenate((feature, _colour_powers(colours, CORRECTION_DEGREES)), axis=-1)
     inside = view.press.distance(view.grid) < FITTED_SHARE
     squares = np.kron(np.eye(2), feature[inside].T @ feature[inside])
     products = (feature[inside].T @ view.press.slopes(view.grid)[inside]).T.ravel()
@@ -334,7 +363,7 @@ class TableSums:
 def _table_sums(view: View, bits: int) -> TableSums:
     entries = 1 << 3 * bits
     index, truth, distance = _bins_of(view.codes, bits), view.press.slopes(view.grid), view.press.distance(view.grid)
-    powers = _colour_powers(view.codes / FLAT_CODE - 1)
+    powers = _colour_powers(view.codes / FLAT_CODE - 1, PRIOR_DEGREES)
     inside = distance < FITTED_SHARE
     regions = (inside, distance > NOTHING_TOUCHES)
     return TableSums(
@@ -361,16 +390,16 @@ def _prior(polynomial: np.ndarray, bins: int) -> np.ndarray:
     """Return the slopes of a polynomial (terms, 2) at the middle of each bin, (bins**3, 2), up to STEEPEST_PRIOR."""
     middle = (np.arange(bins) + 0.5) * (256 / bins) - 0.5
     colours = np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1) / FLAT_CODE - 1
-    prior = _colour_powers(colours).reshape(bins**3, -1) @ polynomial
+    prior = _colour_powers(colours, PRIOR_DEGREES).reshape(bins**3, -1) @ polynomial
     steepness = np.linalg.norm(prior, axis=-1, keepdims=True)
     return prior * np.minimum(1, STEEPEST_PRIOR / np.maximum(steepness, 1e-9))
 
 
-def _colour_powers(colours: np.ndarray) -> np.ndarray:
-    """Return the products of up to `PRIOR_DEGREE` colours: (..., 3) to (..., terms)."""
+def _colour_powers(colours: np.ndarray, degrees: Iterable[int]) -> np.ndarray:
+    """Return the products of so many colours: (..., 3) to (..., terms)."""
     products = [
         np.prod(colours[..., list(which)], axis=-1)
-        for degree in range(PRIOR_DEGREE + 1)
+        for degree in degrees
         for which in combinations_with_replacement(range(3), degree)
     ]
     return np.stack(products, axis=-1)

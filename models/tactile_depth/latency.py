@@ -26,7 +26,7 @@ def by_core(config: Configuration) -> list[tuple[str, str, int]]:
         ("gradient_unit", "flat_field", flat_field.LATENCY if config.flat_field else 0),
         ("gradient_unit", "light_gains", light_gains.LATENCY if config.light_gains else 0),
         ("gradient_unit", "polynomial_gradient", polynomial_gradient.LATENCY)
-        if config.gradient_model == "quadratic"
+        if config.polynomials
         else ("gradient_unit", "gradient_lookup", gradient_lookup.LATENCY),
         ("poisson_unit", "divergence", divergence.LATENCY),
         *(("poisson_unit", *step) for step in solver.latency_by_core(config.columns, config.lanes)),

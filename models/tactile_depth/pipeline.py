@@ -90,7 +90,7 @@ class Pipeline:
     boundary : str
         `neumann`, zero slope at the edge, or `dirichlet`, zero depth at the edge.
     model : str
-        Gradient model, `lut` or `quadratic`; "": the better model of the sensor.
+        Gradient model, `lut`, `quadratic` or `cubic`; "": the best model of the sensor.
     data_width, coefficient_width : int
         Bits of a stored word and of a coefficient.
     gain_width : int
@@ -101,7 +101,7 @@ class Pipeline:
         Subtract the depth that is read without contact. It is first captured from `reference`.
     light_gains : bool, optional
         A gain for each colour undoes the difference of the light between picture and reference; by default with the
-        model `quadratic`, which alone can have them.
+        models `quadratic` and `cubic`.
     arithmetic : str
         `chip`, bit-accurate as in the hardware, or `float`, double precision.
     threshold_mm : float

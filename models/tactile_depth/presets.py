@@ -41,6 +41,6 @@ PUBLISHED = Preset(
     light_gains=Configuration.light_gains,
 )
 """The pipeline of the published design: colours as they are sent, and a table of slopes."""
-SENSOR = Preset("tridiagonal", "neumann", "quadratic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
+SENSOR = Preset("tridiagonal", "neumann", "cubic", "gelsight-mini", (96, 128), zero_offset=True, light_gains=True)
 """A real sensor: colours relative to a reference and to its light, and the whole picture of a camera of 4:3."""
 PRESETS = {"published": PUBLISHED, "sensor": SENSOR}

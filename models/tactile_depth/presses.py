@@ -323,7 +323,7 @@ def to_grid(
     if find_circles or compare_circles or any(press.circle is None for press in pictures.presses):
         require_circle_finder()
     shape: dict[str, Any] = {"columns": grid[1], "rows": grid[0], "solver": "tridiagonal"}
-    config = Configuration(**shape, flat_field=True, gradient_model="quadratic", light_gains=True)
+    config = Configuration(**shape, flat_field=True, gradient_model="cubic", light_gains=True)
     sampler = grid_sampler(BACKGROUND, (camera[0], camera[1]), grid, choice)
     rest = sampler.frame(background)
     gains = captured_gains(rest[None], config)

@@ -13,7 +13,7 @@ from tactile_depth.configuration import DARKEST_LOG2, LIGHT_GAIN, Configuration
 from tactile_depth.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.transform.orders import read_only
-from tactile_depth.sensor import Sensor
+from tactile_depth.sensor import Sensor, position_terms
 
 
 def eigenvalues(size: int, neumann: bool = False) -> np.ndarray:
@@ -77,12 +77,14 @@ class Tables:
     Attributes
     ----------
     gains : float64 array (rows, cols, 3), or None
-        Model `quadratic`: 1 / reference at each pixel.
+        Models of polynomials: 1 / reference at each pixel.
     coefficients : float64 array (2, 3, rows, cols), or None
-        Model `quadratic`: slope of a pixel per deviation of each colour.
+        Models of polynomials: slope of a pixel per deviation of each colour.
     dead : bool array (rows, cols), or None
-        Model `quadratic`: pixels where the reference is too dark, which repeat the pixel before them; None without
+        Models of polynomials: pixels where the reference is too dark, which repeat the pixel before them; None without
         such pixels.
+    corrections : float64 array (16, 16, 16, 2), or None
+        Model `cubic`: added to the slopes by colour.
     table_gains : PixelGains, or None
         Model `lut` with `flat_field`: gains of every pixel.
     """
@@ -90,6 +92,7 @@ class Tables:
     gains: np.ndarray | None = None
     coefficients: np.ndarray | None = None
     dead: np.ndarray | None = None
+    corrections: np.ndarray | None = None
     table_gains: PixelGains | None = None
 
 
@@ -102,11 +105,13 @@ def slope_tables(calibration: Sensor, config: Configuration) -> Tables:
         The calibration and the configuration do not agree.
     """
     calibration.check(config)
-    if config.gradient_model == "quadratic":
+    if config.polynomials:
         assert calibration.reference is not None
-        coefficients = quadratic_coefficients(config.rows, config.columns, calibration, calibration.pixel_pitch_mm)
+        held = calibration.polynomials(config.gradient_model)
+        coefficients = polynomials_at_pixels(config.rows, config.columns, held, calibration.pixel_pitch_mm)
         dead = pixel_gains(reference_gains(calibration, config), config).dead
-        return Tables(gains(calibration.reference, config), coefficients, dead if dead.any() else None)
+        corrections = calibration.corrections if config.gradient_model == "cubic" else None
+        return Tables(gains(calibration.reference, config), coefficients, dead if dead.any() else None, corrections)
     if config.flat_field:
         return Tables(table_gains=pixel_gains(reference_gains(calibration, config), config))
     return Tables()
@@ -141,7 +146,12 @@ def slopes_of(
         deviation -= 1
         if tables.dead is not None:
             deviation = hold_dark(deviation, np.broadcast_to(tables.dead, deviation.shape[:-1]), 0)
-        return weighted(deviation, tables.coefficients)
+        slopes_by_position = weighted(deviation, tables.coefficients)
+        if tables.corrections is None:
+            return slopes_by_position
+        bins = len(tables.corrections)
+        red, green, blue = np.moveaxis(np.rint((deviation + 1) * bins / 2).astype(int).clip(0, bins - 1), -1, 0)
+        return slopes_by_position + tables.corrections[red, green, blue]
     if tables.table_gains is not None:
         frames = flat_codes(frames, tables.table_gains, config)
     return slopes(frames, calibration)
@@ -154,17 +164,16 @@ def weighted(deviation: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
     return np.moveaxis(np.stack(slopes), 0, -1)
 
 
-def quadratic_coefficients(rows: int, columns: int, calibration: Sensor, pixel_pitch_mm: float) -> np.ndarray:
-    """Return the values of the calibration's quadratics at each pixel: float64 (2, 3, rows, cols)."""
-    assert calibration.coefficients is not None
-    return np.einsum("ant,rct->anrc", calibration.coefficients, quadratic_terms(rows, columns, pixel_pitch_mm))
+def polynomials_at_pixels(rows: int, columns: int, coefficients: np.ndarray, pixel_pitch_mm: float) -> np.ndarray:
+    """Return the values of polynomials (2, 3, terms) at each pixel: float64 (2, 3, rows, cols)."""
+    terms = pixel_terms(rows, columns, pixel_pitch_mm)[..., : coefficients.shape[-1]]
+    return np.einsum("ant,rct->anrc", coefficients, terms)
 
 
-def quadratic_terms(rows: int, columns: int, pixel_pitch_mm: float) -> np.ndarray:
-    """Return 1, x, y, x^2, x y, y^2 at each pixel, in mm from the picture's centre: float64 (rows, cols, 6)."""
+def pixel_terms(rows: int, columns: int, pixel_pitch_mm: float) -> np.ndarray:
+    """Return `position_terms` at each pixel, from the picture's centre: float64 (rows, cols, 10)."""
     y, x = np.indices((rows, columns), dtype=np.float64)
-    x, y = (x - (columns - 1) / 2) * pixel_pitch_mm, (y - (rows - 1) / 2) * pixel_pitch_mm
-    return np.stack((np.ones_like(x), x, y, x * x, x * y, y * y), axis=-1)
+    return position_terms((x - (columns - 1) / 2) * pixel_pitch_mm, (y - (rows - 1) / 2) * pixel_pitch_mm)
 
 
 @cache

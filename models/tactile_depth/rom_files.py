@@ -96,10 +96,10 @@ def write_nodes(folder: Path, name: str, nodes: np.ndarray, width: int, side: in
         write_words(folder / f"{name}_{file}.hex", words, width)
 
 
-def write_quadratic(folder: Path, words: np.ndarray, width: int) -> None:
-    """Write words (2, 3, 6) as the tables of polynomial_gradient.sv read them: one file for each polynomial."""
+def write_polynomials(folder: Path, words: np.ndarray, width: int) -> None:
+    """Write words (2, 3, 10) as the tables of polynomial_gradient.sv read them: one file for each polynomial."""
     for polynomial, terms in enumerate(words.reshape(-1, words.shape[-1])):
-        write_words(folder / f"quadratic_{polynomial}.hex", pack((terms,), width), width)
+        write_words(folder / f"polynomial_{polynomial}.hex", pack((terms,), width), width)
 
 
 def write_thomas(folder: Path, config: Configuration) -> None:

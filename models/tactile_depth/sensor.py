@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A sensor and its calibration: a table or quadratics from colour to slope, and the camera that they are valid for."""
+"""A sensor and its calibration: a table or polynomials from colour to slope, and the camera that they are valid for."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ import numpy as np
 
 from tactile_depth import files
 from tactile_depth.camera_configuration import FORMATS
-from tactile_depth.configuration import GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
+from tactile_depth.configuration import CORRECTION_BITS, GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
 from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number
 
 MODELS = GRADIENT_MODELS
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 PIXEL_FORMATS = tuple(FORMATS)
 BITS_PER_CHANNEL = (1, 6)
-COEFFICIENTS = (2, 3, 6)  # slope, colour, term
+COEFFICIENTS, CUBIC = (2, 3, 6), (2, 3, 10)  # slope, colour, term
+CORRECTIONS = (*(1 << CORRECTION_BITS,) * 3, 2)  # red, green, blue; slope
 ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
 ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
 LIGHTING_BLOCKS = (4, 4)  # rows and columns of `Sensor.lighting`
@@ -82,7 +83,7 @@ class HeightError:
 
 @dataclass(frozen=True)
 class Sensor:
-    """A calibrated sensor, with one or both of two models from colour to slope.
+    """A calibrated sensor, with one or more models from colour to slope.
 
     Attributes
     ----------
@@ -95,10 +96,14 @@ class Sensor:
     coefficients : float64 array (2, 3, 6), or None
         Model `quadratic`: slope = sum over red, green, blue of C (I / ref - 1), C = a quadratic in the position:
         terms 1, x, y, x^2, x y, y^2, in mm from the picture's centre, x along the columns, y down the rows.
+    cubic : float64 array (2, 3, 10), or None
+        Model `cubic`: the same, with cubics: `position_terms`.
+    corrections : float64 array (16, 16, 16, 2), or None
+        Model `cubic`: added to the slopes, by red, green, blue; entry e is of deviations within 1/16 of e / 8 - 1.
     largest_slope : float
-        Largest slope that the formats of the quadratics hold.
+        Largest slope that the formats of the polynomials hold.
     model : str
-        The better of the two models.
+        The best of the models.
     reference : uint8 array (rows, columns, 3) or (2**k, rows, columns, 3), or None
         The sensor without contact, on the grid in use (see `frames.on_grid`).
     camera : Camera or None
@@ -125,6 +130,8 @@ class Sensor:
     fitted_slope: Mapping[str, float] = field(default_factory=dict)
     height_errors: Mapping[str, HeightError] = field(default_factory=dict)
     lighting: np.ndarray | None = None
+    cubic: np.ndarray | None = None
+    corrections: np.ndarray | None = None
 
     def scaled(self, pixel_scale: float, reference: np.ndarray | None = None) -> Sensor:
         """Return the sensor on a grid with pixels `pixel_scale` camera pixels wide, with the reference on that grid."""
@@ -132,12 +139,25 @@ class Sensor:
 
     def centred_at(self, x_mm: float, y_mm: float) -> Sensor:
         """Return the sensor for the part of its pictures around a position, in mm from the middle of a picture."""
-        if self.coefficients is None or not (x_mm or y_mm):
+        if not (x_mm or y_mm):
             return self
-        one, x, y, xx, xy, yy = np.moveaxis(self.coefficients, -1, 0)
-        one = one + x * x_mm + y * y_mm + xx * x_mm**2 + xy * x_mm * y_mm + yy * y_mm**2
-        x, y = x + 2 * xx * x_mm + xy * y_mm, y + 2 * yy * y_mm + xy * x_mm
-        return replace(self, coefficients=np.stack((one, x, y, xx, xy, yy), axis=-1))
+        quadratic, cubic = (
+            None if held is None else _centred_at(held, x_mm, y_mm) for held in (self.coefficients, self.cubic)
+        )
+        return replace(self, coefficients=quadratic, cubic=cubic)
+
+    def polynomials(self, model: str) -> np.ndarray:
+        """Return the coefficients of `quadratic` or `cubic`, float64 (2, 3, 10) by `position_terms`.
+
+        Raises
+        ------
+        InputError
+            The sensor does not have the model.
+        """
+        self.require_model(model)
+        held = self.cubic if model == "cubic" else self.coefficients
+        assert held is not None
+        return np.pad(held, ((0, 0), (0, 0), (0, CUBIC[-1] - held.shape[-1])))
 
     def zoom(self, picture_size: tuple[int, int], name: Part = "picture") -> float:
         """Return pixels of a picture (rows, columns) per pixel of the calibrated camera; 1 for the synthetic sensor.
@@ -195,9 +215,9 @@ class Sensor:
         Parameters
         ----------
         model : str
-            A gradient model of the sensor; "": its better model if it has a reference, else `lut`.
+            A gradient model of the sensor; "": its best model if it has a reference, else `lut`.
         light_gains : bool or None
-            A gain for each colour follows the light; None: if the model is `quadratic`.
+            A gain for each colour follows the light; None: unless the model is `lut`.
         choices
             Arguments of `Configuration` that do not follow from the sensor.
 
@@ -215,7 +235,7 @@ class Sensor:
             bits_per_channel=self.bits_per_channel,
             flat_field=flat_field,
             gradient_model=model,
-            light_gains=model == "quadratic" if light_gains is None else light_gains,
+            light_gains=model != "lut" if light_gains is None else light_gains,
             **choices,
         )
 
@@ -265,7 +285,7 @@ class Sensor:
     @property
     def models(self) -> tuple[str, ...]:
         """Gradient models that the sensor has."""
-        held = (self.gradient is not None, self.coefficients is not None)
+        held = (array is not None for array in (self.gradient, self.coefficients, self.cubic))
         return tuple(model for model, is_held in zip(MODELS, held, strict=True) if is_held)
 
     @property
@@ -288,13 +308,13 @@ class Sensor:
 
     @property
     def gradient_limit(self) -> float:
-        """Power of two above all slopes of both models, exact or rounded to 1/256 of the slope or finer."""
+        """Power of two above all slopes of all models, exact or rounded to 1/256 of the slope or finer."""
         table = 0.0 if self.gradient is None else float(np.abs(self.gradient).max())
         largest = max(table, self.largest_slope) * (1 + ROUNDING)
         return 2.0 ** math.ceil(math.log2(largest)) if largest > 0 else 1.0
 
     def save(self, path: str | Path) -> None:
-        """Write the calibration to an `.npz` of format version 2, without the reference; `load` reads it.
+        """Write the calibration to an `.npz` of format version 3, without the reference; `load` reads it.
 
         Raises
         ------
@@ -322,7 +342,9 @@ class Sensor:
             "model": self.model,
             "gradient": self.gradient,
             "coefficients": self.coefficients,
-            "largest_slope": self.largest_slope if self.coefficients is not None else None,
+            "cubic": self.cubic,
+            "corrections": None if self.corrections is None else self.corrections.astype(np.float32),
+            "largest_slope": self.largest_slope if self.models != ("lut",) else None,
             "lighting": self.lighting,
         }
         for model, slope in self.fitted_slope.items():
@@ -333,6 +355,20 @@ class Sensor:
             held = {key: value for key, value in arrays.items() if value is not None}
             np.savez_compressed(work / path.name, **held)
             files.replace(work, (path.name,), path.parent)
+
+
+def position_terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return 1, x, y, x^2, x y, y^2, x^3, x^2 y, x y^2, y^3: float64 (.., 10), of positions in mm (..)."""
+    return np.stack((np.ones_like(x), x, y, x * x, x * y, y * y, x**3, x * x * y, x * y * y, y**3), axis=-1)
+
+
+def _centred_at(coefficients: np.ndarray, x_mm: float, y_mm: float) -> np.ndarray:
+    """Return the coefficients of the same polynomials of the distance from a position."""
+    count = coefficients.shape[-1]
+    x, y = (places.ravel() for places in np.meshgrid(*(np.linspace(-1, 1, 4),) * 2))
+    values = coefficients @ position_terms(x + x_mm, y + y_mm)[:, :count].T
+    found = np.linalg.lstsq(position_terms(x, y)[:, :count], values.reshape(-1, x.size).T, rcond=None)[0]
+    return found.T.reshape(coefficients.shape)
 
 
 def lighting(picture: np.ndarray) -> np.ndarray:

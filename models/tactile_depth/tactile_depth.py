@@ -18,6 +18,8 @@ from tactile_depth.common import td_node_map
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import (
     COLOUR_COEFFICIENT,
+    CORRECTION_BITS,
+    CORRECTION_WIDTH,
     DARKEST_LOG2,
     DEVIATION,
     GUARD_BITS,
@@ -45,22 +47,24 @@ from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_look
 from tactile_depth.gradient.light_gains import Light, LightFilter, settled
 from tactile_depth.gradient.polynomial_gradient import (
     coefficient_map,
+    correction_entries,
     gradient_parameters,
-    polynomial_words,
     polynomial_gradient,
+    polynomial_words,
 )
 from tactile_depth.gradient.reference_capture import reference_capture_parameters
 from tactile_depth.latency import frame_latency
 from tactile_depth.poisson import spectral_solver, tridiagonal_solver
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.registers.device_description import description_parameters
-from tactile_depth.rom_files import write_gains, write_gradient, write_quadratic, write_solver, write_zero
-from tactile_depth.sensor import COEFFICIENTS, Sensor
+from tactile_depth.rom_files import write_gains, write_gradient, write_polynomials, write_solver, write_zero
+from tactile_depth.sensor import CUBIC, Sensor
 
 CONSTANTS = {
     "GuardBits": (GUARD_BITS, "bits of the arithmetic below a stored word"),
-    "PolynomialWords": (math.prod(COEFFICIENTS), "of the quadratic model: slopes, colours, terms"),
+    "PolynomialWords": (math.prod(CUBIC), "of the polynomial models: slopes, colours, terms"),
     "PolynomialWidth": (POLYNOMIAL.width, "bits of such a word"),
+    "CorrectionWidth": (CORRECTION_WIDTH, "bits of a correction by colour"),
     "ColourCoeffWidth": (COLOUR_COEFFICIENT.width, "its upper bits, which are multiplied"),
     "DeviationWidth": (DEVIATION.width, "bits of a colour relative to the reference"),
     "DeviationFraction": (DEVIATION.fraction, "fraction bits of it"),
@@ -85,11 +89,14 @@ class Tables:
     ----------
     gains : PixelGains, or None without `flat_field`
     slopes : int64 array
-        Model `lut`: slope codes by bin (bins, 2). Model `quadratic`: coefficients (2, 3, rows, columns).
+        Model `lut`: slope codes by bin (bins, 2). Models of polynomials: coefficients (2, 3, rows, columns).
+    corrections : int64 array (bins, 2), or None
+        Model `cubic`: corrections by colour.
     """
 
     gains: PixelGains | None
     slopes: np.ndarray
+    corrections: np.ndarray | None = None
 
 
 def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray | None = None) -> Tables:
@@ -105,11 +112,17 @@ def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray |
         gains = reference_gains(calibration, config)
     if gains is not None:
         require_nodes(Argument("gains"), gains, (*config.reference_nodes, 3))
-    if config.gradient_model == "quadratic":
+    if config.polynomials:
         slopes = coefficient_map(polynomial_words(calibration, config, calibration.pixel_pitch_mm), config)
     else:
         slopes = gradient_codes(calibration, config)
-    return Tables(None if gains is None else pixel_gains(gains, config), slopes)
+    corrections = _corrections(calibration, config) if config.gradient_model == "cubic" else None
+    return Tables(None if gains is None else pixel_gains(gains, config), slopes, corrections)
+
+
+def _corrections(calibration: Sensor, config: Configuration) -> np.ndarray:
+    assert calibration.corrections is not None
+    return correction_entries(calibration.corrections, config)
 
 
 def require_nodes(name: Argument, nodes: np.ndarray, shape: tuple[int, ...]) -> None:
@@ -177,13 +190,13 @@ def slope_codes(
     """Return the slope codes of frames, int64 (..., rows, columns, 2), by the gradient model of the configuration."""
     if tables is None:
         tables = slope_tables(calibration, config, gains)
-    if config.gradient_model == "quadratic":
+    if config.polynomials:
         assert tables.gains is not None
         if config.light_gains:
             deviation = _lit_deviations(frames, tables.gains, config, dark_level, monitor, light)
         else:
             deviation = deviations(frames, tables.gains, config, dark_level, monitor)
-        return polynomial_gradient(deviation, tables.slopes, config, monitor)
+        return polynomial_gradient(deviation, tables.slopes, config, monitor, tables.corrections)
     if tables.gains is not None:
         frames = flat_codes(frames, tables.gains, config, dark_level, monitor)
     return gradient_lookup(frames, tables.slopes, config.bits_per_channel)
@@ -238,7 +251,7 @@ def top_parameters(
 @cache
 def default_parameters() -> MappingProxyType[str, int]:
     """Return the fields of the default configuration, in the order of the vector."""
-    flat = [Configuration(flat_field=True, gradient_model=model) for model in ("quadratic", "lut")]
+    flat = [Configuration(flat_field=True, gradient_model=model) for model in ("cubic", "lut")]
     options = [*flat, Configuration(zero_offset=True), Configuration(solver="tridiagonal")]
     merged: dict[str, int] = {}
     for config in (*options, Configuration()):
@@ -274,7 +287,7 @@ def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[
         "Lanes": config.lanes,
         "Tridiagonal": int(tridiagonal),
         **{name: value for name, value in parameters.items() if name not in DERIVED},
-        "BitsPerChannel": config.bits_per_channel,
+        "BitsPerChannel": CORRECTION_BITS if config.gradient_model == "cubic" else config.bits_per_channel,
         "GradientWidth": config.gradient.width,
         "GradientFraction": config.gradient.fraction,
         "FrameLatency": frame_latency(config),
@@ -287,15 +300,22 @@ def _own_parameters(config: Configuration, pixel_pitch_mm: float = 0.0) -> dict[
 
 def _colour_parameters(config: Configuration) -> dict[str, int]:
     """Return the parameters of the cores from pixels to slopes."""
-    quadratic = config.gradient_model == "quadratic"
+    polynomials = config.polynomials
     if not config.flat_field:
-        return {"FlatField": 0, "Quadratic": 0, "LightGains": 0}
-    output = RATIO if config.light_gains else DEVIATION if quadratic else CODE
+        return {"FlatField": 0, "Polynomial": 0, "Corrections": 0, "LightGains": 0}
+    output = RATIO if config.light_gains else DEVIATION if polynomials else CODE
     flat, capture = flat_field_parameters(config, output), reference_capture_parameters(config)
-    colour = {"FlatField": 1, "Quadratic": int(quadratic), "LightGains": int(config.light_gains)}
+    colour = {"FlatField": 1, "Polynomial": int(polynomials), "LightGains": int(config.light_gains)}
+    colour["Corrections"] = int(config.gradient_model == "cubic")
     colour["BlockLog2"] = flat["BlockLog2"]
     colour |= {"ColourDrop": flat["Drop"], "GainWidth": flat["GainWidth"], "CaptureLog2": capture["MaxLog2"]}
-    return colour | ({"SlopeDrop": gradient_parameters(config)["Drop"]} if quadratic else {})
+    parameters = gradient_parameters(config)
+    colour |= (
+        {"SlopeDrop": parameters["Drop"], **{name: parameters[name] for name in ("FineBits", "CorrectionUnit")}}
+        if polynomials
+        else {}
+    )
+    return colour
 
 
 def write_roms(
@@ -323,8 +343,10 @@ def write_roms(
         write_zero(folder, no_zero(config) if zero is None else zero, config.depth.width, side)
     if config.flat_field:
         write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain_width)
-    if config.gradient_model == "quadratic":
+    if config.polynomials:
         words = polynomial_words(calibration, config, calibration.pixel_pitch_mm)
-        write_quadratic(folder, words, POLYNOMIAL.width)
+        write_polynomials(folder, words, POLYNOMIAL.width)
+        if config.gradient_model == "cubic":
+            write_gradient(folder / "gradient.hex", _corrections(calibration, config), CORRECTION_WIDTH)
     else:
         write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)

@@ -22,9 +22,10 @@ from tb.table_bus import READ_CLOCKS, TableBus, signed
 COLOURS = ["red", "green", "blue"]
 DEVIATIONS = [*COLOURS, "position"]
 SLOPES = ["gx", "gy", "position"]
-WORDS = (2, 3, 6)  # axes, colours, terms
-COUNT = 36
-SMALLEST = [(2, 4), (3, 4), (2, 7)]  # rows and columns
+WORDS = (2, 3, 10)  # axes, colours, terms
+COUNT, TERMS = 60, 10
+TO_CORRECTION = 4  # cycles with en from a pixel to its correction
+SMALLEST = [(2, 8), (3, 8), (2, 9)]  # rows and columns
 
 
 def place(row: Any, column: Any, rows: int, columns: int) -> Any:
@@ -41,6 +42,9 @@ class Gradient:
         self.dut, self.gap = dut, gap
         names = ("Width", "DeviationWidth", "CoeffWidth", "WordWidth", "Drop")
         self.width, self.deviation_width, self.coefficient_width, self.word_width, self.drop = parameters(dut, *names)
+        self.fine_bits, self.correction_width, self.correction_unit = parameters(
+            dut, "FineBits", "CorrectionWidth", "CorrectionUnit"
+        )
         self.bench = Bench(dut, pause)
         self.random = self.bench.random
         self.driver = StreamDriver(dut, "in", "valid", DEVIATIONS)
@@ -52,6 +56,7 @@ class Gradient:
         self.bus = TableBus(dut, TABLES["coefficients"], self.word_width, signed=True)
         dut.table_bank.value = 0
         dut.in_position.value = 0
+        dut.correction_gx.value = dut.correction_gy.value = 0
 
     async def start(self) -> None:
         """Start and reset. On Verilator the first test rewrites both banks.
@@ -61,7 +66,7 @@ class Gradient:
         """
         at_power_up = Gradient.banks is None
         if at_power_up:
-            lines = [line for p in range(COUNT // 6) for line in Path(f"quadratic_{p}.hex").read_text().split()]
+            lines = [line for p in range(COUNT // TERMS) for line in Path(f"polynomial_{p}.hex").read_text().split()]
             raw = np.array([int(line, 16) for line in lines])
             Gradient.banks = np.stack(2 * [raw - (raw >> (self.word_width - 1) << self.word_width)])
         await self.bench.start()
@@ -71,7 +76,7 @@ class Gradient:
             for words in self.banks[::-1].copy():
                 await self.rewrite(words)
                 await self.commit()
-                await self.send(2, 4)
+                await self.send(2, 8)
             await self.compare()
         self.used.clear()
         self.bench.saturations = 0
@@ -79,6 +84,7 @@ class Gradient:
     async def follow(self) -> None:
         dut = self.dut
         named = 0  # bank of the next frame
+        waiting: list[tuple[int, list[Any]]] = []  # cycles with en since each pixel was taken, and the pixel
         begun: list[int] = []  # cycles with en since each first pixel was taken
         while True:
             await RisingEdge(dut.clk)
@@ -90,9 +96,15 @@ class Gradient:
                 self.banks[1 - wanted][access["index"]] = signed(access["low"], self.word_width)
             if dut.rst.value:
                 named, begun, Gradient.in_use = wanted, [], [wanted] * len(COLOURS)
+                waiting.clear()
                 self.frames.clear()
             elif dut.en.value:
                 begun = [age + 1 for age in begun if age < len(COLOURS)]
+                waiting = [(age + 1, pixel) for age, pixel in waiting]
+                if waiting and waiting[0][0] == TO_CORRECTION:
+                    corrections = (getattr(dut, f"correction_{axis}").value.to_signed() for axis in ("gx", "gy"))
+                    waiting.pop(0)[1].append(list(corrections))
+                self.correct()
                 for colour in (age - 1 for age in begun):
                     self.in_use[colour] = named
             if not dut.rst.value and dut.en.value and dut.in_valid.value:
@@ -108,10 +120,18 @@ class Gradient:
                 else:
                     column += 1
                 colours = [getattr(dut, f"in_{colour}").value.to_signed() for colour in COLOURS]
-                self.frames[-1][1].append((row, column, colours))
+                self.frames[-1][1].append([row, column, colours])
+                waiting.append((0, self.frames[-1][1][-1]))
             if access and access["read"]:  # in the cycle of a change-over: of the previous bank
                 index = access["index"]
-                self.to_read = int(self.banks[1 - self.in_use[index // 6 % len(COLOURS)]][index])
+                self.to_read = int(self.banks[1 - self.in_use[index // TERMS % len(COLOURS)]][index])
+
+    def correct(self) -> None:
+        """Drive other corrections: none, at the limits, or any."""
+        low, high = -1 << self.correction_width - 1, (1 << self.correction_width - 1) - 1
+        for axis in ("gx", "gy"):
+            value = self.random.choice((0, 0, low, high, self.random.randint(low, high)))
+            getattr(self.dut, f"correction_{axis}").value = value
 
     # Software.
 
@@ -156,7 +176,7 @@ class Gradient:
         words = np.array([self.random.randrange(-1 << width - 1, 1 << width - 1) for _ in range(COUNT)])
         words = words.reshape(WORDS)
         if kind == 3:
-            words[:, :, [2, 4, 5]] = 0
+            words[:, :, [2, 3, 5, 6, 7, 8, 9]] = 0
         if kind == 4:
             words[:, :, 1:] = 0
         return words.reshape(COUNT)
@@ -191,12 +211,14 @@ class Gradient:
             del self.frames[:-1]
         slopes, clipped = [], Monitor()
         for words, pixels in self.frames:
-            rows, columns, colours = (np.array(part) for part in zip(*pixels, strict=True))
-            factors = coefficients(
-                words.reshape(WORDS), rows.max() + 1, columns.max() + 1, self.word_width, self.coefficient_width
+            rows, columns, colours, corrections = (np.array(part) for part in zip(*pixels, strict=True))
+            grid, widths = (
+                (rows.max() + 1, columns.max() + 1),
+                (self.word_width, self.fine_bits, self.coefficient_width),
             )
-            factors = factors[:, :, rows, columns][:, :, None]
-            slopes.append(slope_codes(colours[None], factors, self.drop, self.width, clipped)[0])
+            factors = coefficients(words.reshape(WORDS), *grid, *widths)[:, :, rows, columns][:, :, None]
+            added = corrections[None] * self.correction_unit
+            slopes.append(slope_codes(colours[None], factors, self.drop, self.width, clipped, added)[0])
         marks = [word[-1] for word in self.source.words]
         expected = np.column_stack((np.concatenate(slopes), marks))
         np.testing.assert_array_equal(np.array(self.sink.words), expected)
@@ -225,16 +247,16 @@ TRAFFIC = cocotb.parametrize((("gap", "pause"), [(0.0, 0.0), (0.3, 0.3)]))
 @TRAFFIC
 async def both_banks(device: Gradient) -> None:
     """Send frames with the words of power-up, then with new words, each read back before it is used."""
-    await device.send(5, 8)
+    await device.send(5, 9)
     await device.compare()
     for _ in range(2):
         words = device.any_words()
         await device.rewrite(words)
         for index in device.random.sample(range(COUNT), COUNT):
             await device.read(index)
-        await device.send(3, 5)  # pixels that use the old words
+        await device.send(3, 8)  # pixels that use the old words
         await device.commit()
-        await device.send(5, 8)
+        await device.send(5, 9)
         await device.compare()
         np.testing.assert_array_equal(device.banks[device.in_use[-1]], words)
     assert device.used == {0, 1}
@@ -247,12 +269,12 @@ async def limits(device: Gradient) -> None:
     clipped = 0
     for _ in range(25):
         await device.use(device.any_words())
-        await device.send(3, 5)
+        await device.send(3, 8)
         clipped += await device.compare()
     for word in (-1 << device.word_width - 1, (1 << device.word_width - 1) - 1):
-        await device.use(np.where(np.arange(COUNT) % 6, 0, word))
+        await device.use(np.where(np.arange(COUNT) % TERMS, 0, word))
         low, high = -1 << device.deviation_width - 1, (1 << device.deviation_width - 1) - 1
-        await device.send(2, 4, deviations=[[low] * 3, [high] * 3] * 4)
+        await device.send(2, 8, deviations=[[low] * 3, [high] * 3] * 8)
         clipped += await device.compare()
     largest = (3 << device.deviation_width + device.coefficient_width - 2) * 2.0**-device.drop
     assert clipped or largest < 2 ** (device.width - 1), "the test is void: nothing was clipped"
@@ -294,8 +316,8 @@ async def rewritten_while_frames_stream(device: Gradient) -> None:
 async def reset_keeps_the_words_and_takes_the_bank_over(device: Gradient) -> None:
     """Reset among pixels that all clip: none is counted after it, the words stay, and the due bank is taken."""
     lowest = [[-1 << device.deviation_width - 1] * 3]
-    words = np.where(np.arange(COUNT) % 6, 0, -1 << device.word_width - 1)
-    for pixels, moving in itertools.product((*range(1, 14), 15, 20), (False, True)):
+    words = np.where(np.arange(COUNT) % TERMS, 0, -1 << device.word_width - 1)
+    for pixels, moving in itertools.product((*range(1, 15), 16, 20), (False, True)):
         await device.use(words)
         await device.send(3, 8, pixels, lowest * pixels)
         if device.random.random() < 0.5:
@@ -312,7 +334,7 @@ async def reset_keeps_the_words_and_takes_the_bank_over(device: Gradient) -> Non
             assert not device.sink.starts, f"pixels left after a reset at {pixels}"
             assert device.bench.saturations == 0, f"clipped words were counted after a reset at {pixels}"
         await device.use(device.any_words())
-        await device.send(3, 4)
+        await device.send(3, 8)
         await device.compare()
     await device.read(3)
 
@@ -321,10 +343,10 @@ async def reset_keeps_the_words_and_takes_the_bank_over(device: Gradient) -> Non
 @TRAFFIC
 async def a_cut_frame_does_no_harm_to_the_next(device: Gradient) -> None:
     """Cut a frame short, which only an upset of a mark can do: the next frame is right."""
-    for pixels in (*range(1, 14), 20):
+    for pixels in (*range(1, 15), 20):
         await device.use(device.any_words())
         await device.send(3, 8, pixels)
         await device.use(device.any_words())
         await device.send(3, 8, pixels)
-        await device.send(3, 4)
-        await device.compare(last=12)
+        await device.send(3, 8)
+        await device.compare(last=24)

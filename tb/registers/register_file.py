@@ -29,7 +29,7 @@ INPUTS = (
 )
 PARAMETERS = (
     *("Tridiagonal", "Neumann", "Rows", "Columns", "DataWidth", "GradientWidth", "GradientFraction", "BitsPerChannel"),
-    *("FlatField", "Quadratic", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
+    *("FlatField", "Polynomial", "LightGains", "ZeroOffset", "Lanes", "BlockLog2", "GainWidth"),
     *("DepthMantissa", "DepthExponent", "SlopeMantissa", "SlopeExponent", "PitchNm"),
 )
 

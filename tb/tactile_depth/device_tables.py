@@ -18,10 +18,10 @@ from tactile_depth.configuration import Configuration
 from tactile_depth.depth.zero_offset import no_zero
 from tactile_depth.gradient.flat_field import pixel_gains, unit_gains
 from tactile_depth.gradient.gradient_lookup import gradient_codes
-from tactile_depth.gradient.polynomial_gradient import coefficient_map, polynomial_words
+from tactile_depth.gradient.polynomial_gradient import coefficient_map, correction_entries, polynomial_words
 from tactile_depth.registers.axil_port import Response
 from tactile_depth.registers.register_map import REGISTERS, TABLES
-from tactile_depth.sensor import COEFFICIENTS
+from tactile_depth.sensor import CUBIC
 from tactile_depth.tactile_depth import Tables
 from tb.axil import RegisterClient
 
@@ -63,6 +63,9 @@ class Content:
             entries["gradient"] = gradient_codes(sensor, config)
         else:
             entries["coefficients"] = one_word(polynomial_words(sensor, config, sensor.pixel_pitch_mm))
+        if config.gradient_model == "cubic":
+            assert sensor.corrections is not None
+            entries["gradient"] = correction_entries(sensor.corrections, config)
         if config.flat_field:
             entries["reference"] = reference_entries(unit_gains(config))
         if config.zero_offset:
@@ -81,8 +84,8 @@ class Content:
             nodes = self.entries["reference"][:, 0].reshape(*self.config.reference_nodes, 4)
             gains = pixel_gains(nodes[..., :3], self.config)
         if "coefficients" in self.entries:
-            words = self.entries["coefficients"][:, 0].reshape(COEFFICIENTS)
-            return Tables(gains, coefficient_map(words, self.config))
+            words = self.entries["coefficients"][:, 0].reshape(CUBIC)
+            return Tables(gains, coefficient_map(words, self.config), self.entries.get("gradient"))
         return Tables(gains, self.entries["gradient"])
 
     @cached_property

@@ -44,7 +44,7 @@ def test_the_command_writes_a_calibration_a_picture_and_a_table(
     assert (sensor.camera.rows, sensor.camera.columns, sensor.camera.exposure_us) == (*CAMERA, 8000)  # type: ignore[union-attr]
     assert read_picture(out.with_suffix(".png")).shape[1] > 1000
     assert str(fit.evaluation) in report.out
-    for words in ("24 presses fitted", "circles found in 24 pictures", "the better model is quadratic"):
+    for words in ("24 presses fitted", "circles found in 24 pictures", "the best model is cubic"):
         assert words in report.out
     assert sorted(path.name for path in out.parent.iterdir()) == ["mine.npz", "mine.png"]
 

@@ -46,7 +46,7 @@ REFUSED = {
     "calibrate BITS=x": "BITS=x",
     "calibrate CIRCLES=drawn": "CIRCLES=drawn is unknown: accepted are table, found",
     "calibrate EXPOSURE_US=0": "EXPOSURE_US=0: accepted is a number",
-    "calibrate GRADIENT=cubic": "GRADIENT=cubic is unknown: accepted are both, lut, quadratic",
+    "calibrate GRADIENT=both": "GRADIENT=both is unknown: accepted are all, lut, quadratic, cubic",
     "calibrate HELD_OUT=all": "HELD_OUT=all: unknown variable",
     "calibrate OUT=x.txt": "OUT=x.txt: give the name of an .npz file",
     "calibrate PITCH=0": "PITCH=0",

@@ -83,7 +83,7 @@ def test_a_drawn_scene_is_of_the_drawn_sensor() -> None:
     request = parsed("FRAMES=ball")
     assert (request.calibration, request.reference, request.zero) == ("synthetic", "flat", "flat")
     _, _, config = synthesis.design(request)
-    assert (config.rows, config.columns, config.gradient_model, config.zero_offset) == (96, 128, "quadratic", True)
+    assert (config.rows, config.columns, config.gradient_model, config.zero_offset) == (96, 128, "cubic", True)
 
 
 def test_pictures_need_a_reference(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def test_the_module_of_a_reference_is_that_of_the_python_package(tmp_path: Path)
     command = [sys.executable, "-m", "commands", "wrap", *words]
     result = subprocess.run(command, cwd=repository.ROOT, capture_output=True, text=True, check=True)
     assert result.stdout.startswith(
-        "preset sensor: tridiagonal, neumann, 96 x 128, quadratic, flat field, zero offset, light gains\n"
+        "preset sensor: tridiagonal, neumann, 96 x 128, cubic, flat field, zero offset, light gains\n"
     )
     with pytest.warns(InputWarning):
         pipeline = Pipeline(load("gelsight-mini"), reference=picture)

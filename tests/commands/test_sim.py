@@ -285,7 +285,7 @@ def test_slopes_outside_the_calibrated_range_are_reported_and_warned_of(
 ) -> None:
     words = _press(tmp_path)
     assert run(tmp_path, *words)["slopes_outside_calibration"] == [0]
-    replace(sample("ball").sensor, fitted_slope={"quadratic": 0.4}).save(tmp_path / "sensor.npz")
+    replace(sample("ball").sensor, fitted_slope={"cubic": 0.4}).save(tmp_path / "sensor.npz")
     report = run(tmp_path, *words)
     assert report["slopes_outside_calibration"][0] > 10
     assert any("steeper than any in the fit" in line for line in report["warnings"])

@@ -9,64 +9,74 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from formal.entries import ROUNDING, Proof
-from formal.tables import quadratic_roms
+from formal.tables import polynomial_roms
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
 from tactile_depth.gradient.polynomial_gradient import coefficients, gradient_parameters, slope_codes
-from tactile_depth.rom_files import write_quadratic
+from tactile_depth.rom_files import write_polynomials
 from tb.structures import ICARUS, VERILATOR, Structure
 from tests.rtl import test_rtl as test_rtl
 
-WORDS = (2, 3, 6)
+WORDS = (2, 3, 10)
 
 
 def any_words(width: int, seed: int = 1) -> Any:
     return np.random.default_rng(seed).integers(-(1 << width - 1), 1 << width - 1, WORDS)
 
 
-def built(width: int, deviation: Any, coefficient: Any, word: Any, drop: int, **runs: Any) -> Structure:
+NAMES = ["Width", "DeviationWidth", "CoeffWidth", "WordWidth", "FineBits", "CorrectionWidth", "CorrectionUnit", "Drop"]
+
+
+def built(*values: int, **runs: Any) -> Structure:
+    word = values[NAMES.index("WordWidth")]
     return Structure(
-        {"Width": width, "DeviationWidth": deviation, "CoeffWidth": coefficient, "WordWidth": word, "Drop": drop},
-        roms=lambda folder: write_quadratic(folder, any_words(word), word),
+        dict(zip(NAMES, values, strict=True)),
+        roms=lambda folder: write_polynomials(folder, any_words(word), word),
         **runs,
     )
 
 
 STRUCTURES = (
     built(*gradient_parameters(Configuration(columns=16)).values(), on=VERILATOR),
-    built(3, 3, 3, 5, 3, on=ICARUS, late=VERILATOR, mutants=True),
+    built(3, 3, 3, 5, 1, 2, 5, 3, on=ICARUS, late=VERILATOR, mutants=True),
     built(*gradient_parameters(Configuration(columns=16, data_width=12, coefficient_width=10)).values()),
-    built(14, 4, 5, 9, 0),
+    built(14, 4, 5, 9, 2, 3, 20, 0),
     built(*gradient_parameters(Configuration(columns=16, data_width=32, gradient_limit=2.0**-6)).values()),
-    built(6, 4, 4, 4, 1),
-    built(10, 4, 5, 9, -2),
-    built(12, 4, 5, 9, -2),
+    built(6, 4, 4, 4, 0, 4, 9, 1),
+    built(10, 4, 5, 9, 3, 4, 3, -2),
+    built(12, 4, 5, 9, 1, 4, 31, -2),
 )
+REFUSED = {
+    "CoeffWidth=40": "CoeffWidth_must_be_at_most_WordWidth_and_FineBits",
+    "CorrectionUnit=1073741824": "a_correction_must_fit_the_sum",
+}
 PROOFS = tuple(
     Proof(
-        "the coefficient of the pixel's own place, words written or from power-up; latency 11",
+        "the coefficient of the pixel's own place, words written or from power-up; latency 12",
         f"additions are exact at any width; the shortest rows; each colour, both axes; {ROUNDING}",
         {"Polynomial": polynomial},
         depth=30,
-        roms=quadratic_roms,
+        roms=polynomial_roms,
     )
     for polynomial in (0, 4, 2)
 )
 
 
-@given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 7), st.sampled_from([6, 32]))
-def test_polynomials_run_along_the_raster_by_additions(seed: int, rows: int, columns: int, width: int) -> None:
+@given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.integers(4, 12), st.sampled_from([(6, 2), (32, 4)]))
+def test_polynomials_run_along_the_raster_by_additions(seed: int, rows: int, columns: int, widths: Any) -> None:
+    width, fine = widths
     words = any_words(width, seed)
-    kept = coefficients(words, rows, columns, width, 4)
-    a, b, d, e, f, h = (words[..., term] for term in range(6))
+    kept = coefficients(words, rows, columns, width, fine, 4)
+    a, b, d, t, e, f, h, u, g, w = (words[..., n] if n in (3, 7, 8, 9) else words[..., n] << fine for n in range(10))
+    total = width + fine
     for row in range(rows):
-        value, step = a, b
+        value, step, second = a, b, d
         for column in range(columns):
-            low = value % (1 << width)
-            expected = (low - (low >> (width - 1) << width)) >> (width - 4)
+            low = value % (1 << total)
+            expected = (low - (low >> (total - 1) << total)) >> (total - 4)
             np.testing.assert_array_equal(kept[..., row, column], expected)
-            value, step = value + step, step + d
-        a, e, b = a + e, e + f, b + h
+            value, step, second = value + step, step + second, second + t
+        a, e, f, b, h, d = a + e, e + f, f + u, b + h, h + g, d + w
 
 
 def test_a_sum_of_products_is_rounded_once_to_even_and_saturated() -> None:
@@ -80,7 +90,7 @@ def test_a_sum_of_products_is_rounded_once_to_even_and_saturated() -> None:
 
 
 def test_files_hold_every_word(tmp_path: Path) -> None:
-    words = np.arange(36).reshape(WORDS) - 18
-    write_quadratic(tmp_path, words, 8)
-    parts = [int(line, 16) for p in range(6) for line in (tmp_path / f"quadratic_{p}.hex").read_text().split()]
-    assert parts == [word % 256 for word in range(-18, 18)]
+    words = np.arange(60).reshape(WORDS) - 30
+    write_polynomials(tmp_path, words, 8)
+    parts = [int(line, 16) for p in range(6) for line in (tmp_path / f"polynomial_{p}.hex").read_text().split()]
+    assert parts == [word % 256 for word in range(-30, 30)]

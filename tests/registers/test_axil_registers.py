@@ -25,7 +25,7 @@ EXTREMES = default_parameters() | {
     "GradientFraction": 31,
     "BitsPerChannel": 1,
     "FlatField": 1,
-    "Quadratic": 0,
+    "Polynomial": 0,
     "LightGains": 1,
     "ZeroOffset": 1,
     "Lanes": 32,
@@ -69,11 +69,11 @@ REFUSED = {
 PROOFS = tuple(
     Proof(
         "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
-        f"{FULL_WIDTH}; either gradient model, with a camera or without, all options",
-        {"Quadratic": quadratic, "Camera": quadratic},
+        f"{FULL_WIDTH}; each gradient model, with a camera or without, all options",
+        {"Polynomial": polynomial, "Corrections": corrections, "Camera": polynomial},
         depth=16,
     )
-    for quadratic in (0, 1)
+    for polynomial, corrections in ((0, 0), (1, 0), (1, 1))
 )
 
 

@@ -26,7 +26,7 @@ CONFIGURATIONS = {
     "default": Configuration(),
     "odd-range": Configuration(columns=64, rows=48, solver="tridiagonal", neumann=True, depth_range_px=17.3, lanes=8),
     "wide": Configuration(
-        columns=32, data_width=32, flat_field=True, gradient_model="quadratic", zero_offset=True, gain_width=17
+        columns=32, data_width=32, flat_field=True, gradient_model="cubic", zero_offset=True, gain_width=17
     ),
 }
 NAMES = ("DEVICE", "DEPTH_UNIT", "SLOPE_UNIT", "PITCH")
@@ -71,7 +71,10 @@ def test_the_device_says_what_it_is_built_of(config: Configuration) -> None:
     fields = register.unpack(words(config, 0.0)["DEVICE"])
     assert fields["solver"] == register.field("solver").values[config.solver]
     assert fields["boundary"] == register.field("boundary").values["neumann" if config.neumann else "dirichlet"]
-    assert fields["gradient_model"] == register.field("gradient_model").values[config.gradient_model]
+    assert (
+        fields["gradient_model"]
+        == register.field("gradient_model").values["polynomials" if config.polynomials else "lut"]
+    )
     assert (fields["flat_field"], fields["zero_offset"]) == (config.flat_field, config.zero_offset)
     assert fields["lanes"] == config.lanes
     assert fields["gain_width"] == (config.gain_width if config.flat_field else 0)

@@ -8,7 +8,7 @@ visible error. A pixel takes one multiplication for each colour and no division.
     pixel       8 bits unsigned
     gain        unsigned, 2**(W + 3) / reference in a word of W bits, by default 24; at the nodes, and at the pixels
     code        8 bits unsigned, 128 I / ref, for the table: 128 equals the reference, saturated at 255
-    deviation   17 bits signed, 15 fraction bits, I / ref - 1, for the quadratic model, saturated at 2
+    deviation   17 bits signed, 15 fraction bits, I / ref - 1, for the models of polynomials, saturated at 2
     ratio       17 bits unsigned, 15 fraction bits, I / ref, for the light gains, saturated at 4
 
 A pixel is dark where all its colours are below `dark_level` (0: no pixel is), or where the reference of any colour is

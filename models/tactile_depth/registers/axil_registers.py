@@ -18,7 +18,7 @@ from tactile_depth.registers.register_map import MAP, REGISTERS, TABLES
 from tactile_depth.registers.setting_registers import SettingRegisters
 from tactile_depth.registers.table_access import PORTS, SIZE, TableAccess
 from tactile_depth.registers.table_banks import CAPTURES, COMMIT, TableBanks
-from tactile_depth.sensor import COEFFICIENTS
+from tactile_depth.sensor import CUBIC
 
 BY_OFFSET = {register.offset: register for register in MAP}
 SELECT = REGISTERS["TABLE_SELECT"].field("select")
@@ -46,8 +46,8 @@ class Build:
             (p["Rows"] >> p["BlockLog2"]) * (p["Columns"] >> p["BlockLog2"]) if p["FlatField"] or p["ZeroOffset"] else 0
         )
         sizes = {
-            "gradient": 0 if p["Quadratic"] else 1 << 3 * p["BitsPerChannel"],
-            "coefficients": math.prod(COEFFICIENTS) if p["Quadratic"] else 0,
+            "gradient": 0 if p["Polynomial"] and not p["Corrections"] else 1 << 3 * p["BitsPerChannel"],
+            "coefficients": math.prod(CUBIC) if p["Polynomial"] else 0,
             "reference": 4 * nodes if p["FlatField"] else 0,
             "zero": nodes if p["ZeroOffset"] else 0,
         }
@@ -69,12 +69,12 @@ class Build:
                 data_width=p["DataWidth"],
                 gradient_width=p["GradientWidth"],
                 gradient_fraction=p["GradientFraction"],
-                bits_per_channel=0 if p["Quadratic"] else p["BitsPerChannel"],
+                bits_per_channel=0 if p["Polynomial"] and not p["Corrections"] else p["BitsPerChannel"],
             ),
             "DEVICE": REGISTERS["DEVICE"].pack(
                 solver=p["Tridiagonal"],
                 boundary=p["Neumann"],
-                gradient_model=p["Quadratic"],
+                gradient_model=p["Polynomial"],
                 flat_field=p["FlatField"],
                 zero_offset=p["ZeroOffset"],
                 light_gains=p["LightGains"],
