@@ -115,7 +115,7 @@ def test_a_capture_zeroes_the_depth_of_an_untouched_gel() -> None:
     """Capture the zero offset under Neumann: drifting lights tilt and bend it, and the capture removes both."""
     calibration = polynomials(3)
     config = Configuration(columns=64, neumann=True, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
-    words = polynomial_words(calibration, config, 15 / 64)
+    words = polynomial_words(replace(calibration, pixel_pitch_mm=15 / 64), config)
     before = lit(config, 4, 16)
     y, x = np.indices((64, 64)) / 64
     drifted = np.clip(np.rint(before * (0.9 + 0.1 * np.stack([x, y, x * y], axis=-1))), 0, 255).astype(np.uint8)
@@ -216,7 +216,7 @@ def test_words_give_the_calibrations_polynomials(choices: Any, model: Any) -> No
     config = Configuration(**choices, flat_field=True, gradient_model=model)
     calibration = polynomials(4, model=model)
     pitch = 15 / config.columns
-    words = polynomial_words(calibration, config, pitch)
+    words = polynomial_words(replace(calibration, pixel_pitch_mm=pitch), config)
     unit = config.gradient_lsb * 2.0**config.gradient.fraction
     result = coefficient_map(words, config) * COLOUR_COEFFICIENT.lsb * unit
     want = reference.polynomials_at_pixels(config.rows, config.columns, calibration.polynomials(model), pitch)
@@ -237,7 +237,9 @@ def test_slopes_are_near_double_precision(seed: int, choices: Any) -> None:
     pitch = 15 / config.columns
     codes = np.random.default_rng(seed).integers(-4096, 4096, (2, config.rows, config.columns, 3))
     monitor = Monitor()
-    result = polynomial_gradient(codes, polynomial_words(calibration, config, pitch), config, monitor)
+    result = polynomial_gradient(
+        codes, polynomial_words(replace(calibration, pixel_pitch_mm=pitch), config), config, monitor
+    )
     coefficients = reference.polynomials_at_pixels(config.rows, config.columns, calibration.cubic, pitch)  # type: ignore[arg-type]
     want = reference.weighted(codes * DEVIATION.lsb, coefficients)
     assert not monitor.saturations
@@ -249,7 +251,9 @@ def test_slopes_saturate_and_are_counted() -> None:
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
     monitor = Monitor()
     codes = np.full((1, 16, 16, 3), 8191)
-    result = polynomial_gradient(codes, polynomial_words(calibration, config, 1.0), config, monitor)
+    result = polynomial_gradient(
+        codes, polynomial_words(replace(calibration, pixel_pitch_mm=1.0), config), config, monitor
+    )
     limit = 2 ** (config.gradient.width - 1)
     assert set(np.unique(np.abs(result))) & {limit, limit - 1}
     assert monitor.saturations["polynomial_gradient"] == np.count_nonzero((result == -limit) | (result == limit - 1))
@@ -259,9 +263,31 @@ def test_coefficients_beyond_the_words_are_named() -> None:
     config = Configuration(columns=16, **POLYNOMIALS)
     steep = replace(polynomials(1), name="steep", cubic=np.full((2, 3, 10), 9.0))
     with pytest.raises(InputError, match=r"steep: the coefficients of cubic reach .* accepted is less than 8"):
-        polynomial_words(steep, config, 0.1)
+        polynomial_words(steep, config)
     with pytest.raises(InputError, match="gradient_model=cubic: table holds only lut"):
-        polynomial_words(Sensor("table", np.zeros((2, 2, 2, 2)), 0.1), config, 0.1)
+        polynomial_words(Sensor("table", np.zeros((2, 2, 2, 2)), 0.1), config)
+
+
+@pytest.mark.parametrize("factor", [1, 11, 200])
+def test_faint_colours_have_coefficients_with_fewer_fraction_bits(factor: int) -> None:
+    """Faint colours change `factor` times less with the slope."""
+    bright = replace(polynomials(6), corrections=np.zeros(CORRECTIONS), pixel_pitch_mm=0.15)
+    faint = replace(bright, cubic=factor * bright.polynomials("cubic"))
+    no_contact = np.full((16, 16, 3), 100, np.uint8)
+    config = replace(faint, reference=no_contact).configuration(columns=16)
+    assert config.coefficient_limit == (8 if factor == 1 else 2.0 ** np.ceil(np.log2(1.2 * factor)))
+    deviation = np.random.default_rng(1).integers(-3000, 3000, (1, 16, 16, 3)) // factor
+    result = polynomial_gradient(deviation, polynomial_words(faint, config), config)
+    coefficients = reference.polynomials_at_pixels(16, 16, faint.polynomials("cubic"), 0.15)
+    want = reference.weighted(deviation * DEVIATION.lsb, coefficients)
+    near = 3 * config.colour_coefficient.lsb * 0.1 / factor + config.gradient_lsb
+    assert np.abs(result * config.gradient_lsb - want).max() < near
+
+
+def test_colours_that_show_no_slope_are_refused() -> None:
+    nothing = replace(polynomials(6), cubic=np.full((2, 3, 10), 400.0), reference=np.full((16, 16, 3), 100, np.uint8))
+    with pytest.raises(InputError, match="accepted are up to 256: colours that change so little"):
+        nothing.configuration(columns=16)
 
 
 # Corrections by colour.
@@ -276,13 +302,13 @@ def test_the_entry_of_a_colour_is_the_nearest() -> None:
 @settings(max_examples=20)
 @given(SEED)
 def test_corrections_are_added_to_slopes_in_whole_units(seed: int) -> None:
-    calibration = polynomials(seed)
+    calibration: Any = polynomials(seed)
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
-    words, table = polynomial_words(calibration, config, 0.1), correction_entries(calibration.corrections, config)  # type: ignore[arg-type]
+    words, table = polynomial_words(calibration, config), correction_entries(calibration.corrections, config)
     deviation = np.random.default_rng(seed).integers(-3000, 3000, (1, 16, 16, 3))
     plain, corrected = (polynomial_gradient(deviation, words, config, table=added) for added in (None, table))
     red, green, blue = np.moveaxis(np.floor(8 * (deviation * DEVIATION.lsb + 1) + 0.5).astype(int), -1, 0)
-    want = calibration.corrections[red, green, blue]  # type: ignore[index]
+    want = calibration.corrections[red, green, blue]
     want = correction_units(want, config.gradient_limit) * correction_unit(config.gradient_limit)
     near = np.abs(want) * 2.0**-UNIT_BITS + config.gradient_lsb
     assert (np.abs((corrected - plain) * config.gradient_lsb - want) <= near).all()

@@ -87,6 +87,23 @@ def test_no_circle_is_found_where_nothing_touches(seed: int) -> None:
     assert find_circle(drawn([], 100 + seed), drawn([], 1), 25) is None
 
 
+def test_a_circle_is_found_at_any_size_of_the_picture() -> None:
+    """Pictures of more than 320 columns are averaged first: pixels doubled again change nothing but the unit."""
+    name, _, _, _, contact, _ = places()[0]
+    found = []
+    for k in (2, 4):
+        picture, background = (
+            np.kron(pictures()[which], np.ones((k, k, 1), np.uint8)) for which in (name, "background.png")
+        )
+        found.append(find_circle(picture, background, 25 * k))
+    two, four = found
+    assert two is not None
+    assert four is not None
+    x, y, radius = two
+    assert four == pytest.approx((2 * x + 0.5, 2 * y + 0.5, 2 * radius), abs=1e-6)
+    assert abs(radius / 2 / contact - 1) < 0.15
+
+
 def test_circles_of_the_pictures_take_the_place_of_the_tables(folder: Path) -> None:
     """Find the circles of a table whose radii are two pixels too large: they lie within the contact."""
     write_table(folder, [{**row, "contact_radius_px": row["contact_radius_px"] + 2} for row in table_rows()])
@@ -109,10 +126,10 @@ def test_circles_found_in_real_pictures_agree_with_the_table() -> None:
 def without_scikit_image(monkeypatch: pytest.MonkeyPatch) -> None:
     load = builtins.__import__
 
-    def refuse(name: str, *more: Any) -> Any:
+    def refuse(name: str, *more: Any, **named: Any) -> Any:
         if name.startswith("skimage"):
             raise ModuleNotFoundError(name)
-        return load(name, *more)
+        return load(name, *more, **named)
 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(builtins, "__import__", refuse)

@@ -121,7 +121,7 @@ def fit_folder(request: Request, folder: Path, out: Path, work: Path) -> Fit:
 def report(fit: Fit, presses: GridPresses) -> str:
     """Return the text of the report: presses of the fit, and its accuracy on each press by a fit to the others."""
     rows, columns = presses.grid
-    lines = [f"{len(presses.views)} presses fitted, {presses.pitch_mm:g} mm per pixel, grid of {columns} x {rows}"]
+    lines = [f"{len(presses.views)} presses fitted, grid of {columns} x {rows}", presses.field_of_view]
     if len(presses.agreement):
         x, y, radius = np.median(presses.agreement, axis=0)
         spread = np.median(np.abs(presses.agreement - (x, y, radius)), axis=0)

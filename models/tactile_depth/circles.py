@@ -10,7 +10,9 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from tactile_depth.errors import InputError
+from tactile_depth.resampling import resampling
 
+MOST_COLUMNS = 320  # of a picture that is searched
 SMALLEST_CIRCLE_PX = 8
 FAINTEST_CIRCLE = 0.1  # smallest deviation from the background along the circle
 SHORTEST_ARC = 0.3  # fraction of the circle that must be visible
@@ -29,6 +31,8 @@ def require_circle_finder() -> None:
 def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float) -> tuple[float, float, float] | None:
     """Return x, y and radius of the contact's circle in pixels of a picture; None if there is no visible circle.
 
+    Larger pictures are averaged to 320 columns first, because lengths and filters below are meant for such pictures.
+
     First, a Hough transform of the edges of the colour's deviation locates the circle roughly. Its radius is too large,
     because the gel around the contact is drawn in. Then the crest of the deviation, where the ball is steepest, gives
     one point along each ray from the centre. A circle is fitted to these points without outliers (RANSAC). The result
@@ -40,10 +44,22 @@ def find_circle(image: np.ndarray, background: np.ndarray, largest_radius: float
     largest_radius : float
         In pixels.
     """
+    rows, columns = image.shape[:2]
+    if columns <= MOST_COLUMNS:
+        return _find(image.astype(np.float64), background.astype(np.float64), largest_radius)
+    plan = resampling((rows, columns), (rows * MOST_COLUMNS // columns, MOST_COLUMNS))
+    found = _find(plan.average(image), plan.average(background), largest_radius / plan.scale)
+    if found is None:
+        return None
+    (x, y, radius), (top, left) = found, plan.origin
+    return (x + 0.5) * plan.scale - 0.5 + left, (y + 0.5) * plan.scale - 0.5 + top, radius * plan.scale
+
+
+def _find(image: np.ndarray, background: np.ndarray, largest_radius: float) -> tuple[float, float, float] | None:
     from skimage.filters import gaussian
     from skimage.measure import CircleModel, ransac
 
-    reference = np.maximum(background.astype(np.float64), 1)
+    reference = np.maximum(background, 1)
     magnitude = np.linalg.norm(gaussian((image - reference) / reference, 1.5, channel_axis=-1), axis=-1)
     centre_x, centre_y, rough = _rough_circle(magnitude, largest_radius)
     angle = np.linspace(0, 2 * np.pi, RAYS, endpoint=False)[:, None]

@@ -91,7 +91,8 @@ RATIO = Format(17, 15)
 LIGHT_GAIN = Format(16, 15)
 """Format of the gain of a colour that follows the light, unsigned."""
 POLYNOMIAL = Format(32, 28)
-"""Format of a coefficient of the polynomial models along the raster, as wide as a register of the AXI4-Lite map."""
+"""Format of a coefficient of the polynomial models along the raster, as wide as a register of the AXI4-Lite map; with a
+larger `coefficient_limit` it has fewer fraction bits."""
 FINE_BITS = (4, 128)
 """Fraction bits of the words of third degree beyond those of the others, and the largest side of a grid with so many:
 3 more for each doubling of the side, because these words add up to its third power."""
@@ -99,6 +100,7 @@ CORRECTION_BITS, CORRECTION_WIDTH = 4, 8
 """Top bits of each colour that index the corrections of the model `cubic`, and bits of a correction."""
 COLOUR_COEFFICIENT = Format(18, 14)
 """Format of the upper bits of a coefficient, which are multiplied, as wide as the narrow port of a DSP48E2."""
+COEFFICIENT_LIMITS = (POLYNOMIAL.limit, 2.0**8)
 
 
 @former_names(auto_zero="zero_offset")
@@ -124,6 +126,8 @@ class Configuration:
         Largest depth that formats are sized for, in grid pixels; None: a quarter of the grid.
     gradient_limit : float
         Largest slope, a power of two.
+    coefficient_limit : float
+        Models of polynomials: no coefficient reaches it, a power of two. Faint colours need large coefficients.
     bits_per_channel : int
         Bits of each colour that index the gradient table.
     flat_field : bool
@@ -148,6 +152,7 @@ class Configuration:
     coefficient_width: int = 18
     depth_range_px: float | None = None
     gradient_limit: float = 1.0
+    coefficient_limit: float = POLYNOMIAL.limit
     bits_per_channel: int = 4
     flat_field: bool = False
     gradient_model: str = "lut"
@@ -196,6 +201,12 @@ class Configuration:
             raise InputError(
                 f"the largest slope of the calibration is near {self.gradient_limit:g}: accepted are "
                 f"{lowest:g} to {highest:g} pixels per pixel: correct its unit"
+            )
+        lowest, highest = COEFFICIENT_LIMITS
+        if not lowest <= self.coefficient_limit <= highest or math.log2(self.coefficient_limit) % 1:
+            raise InputError(
+                f"the coefficients of the calibration are near {self.coefficient_limit:g}: accepted are up to "
+                f"{highest:g}: colours that change so little with the slope do not show it: use more light"
             )
         deepest = min(
             self.depth_limit_px / DEPTH_HEADROOM, DEEPEST * min(self.rows, self.columns) * self.gradient_limit
@@ -324,6 +335,25 @@ class Configuration:
         """Slope of code 1. For the tridiagonal solver it compensates the gain of the coefficients."""
         gain = self.transform_gain if self.solver == "tridiagonal" else 1.0
         return self.row_forward.lsb * self.unit_px * gain
+
+    @property
+    def polynomial(self) -> Format:
+        """Format of a coefficient along the raster, in units of `coefficient_unit`."""
+        return Format(POLYNOMIAL.width, POLYNOMIAL.fraction - self._coefficient_log2)
+
+    @property
+    def colour_coefficient(self) -> Format:
+        """Format of the upper bits of a coefficient, in units of `coefficient_unit`."""
+        return Format(COLOUR_COEFFICIENT.width, COLOUR_COEFFICIENT.fraction - self._coefficient_log2)
+
+    @property
+    def coefficient_unit(self) -> float:
+        """Slope of a coefficient of 1."""
+        return self.gradient_lsb * 2.0**self.gradient.fraction
+
+    @property
+    def _coefficient_log2(self) -> int:
+        return round(math.log2(self.coefficient_limit / POLYNOMIAL.limit))
 
     @property
     def divergence(self) -> Format:

@@ -143,7 +143,7 @@ def fit(
         warn(InputWarning(note), stacklevel=2)
     fitted = fit_presses(on_grid, wanted, bits, name or pictures.name, exposure_us)
     if not quiet:
-        print(fitted.evaluation.summary)
+        print(on_grid.field_of_view, fitted.evaluation.summary, sep="\n")
     return fitted.sensor
 
 

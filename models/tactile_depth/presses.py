@@ -218,6 +218,16 @@ class GridPresses:
         return len(self.background_on_grid), self.background_on_grid.shape[1]
 
     @property
+    def field_of_view(self) -> str:
+        """The size of the gel in the picture by the pitch, which balls of known diameter cannot check."""
+        rows, columns = self.background.shape[:2]
+        return (
+            f"{self.pitch_mm:.3g} mm per pixel: the picture shows {columns * self.pitch_mm:.1f} x "
+            f"{rows * self.pitch_mm:.1f} mm of the gel. Check that with a ruler: balls fit any pitch, and an error of "
+            "the pitch changes heights by twice as much"
+        )
+
+    @property
     def grid_pitch_mm(self) -> float:
         """Millimetres per grid pixel."""
         return self.pitch_mm * self.scale

@@ -14,7 +14,13 @@ import numpy as np
 
 from tactile_depth import files
 from tactile_depth.camera_configuration import FORMATS
-from tactile_depth.configuration import CORRECTION_BITS, GRADIENT_MODELS, SMALLEST_DEPTH_RANGE_PX, Configuration
+from tactile_depth.configuration import (
+    COEFFICIENT_LIMITS,
+    CORRECTION_BITS,
+    GRADIENT_MODELS,
+    SMALLEST_DEPTH_RANGE_PX,
+    Configuration,
+)
 from tactile_depth.errors import Argument, InputError, InputWarning, Part, is_number
 
 MODELS = GRADIENT_MODELS
@@ -23,6 +29,7 @@ PIXEL_FORMATS = tuple(FORMATS)
 BITS_PER_CHANNEL = (1, 6)
 COEFFICIENTS, CUBIC = (2, 3, 6), (2, 3, 10)  # slope, colour, term
 CORRECTIONS = (*(1 << CORRECTION_BITS,) * 3, 2)  # red, green, blue; slope
+SAMPLES = 16  # along a side of a grid: what is true of polynomials there is true of the whole grid
 ROUNDING = 2.0**-8  # largest relative increase of a slope by rounding to a table's format
 ASPECTS_AGREE = 0.005  # largest relative difference between the aspect ratios of a picture and of the calibrated camera
 LIGHTING_BLOCKS = (4, 4)  # rows and columns of `Sensor.lighting`
@@ -230,7 +237,7 @@ class Sensor:
         model = model or (self.model if flat_field else GRADIENT_MODELS[0])
         self.require_model(model)
         self.require_reference(flat_field)
-        return Configuration(
+        config = Configuration(
             gradient_limit=self.gradient_limit,
             bits_per_channel=self.bits_per_channel,
             flat_field=flat_field,
@@ -238,6 +245,21 @@ class Sensor:
             light_gains=model != "lut" if light_gains is None else light_gains,
             **choices,
         )
+        return replace(config, coefficient_limit=self._coefficient_limit(config)) if config.polynomials else config
+
+    def _coefficient_limit(self, config: Configuration) -> float:
+        """Return the power of two above all coefficients on the grid of a configuration, from the smallest accepted."""
+        largest = np.abs(self.grid_coefficients(config)).max() / config.coefficient_unit
+        return max(COEFFICIENT_LIMITS[0], 2.0 ** (math.floor(math.log2(largest)) + 1) if largest else 0)
+
+    def grid_coefficients(self, config: Configuration) -> np.ndarray:
+        """Return the coefficients at `samples` of a configuration's grid, float64 (2, 3, `SAMPLES`, `SAMPLES`)."""
+        row, column = samples(config)
+        x, y = (
+            (column - (config.columns - 1) / 2) * self.pixel_pitch_mm,
+            (row - (config.rows - 1) / 2) * self.pixel_pitch_mm,
+        )
+        return np.tensordot(self.polynomials(config.gradient_model), position_terms(x, y), (-1, -1))
 
     def depth_range_px(self, depth_range_mm: float) -> float:
         """Return a depth range in pixels of this sensor's grid; raise InputError if the formats cannot be that fine."""
@@ -355,6 +377,13 @@ class Sensor:
             held = {key: value for key, value in arrays.items() if value is not None}
             np.savez_compressed(work / path.name, **held)
             files.replace(work, (path.name,), path.parent)
+
+
+def samples(config: Configuration) -> tuple[np.ndarray, np.ndarray]:
+    """Return rows and columns, from corner to corner of a grid, float64 (`SAMPLES`, `SAMPLES`) each."""
+    sides = (np.linspace(0, length - 1, SAMPLES) for length in (config.rows, config.columns))
+    row, column = np.meshgrid(*sides, indexing="ij")
+    return row, column
 
 
 def position_terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -113,7 +113,7 @@ def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray |
     if gains is not None:
         require_nodes(Argument("gains"), gains, (*config.reference_nodes, 3))
     if config.polynomials:
-        slopes = coefficient_map(polynomial_words(calibration, config, calibration.pixel_pitch_mm), config)
+        slopes = coefficient_map(polynomial_words(calibration, config), config)
     else:
         slopes = gradient_codes(calibration, config)
     corrections = _corrections(calibration, config) if config.gradient_model == "cubic" else None
@@ -344,7 +344,7 @@ def write_roms(
     if config.flat_field:
         write_gains(folder, reference_gains(calibration, config) if gains is None else gains, config.gain_width)
     if config.polynomials:
-        words = polynomial_words(calibration, config, calibration.pixel_pitch_mm)
+        words = polynomial_words(calibration, config)
         write_polynomials(folder, words, POLYNOMIAL.width)
         if config.gradient_model == "cubic":
             write_gradient(folder / "gradient.hex", _corrections(calibration, config), CORRECTION_WIDTH)

@@ -62,7 +62,7 @@ class Content:
         if config.gradient_model == "lut":
             entries["gradient"] = gradient_codes(sensor, config)
         else:
-            entries["coefficients"] = one_word(polynomial_words(sensor, config, sensor.pixel_pitch_mm))
+            entries["coefficients"] = one_word(polynomial_words(sensor, config))
         if config.gradient_model == "cubic":
             assert sensor.corrections is not None
             entries["gradient"] = correction_entries(sensor.corrections, config)

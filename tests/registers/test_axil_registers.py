@@ -70,10 +70,10 @@ PROOFS = tuple(
     Proof(
         "AXI4-Lite rules; every register reads, counts, sticks and clears as docs/registers.md says",
         f"{FULL_WIDTH}; each gradient model, with a camera or without, all options",
-        {"Polynomial": polynomial, "Corrections": corrections, "Camera": polynomial},
+        {"Polynomial": polynomial, "Corrections": corrections, "Camera": camera},
         depth=16,
     )
-    for polynomial, corrections in ((0, 0), (1, 0), (1, 1))
+    for polynomial, corrections, camera in ((0, 0, 0), (1, 0, 1), (1, 1, 0))
 )
 
 

@@ -14,7 +14,8 @@ of C (14 fraction bits) are multiplied. A includes half of the last bit that is 
 rounds. Corrections, of the model `cubic`, come from a table by colour (`gradient_lookup`); their unit is 1/256 of the
 configuration's largest slope. The sum of the three products, 37 bits with 29 fraction bits, and the correction is
 rounded half to even and saturated to the gradient's format (`Configuration.gradient`), whose unit the words have. This
-module, not the hardware, checks that the words fit, and C stays within its range over the whole grid.
+module, not the hardware, checks that the words fit, and C stays within its range over the whole grid. Faint colours
+need coefficients of 8 and more: all these fraction bits are then fewer (`Configuration.coefficient_limit`).
 """
 
 from __future__ import annotations
@@ -35,9 +36,8 @@ from tactile_depth.configuration import (
 )
 from tactile_depth.errors import InputError
 from tactile_depth.gradient.gradient_lookup import gradient_lookup
-from tactile_depth.sensor import Sensor, position_terms
+from tactile_depth.sensor import Sensor, samples
 
-SAMPLES = 16  # of a side of the grid
 UNIT_BITS = 12  # of the unit of a correction that are not 0: a correction is right within 2**-12 of itself
 
 LATENCY = 12
@@ -48,13 +48,8 @@ FINE = ("T", "U", "G", "W")  # terms with `fine_bits` more fraction bits
 IS_FINE = np.array([term in FINE for term in TERMS])
 
 
-def polynomial_words(calibration: Sensor, config: Configuration, pixel_pitch_mm: float) -> np.ndarray:
-    """Return the words of a calibration's polynomials on a grid.
-
-    Parameters
-    ----------
-    pixel_pitch_mm : float
-        Millimetres per grid pixel.
+def polynomial_words(calibration: Sensor, config: Configuration) -> np.ndarray:
+    """Return the words of a calibration's polynomials on its grid.
 
     Returns
     -------
@@ -65,20 +60,17 @@ def polynomial_words(calibration: Sensor, config: Configuration, pixel_pitch_mm:
     InputError
         The calibration does not have the model, or its words do not fit.
     """
-    coefficients = calibration.polynomials(config.gradient_model)
-    rows, columns = config.rows, config.columns
-    unit = config.gradient_lsb * 2.0**config.gradient.fraction  # slope of the gradient's code 2**fraction
     # The coefficients on the grid, in units of a word's last bit, as differences: those of third degree are rounded
     # first, and each lower degree takes up, in least squares over the grid, what the degrees above have left.
-    r, c = np.meshgrid(_sampled(rows), _sampled(columns), indexing="ij")
-    basis = np.stack([_falling(c, across) * _falling(r, down) for across, down in DEGREES], axis=-1)
-    x, y = (c - (columns - 1) / 2) * pixel_pitch_mm, (r - (rows - 1) / 2) * pixel_pitch_mm
-    wanted = np.tensordot(coefficients, position_terms(x, y), (-1, -1)) / unit
+    row, column = samples(config)
+    basis = np.stack([_falling(column, across) * _falling(row, down) for across, down in DEGREES], axis=-1)
+    form = config.polynomial
+    wanted = calibration.grid_coefficients(config) / config.coefficient_unit
     basis = basis.reshape(-1, len(TERMS))
     largest = np.abs(basis).max(axis=0)
-    words = np.zeros(coefficients.shape, np.int64)
+    words = np.zeros((*wanted.shape[:2], len(TERMS)), np.int64)
     left = wanted.reshape(-1, basis.shape[0]).T
-    scale = np.where(IS_FINE, 2.0 ** (POLYNOMIAL.fraction + fine_bits(config)), 2.0**POLYNOMIAL.fraction)
+    scale = np.where(IS_FINE, 2.0 ** (form.fraction + fine_bits(config)), 2.0**form.fraction)
     flat = words.reshape(-1, len(TERMS))
     for degree in (3, 2, 1, 0):
         upto = [n for n, power in enumerate(DEGREES) if sum(power) <= degree]
@@ -86,14 +78,14 @@ def polynomial_words(calibration: Sensor, config: Configuration, pixel_pitch_mm:
         for n in (n for n in upto if sum(DEGREES[n]) == degree):
             flat[:, n] = np.rint(exact[upto.index(n)] * scale[n])
             left = left - np.outer(basis[:, n], flat[:, n] / scale[n])
-    flat[:, 0] += 1 << (POLYNOMIAL.fraction - COLOUR_COEFFICIENT.fraction - 1)
-    limit = POLYNOMIAL.limit * 2.0**POLYNOMIAL.fraction
-    reached = max(np.abs(words).max(), np.abs(wanted).max() * 2.0**POLYNOMIAL.fraction)
+    flat[:, 0] += 1 << (form.fraction - config.colour_coefficient.fraction - 1)
+    limit = form.limit * 2.0**form.fraction
+    reached = max(np.abs(words).max(), np.abs(wanted).max() * 2.0**form.fraction)
     if not reached < limit:
         raise InputError(
             f"{calibration.name}: the coefficients of {config.gradient_model} reach "
-            f"{reached / limit * POLYNOMIAL.limit:.3g} on a grid of {config.rows} x {config.columns} pixels: "
-            f"accepted is less than {POLYNOMIAL.limit:g}"
+            f"{reached / limit * form.limit:.3g} on a grid of {config.rows} x {config.columns} pixels: "
+            f"accepted is less than {form.limit:g}"
         )
     return words
 
@@ -104,18 +96,14 @@ def fine_bits(config: Configuration) -> int:
     return least + 3 * math.ceil(math.log2(max(config.rows, config.columns, side) / side))
 
 
-def _sampled(length: int) -> np.ndarray:
-    """Return positions over a side of the grid, at which least squares are taken."""
-    return np.linspace(0, length - 1, SAMPLES)
-
-
 def _falling(x: np.ndarray, degree: int) -> np.ndarray:
     """Return x (x - 1) .. / degree!, which has differences of 1."""
     return np.prod([(x - k) / (k + 1) for k in range(degree)], axis=0) if degree else np.ones_like(x)
 
 
 def coefficient_map(words: np.ndarray, config: Configuration) -> np.ndarray:
-    """Return the coefficients that multiply each pixel, int64 (2, 3, rows, columns), format `COLOUR_COEFFICIENT`."""
+    """Return the coefficients that multiply each pixel, int64 (2, 3, rows, columns), format
+    `Configuration.colour_coefficient`."""
     widths = (POLYNOMIAL.width, fine_bits(config), COLOUR_COEFFICIENT.width)
     return coefficients(words, config.rows, config.columns, *widths)
 
@@ -228,7 +216,7 @@ def slope_codes(
 
 def gradient_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/gradient/polynomial_gradient.sv."""
-    drop = DEVIATION.fraction + COLOUR_COEFFICIENT.fraction - config.gradient.fraction
+    drop = DEVIATION.fraction + config.colour_coefficient.fraction - config.gradient.fraction
     unit = correction_unit(config.gradient_limit) / config.gradient_lsb * 2.0**drop
     log2 = math.floor(math.log2(unit)) - UNIT_BITS + 1
     return {
