@@ -25,6 +25,8 @@ class Proof:
         Clocks within which every cover is reached.
     engine : str
         Of mode prove.
+    steps : int
+        Clocks of the induction, and of its base case, with the engine smtbmc.
     roms : callable
         Writes the files that $readmemh reads into the folder given.
     free : tuple of str
@@ -40,6 +42,7 @@ class Proof:
     parameters: Mapping[str, int] = field(default_factory=dict)
     depth: int = 20
     engine: str = "abc pdr"
+    steps: int = 20
     roms: Callable[[Path], None] | None = None
     free: tuple[str, ...] = ()
     clocks: int = 1

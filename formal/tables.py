@@ -20,9 +20,9 @@ def gradient_rom(folder: Path) -> None:
 
 
 def polynomial_roms(folder: Path) -> None:
-    """Words of one bit, arbitrary ones, another order in every polynomial."""
+    """Words of two bits, arbitrary ones, another order in every polynomial."""
     choose = random.Random(1)
-    write_polynomials(folder, np.array([-choose.getrandbits(1) for _ in range(60)]).reshape(2, 3, 10), 1)
+    write_polynomials(folder, np.array([choose.getrandbits(2) - 2 for _ in range(60)]).reshape(2, 3, 10), 2)
 
 
 def gain_rom(nodes: int) -> Callable[[Path], None]:

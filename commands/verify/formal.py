@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make formal`: unbounded proofs of the cores in hdl/ by SymbiYosys, with the benches in formal/.
 
-Each proof runs twice: in mode prove (abc pdr, no bound on time), and in mode cover, which must reach every cover
+Each proof runs twice: in mode prove (abc pdr or induction, no bound on time), and in mode cover, which must reach every cover
 statement of the bench, so that no proof is void. Any result other than PASS is a failure. pytest runs them, as items of
 formal/test_proofs.py. CORE=a,b: these cores alone. LIST=1: print what is proven at which sizes, and prove nothing.
 """
@@ -76,7 +76,8 @@ def script(proof: Proof, mode: str, roms: Sequence[Path]) -> str:
         "[options]",
         f"mode {mode}",
         f"timeout {TIMEOUT}",
-        *(["aigsmt z3"] if mode == "prove" else [f"depth {proof.depth}"]),
+        *(["aigsmt z3"] if mode == "prove" else []),
+        f"depth {proof.steps if mode == 'prove' else proof.depth}",
         *(["multiclock on"] if proof.clocks > 1 else []),
         "[engines]",
         proof.engine if mode == "prove" else COVER_ENGINE,

@@ -52,10 +52,12 @@ REFUSED = {
 }
 PROOFS = tuple(
     Proof(
-        "the coefficient of the pixel's own place, words written or from power-up; latency 12",
-        f"additions are exact at any width; the shortest rows; each colour, both axes; {ROUNDING}",
+        "the coefficient of the pixel's own place, words written or from power-up, and its correction; latency 12",
+        f"frames of any size; additions are exact at any width; each colour, both axes; {ROUNDING}",
         {"Polynomial": polynomial},
-        depth=30,
+        depth=35,
+        engine="smtbmc bitwuzla -- --noincr",
+        steps=3,
         roms=polynomial_roms,
     )
     for polynomial in (0, 4, 2)
