@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make formal`: unbounded proofs of the cores in hdl/ by SymbiYosys, with the benches in formal/.
 
-Each proof runs twice: in mode prove (abc pdr or induction, no bound on time), and in mode cover, which must reach every cover
-statement of the bench, so that no proof is void. Any result other than PASS is a failure. pytest runs them, as items of
-formal/test_proofs.py. CORE=a,b: these cores alone. LIST=1: print what is proven at which sizes, and prove nothing.
+Each proof runs twice: in mode prove (abc pdr or induction, no bound on time), and in mode cover, which must reach every
+cover statement of the bench, so that no proof is void. Any result other than PASS is a failure. pytest runs them, as
+items of formal/test_proofs.py. CORE=a,b: these cores alone. LIST=1: print what is proven at which sizes, and prove
+nothing.
 """
 
 import os
