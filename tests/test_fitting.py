@@ -399,8 +399,8 @@ def test_captures_bring_the_zero_of_a_real_gel_back_when_its_light_has_drifted(r
     # The zero offset captured instead of the reference, and after it.
     alone = captured_zero(depth_codes(drifted(no_contact), before)[None], config)
     both = captured_zero(depth_codes(drifted(no_contact), captured)[None], config)
-    assert depth_mm(drifted(no_contact), before, alone).std() < 0.014  # measured: 0.0076, 0.0127 mm
-    assert depth_mm(drifted(no_contact), captured, both).std() < 0.0035  # measured: 0.0009, 0.0033 mm
+    assert depth_mm(drifted(no_contact), before, alone).std() < 0.015  # measured: 0.0076, 0.0127, 0.0144 mm
+    assert depth_mm(drifted(no_contact), captured, both).std() < 0.004  # measured: 0.0009, 0.0033, 0.0039 mm
 
     def caps(gains: np.ndarray, zero: np.ndarray | None = None, seen: Any = drifted) -> Any:
         depths = (depth_mm(seen(view.frame), gains, zero) / presses.grid_pitch_mm for view in some)
@@ -409,9 +409,9 @@ def test_captures_bring_the_zero_of_a_real_gel_back_when_its_light_has_drifted(r
     as_calibrated = caps(before, seen=lambda frame: frame)
     for balls, most in ((caps(captured), 0.006), (caps(captured, both), 0.023)):  # measured: 0.005, 0.022
         assert np.abs(balls - as_calibrated).max() < most
-    # A capture of the zero offset alone leaves the error of colours: measured 0.144 (lut), 0.040.
+    # A capture of the zero offset alone leaves the error of colours: measured 0.144 (lut), 0.040, 0.108 (cubic).
     off = np.abs(caps(before, alone) - as_calibrated).max()
-    assert off < (0.15 if model == "lut" else 0.042)
+    assert off < {"lut": 0.15, "quadratic": 0.042, "cubic": 0.11}[model]
 
 
 def test_a_real_contact_that_the_edge_cuts_keeps_its_height(real: Any) -> None:
