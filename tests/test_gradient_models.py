@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models of the flat field and of the polynomial gradient against their formulas in double precision."""
 
+import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -31,6 +32,7 @@ from tactile_depth.gradient.polynomial_gradient import (
     correction_unit,
     correction_units,
     fine_bits,
+    gradient_parameters,
     polynomial_gradient,
     polynomial_words,
 )
@@ -284,6 +286,14 @@ def test_faint_colours_have_coefficients_with_fewer_fraction_bits(factor: int) -
     assert np.abs(result * config.gradient_lsb - want).max() < near
 
 
+def test_corrections_are_scaled_at_the_ends_of_the_ranges() -> None:
+    for limit, coefficient_limit in itertools.product((2.0**-6, 32.0), (8.0, 256.0)):
+        config = Configuration(columns=16, gradient_limit=limit, coefficient_limit=coefficient_limit, **POLYNOMIALS)
+        parameters = gradient_parameters(config)
+        want = correction_unit(limit) / config.gradient_lsb * 2.0 ** parameters["Drop"]
+        assert parameters["CorrectionUnit"] == pytest.approx(want, rel=2.0 ** (1 - UNIT_BITS))
+
+
 def test_colours_that_show_no_slope_are_refused() -> None:
     nothing = replace(polynomials(6), cubic=np.full((2, 3, 10), 400.0), reference=np.full((16, 16, 3), 100, np.uint8))
     with pytest.raises(InputError, match="accepted are up to 256: colours that change so little"):
@@ -304,7 +314,7 @@ def test_the_entry_of_a_colour_is_the_nearest() -> None:
 def test_corrections_are_added_to_slopes_in_whole_units(seed: int) -> None:
     calibration: Any = polynomials(seed)
     config = Configuration(columns=16, gradient_limit=calibration.gradient_limit, **POLYNOMIALS)
-    words, table = polynomial_words(calibration, config), correction_entries(calibration.corrections, config)
+    words, table = polynomial_words(calibration, config), correction_entries(calibration, config)
     deviation = np.random.default_rng(seed).integers(-3000, 3000, (1, 16, 16, 3))
     plain, corrected = (polynomial_gradient(deviation, words, config, table=added) for added in (None, table))
     red, green, blue = np.moveaxis(np.floor(8 * (deviation * DEVIATION.lsb + 1) + 0.5).astype(int), -1, 0)

@@ -52,15 +52,24 @@ def pipeline(real: Any) -> td.Pipeline:
     return td.Pipeline(td.load("gelsight-mini"), real / "background.png")
 
 
-def test_another_light_changes_no_press(pipeline: td.Pipeline, presses: Any) -> None:
-    """Measured: caps within 0.06 % on average, 1.2 % at worst, areas within 0.11 %."""
+@pytest.fixture(scope="module")
+def quadratic(real: Any) -> td.Pipeline:
+    return td.Pipeline(td.load("gelsight-mini"), real / "background.png", model="quadratic")
+
+
+@pytest.mark.parametrize(("model", "areas"), [("cubic", 0.0015), ("quadratic", 0.001)])
+def test_another_light_changes_no_press(
+    pipeline: td.Pipeline, quadratic: td.Pipeline, presses: Any, model: str, areas: float
+) -> None:
+    """Measured with `cubic`: caps within 0.06 % on average, 1.2 % at worst, areas within 0.11 %."""
+    pipeline = {"cubic": pipeline, "quadratic": quadratic}[model]
     same = [measure(pipeline, press, pipeline(press.image)) for press in presses]
     for light in LIGHTS:
         values = [measure(pipeline, press, pipeline(in_light(read_stack(press.image)[0], light))) for press in presses]
         caps = mean(values, "cap") / mean(same, "cap")
         assert abs(caps.mean() - 1) < 0.001, light
         assert np.abs(caps - 1).max() < 0.02, light
-        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=0.0015), light
+        assert (mean(values, "area") / mean(same, "area")).mean() == pytest.approx(1, abs=areas), light
 
 
 def test_the_record_of_a_press_is_that_of_its_circle(pipeline: td.Pipeline, presses: Any) -> None:
@@ -110,16 +119,18 @@ def test_light_gains_take_the_tilt_off_untouched_gel(real: Any, pipeline: td.Pip
     assert mean(level, "rest_rms").mean() < 0.5 * mean(tilted, "rest_rms").mean()
 
 
-@pytest.mark.parametrize(("light", "frames"), [(0.9, 3), (0.95, 3), (1.05, 3), (1.1, 3), (0.8, 5), (1.2, 5)])
+@pytest.mark.parametrize(("model", "frames"), [("cubic", (3, 5)), ("quadratic", (2, 4))])
+@pytest.mark.parametrize("light", [0.9, 0.95, 1.05, 1.1, 0.8, 1.2])
 def test_a_step_of_the_light_is_followed_under_a_contact(
-    pipeline: td.Pipeline, presses: Any, light: float, frames: int
+    pipeline: td.Pipeline, quadratic: td.Pipeline, presses: Any, light: float, model: str, frames: tuple[int, int]
 ) -> None:
-    """Caps are back within 3 % after three frames of the new light, or five beyond 10 %."""
+    """Caps are back within 3 % after so many frames of the new light, within 10 % and beyond."""
+    pipeline, needed = {"cubic": pipeline, "quadratic": quadratic}[model], frames[abs(light - 1) > 0.11]
     ratios = []
     for press in presses[::5]:
         image, lit = read_stack(press.image)[0], in_light(read_stack(press.image)[0], (light,) * 3)
         *_, before = pipeline.stream([image] * 6)
-        *_, after = pipeline.stream([*[image] * 6, *[lit] * frames, lit])
+        *_, after = pipeline.stream([*[image] * 6, *[lit] * needed, lit])
         caps = [measure(pipeline, press, result).cap for result in (before, after)]
         ratios.append(caps[1] / caps[0])
     assert np.abs(np.array(ratios) - 1).max() < 0.03, ratios

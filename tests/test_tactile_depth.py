@@ -106,6 +106,7 @@ PROOFS = tuple(
         (1, {}),
         (1, {"flat_field": 1, "zero_offset": 1}),
         (0, {"flat_field": 1, "gradient_model": "quadratic"}),
+        (1, {"flat_field": 1, "gradient_model": "cubic"}),
     )
 )
 

@@ -31,15 +31,8 @@ from tactile_depth.tactile_depth import top_parameters
 
 KINDS = ("frame stores", "delay lines", "tables", "row buffers")
 CORES = (  # that have multipliers or memories, in the order of the data
-    *(
-        "flat_field",
-        "gradient_lookup",
-        "light_gains",
-        "polynomial_gradient",
-        "divergence",
-        "row_reorder",
-        "dst_forward",
-    ),
+    *("flat_field", "gradient_lookup", "light_gains", "polynomial_gradient"),
+    *("divergence", "row_reorder", "dst_forward"),
     *("transpose", "spectral_divide", "forward_elimination", "frame_stack", "back_substitution", "dst_inverse"),
     *("corner_turn", "zero_offset", "zero_capture", "contact_events"),
 )

@@ -13,7 +13,7 @@ from tactile_depth.configuration import DARKEST_LOG2, LIGHT_GAIN, Configuration
 from tactile_depth.gradient.flat_field import PixelGains, flat_codes, hold_dark, pixel_gains, reference_gains
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.poisson.transform.orders import read_only
-from tactile_depth.sensor import Sensor, position_terms
+from tactile_depth.sensor import Sensor, grid_terms
 
 
 def eigenvalues(size: int, neumann: bool = False) -> np.ndarray:
@@ -172,8 +172,8 @@ def polynomials_at_pixels(rows: int, columns: int, coefficients: np.ndarray, pix
 
 def pixel_terms(rows: int, columns: int, pixel_pitch_mm: float) -> np.ndarray:
     """Return `position_terms` at each pixel, from the picture's centre: float64 (rows, cols, 10)."""
-    y, x = np.indices((rows, columns), dtype=np.float64)
-    return position_terms((x - (columns - 1) / 2) * pixel_pitch_mm, (y - (rows - 1) / 2) * pixel_pitch_mm)
+    row, column = np.indices((rows, columns), dtype=np.float64)
+    return grid_terms(row, column, (rows, columns), pixel_pitch_mm)
 
 
 @cache

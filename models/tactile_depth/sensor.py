@@ -254,12 +254,8 @@ class Sensor:
 
     def grid_coefficients(self, config: Configuration) -> np.ndarray:
         """Return the coefficients at `samples` of a configuration's grid, float64 (2, 3, `SAMPLES`, `SAMPLES`)."""
-        row, column = samples(config)
-        x, y = (
-            (column - (config.columns - 1) / 2) * self.pixel_pitch_mm,
-            (row - (config.rows - 1) / 2) * self.pixel_pitch_mm,
-        )
-        return np.tensordot(self.polynomials(config.gradient_model), position_terms(x, y), (-1, -1))
+        terms = grid_terms(*samples(config), (config.rows, config.columns), self.pixel_pitch_mm)
+        return np.tensordot(self.polynomials(config.gradient_model), terms, (-1, -1))
 
     def depth_range_px(self, depth_range_mm: float) -> float:
         """Return a depth range in pixels of this sensor's grid; raise InputError if the formats cannot be that fine."""
@@ -384,6 +380,12 @@ def samples(config: Configuration) -> tuple[np.ndarray, np.ndarray]:
     sides = (np.linspace(0, length - 1, SAMPLES) for length in (config.rows, config.columns))
     row, column = np.meshgrid(*sides, indexing="ij")
     return row, column
+
+
+def grid_terms(row: np.ndarray, column: np.ndarray, grid: tuple[int, int], pixel_pitch_mm: float) -> np.ndarray:
+    """Return `position_terms` of pixels (..), from the centre of a grid (rows, columns): float64 (.., 10)."""
+    rows, columns = grid
+    return position_terms((column - (columns - 1) / 2) * pixel_pitch_mm, (row - (rows - 1) / 2) * pixel_pitch_mm)
 
 
 def position_terms(x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -116,13 +116,8 @@ def slope_tables(calibration: Sensor, config: Configuration, gains: np.ndarray |
         slopes = coefficient_map(polynomial_words(calibration, config), config)
     else:
         slopes = gradient_codes(calibration, config)
-    corrections = _corrections(calibration, config) if config.gradient_model == "cubic" else None
+    corrections = correction_entries(calibration, config)
     return Tables(None if gains is None else pixel_gains(gains, config), slopes, corrections)
-
-
-def _corrections(calibration: Sensor, config: Configuration) -> np.ndarray:
-    assert calibration.corrections is not None
-    return correction_entries(calibration.corrections, config)
 
 
 def require_nodes(name: Argument, nodes: np.ndarray, shape: tuple[int, ...]) -> None:
@@ -309,12 +304,10 @@ def _colour_parameters(config: Configuration) -> dict[str, int]:
     colour["Corrections"] = int(config.gradient_model == "cubic")
     colour["BlockLog2"] = flat["BlockLog2"]
     colour |= {"ColourDrop": flat["Drop"], "GainWidth": flat["GainWidth"], "CaptureLog2": capture["MaxLog2"]}
-    parameters = gradient_parameters(config)
-    colour |= (
-        {"SlopeDrop": parameters["Drop"], **{name: parameters[name] for name in ("FineBits", "CorrectionUnit")}}
-        if polynomials
-        else {}
-    )
+    if polynomials:
+        parameters = gradient_parameters(config)
+        colour["SlopeDrop"] = parameters["Drop"]
+        colour |= {name: parameters[name] for name in ("FineBits", "CorrectionUnit")}
     return colour
 
 
@@ -346,7 +339,8 @@ def write_roms(
     if config.polynomials:
         words = polynomial_words(calibration, config)
         write_polynomials(folder, words, POLYNOMIAL.width)
-        if config.gradient_model == "cubic":
-            write_gradient(folder / "gradient.hex", _corrections(calibration, config), CORRECTION_WIDTH)
+        corrections = correction_entries(calibration, config)
+        if corrections is not None:
+            write_gradient(folder / "gradient.hex", corrections, CORRECTION_WIDTH)
     else:
         write_gradient(folder / "gradient.hex", gradient_codes(calibration, config), config.gradient.width)

@@ -63,9 +63,9 @@ class Content:
             entries["gradient"] = gradient_codes(sensor, config)
         else:
             entries["coefficients"] = one_word(polynomial_words(sensor, config))
-        if config.gradient_model == "cubic":
-            assert sensor.corrections is not None
-            entries["gradient"] = correction_entries(sensor.corrections, config)
+        corrections = correction_entries(sensor, config)
+        if corrections is not None:
+            entries["gradient"] = corrections
         if config.flat_field:
             entries["reference"] = reference_entries(unit_gains(config))
         if config.zero_offset:

@@ -38,14 +38,12 @@ from tactile_depth.errors import InputError
 from tactile_depth.gradient.gradient_lookup import gradient_lookup
 from tactile_depth.sensor import Sensor, samples
 
-UNIT_BITS = 12  # of the unit of a correction that are not 0: a correction is right within 2**-12 of itself
-
+UNIT_BITS = 12  # of the unit of a correction, from its first: a correction is right within 2**-12 of itself
 LATENCY = 12
 
 TERMS = ("A", "B", "D", "T", "E", "F", "H", "U", "G", "W")
 DEGREES = ((0, 0), (1, 0), (2, 0), (3, 0), (0, 1), (0, 2), (1, 1), (0, 3), (1, 2), (2, 1))  # of column and row, by term
-FINE = ("T", "U", "G", "W")  # terms with `fine_bits` more fraction bits
-IS_FINE = np.array([term in FINE for term in TERMS])
+IS_FINE = np.array([sum(degree) == 3 for degree in DEGREES])  # terms with `fine_bits` more fraction bits
 
 
 def polynomial_words(calibration: Sensor, config: Configuration) -> np.ndarray:
@@ -133,7 +131,7 @@ def _evaluate(words: np.ndarray, rows: int, columns: int, fine_bits: int) -> np.
 
 
 def corrections_of(deviation: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """Return the corrections of pixels by colour: int64 (..., 3) of `DEVIATION` to int64 (..., 2), `CORRECTION`.
+    """Return the corrections of pixels by colour: int64 (..., 3) of `DEVIATION` to int64 (..., 2), in units.
 
     Parameters
     ----------
@@ -152,9 +150,12 @@ def correction_codes(deviation: np.ndarray) -> np.ndarray:
     )
 
 
-def correction_entries(corrections: np.ndarray, config: Configuration) -> np.ndarray:
-    """Return the entries of the table, int64 (2**(3 b), 2), of corrections in slope (2**b, 2**b, 2**b, 2)."""
-    return correction_units(corrections, config.gradient_limit).reshape(-1, 2)
+def correction_entries(calibration: Sensor, config: Configuration) -> np.ndarray | None:
+    """Return the entries of the table of corrections, int64 (2**(3 b), 2); None unless the model is `cubic`."""
+    if config.gradient_model != "cubic":
+        return None
+    assert calibration.corrections is not None
+    return correction_units(calibration.corrections, config.gradient_limit).reshape(-1, 2)
 
 
 def correction_units(corrections: np.ndarray, gradient_limit: float) -> np.ndarray:
@@ -218,7 +219,7 @@ def gradient_parameters(config: Configuration) -> dict[str, int]:
     """Parameters of hdl/gradient/polynomial_gradient.sv."""
     drop = DEVIATION.fraction + config.colour_coefficient.fraction - config.gradient.fraction
     unit = correction_unit(config.gradient_limit) / config.gradient_lsb * 2.0**drop
-    log2 = math.floor(math.log2(unit)) - UNIT_BITS + 1
+    log2 = max(math.floor(math.log2(unit)) - UNIT_BITS + 1, 0)
     return {
         "Width": config.gradient.width,
         "DeviationWidth": DEVIATION.width,
