@@ -40,11 +40,16 @@ class Resampling:
         return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
 
     @cached_property
-    def _sparse(self) -> tuple[sparse.csr_array, sparse.csr_array]:
-        """Sparse weights inside the window; each grid pixel covers only a few camera pixels."""
-        weights = zip((self.rows, self.columns), self._window, strict=True)
-        rows, columns = (sparse.csr_array(each[:, inside]) for each, inside in weights)
-        return rows, columns
+    def _sparse(self) -> dict[np.dtype, tuple[sparse.csr_array, sparse.csr_array]]:
+        """Sparse weights inside the window, float32 and float64; each grid pixel covers only a few camera pixels."""
+        rows, columns = self._window
+        return {
+            kind: (
+                sparse.csr_array(self.rows[:, rows], dtype=kind),
+                sparse.csr_array(self.columns[:, columns], dtype=kind),
+            )
+            for kind in (np.dtype(np.float32), np.dtype(np.float64))
+        }
 
     def average(self, images: np.ndarray) -> np.ndarray:
         """Return averages of images (..., camera rows, camera cols, channels): float64 (..., rows, cols, channels)."""
@@ -52,7 +57,7 @@ class Resampling:
         rows, columns = len(self.rows), len(self.columns)
         single = images.dtype == np.uint8 and np.iinfo(np.uint8).max * self.numerator**2 <= SINGLE
         kind = np.dtype(np.float32 if single else np.float64)
-        row_weights, column_weights = (weights.astype(kind, copy=False) for weights in self._sparse)
+        row_weights, column_weights = self._sparse[kind]
         averages = np.empty((*frames, rows, columns, channels))
         for frame in np.ndindex(*frames):
             window = images[frame][self._window]
