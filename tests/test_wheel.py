@@ -167,7 +167,7 @@ def test_the_metadata_say_what_a_user_must_know(wheel: Path) -> None:
     assert fields["Requires-Python"] == ">=3.10"
     assert fields["License-Expression"] == "Apache-2.0"
     assert fields["Author"] and fields["Keywords"] and fields.get_all("Classifier")  # noqa: PT018
-    assert fields.get_all("Provides-Extra") == ["fit", "plot", "live"]
+    assert fields.get_all("Provides-Extra") == ["fast", "fit", "plot", "live"]
     required = [line for line in fields.get_all("Requires-Dist") if "extra ==" not in line]
     assert [re.match(r"\w+", line)[0] for line in required] == ["numpy", "scipy", "Pillow"]  # type: ignore[index]
 

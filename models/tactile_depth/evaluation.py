@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_depth.cores import fastest
 from tactile_depth.errors import Argument, InputError
 from tactile_depth.poisson.divergence import divergence
 from tactile_depth.presses import (
@@ -212,8 +213,8 @@ def slopes_and_depths(
     rows, columns = presses.grid
     config = on_grid.configuration(model, columns=columns, rows=rows, solver="tridiagonal", neumann=True)
     frames, tables = np.stack([view.frame for view in views]), slope_tables(on_grid, config)
-    codes = slope_codes(frames, on_grid, config, tables=tables, light=light_of(frames, tables, config))
-    depth = solve(divergence(codes, config.neumann), config)[:, ::-1]
+    codes = slope_codes(frames, on_grid, config, tables=tables, light=light_of(frames, tables, config, cores=fastest()))
+    depth = solve(divergence(codes, config.neumann), config, cores=fastest())[:, ::-1]
     return codes * config.gradient_lsb, depth * config.depth_lsb_px
 
 

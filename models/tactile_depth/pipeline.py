@@ -16,6 +16,7 @@ from tactile_depth import reference as exact
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import LIGHT_GAIN, Configuration
 from tactile_depth.contact.contact_events import ContactEvents, Record, Settings
+from tactile_depth.cores import fastest
 from tactile_depth.depth.zero_capture import LARGEST_LOG2, captured_zero
 from tactile_depth.depth.zero_offset import exact_zero, no_zero
 from tactile_depth.errors import Argument, InputError, Part, is_number, one_of
@@ -220,7 +221,7 @@ class Pipeline:
         """
         frames, single = self._read(pictures, PICTURES)
         monitor = Monitor()
-        gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light)
+        gains = light_of(frames, self._tables, self.config, None if stream is None else stream.light, fastest())
         if self.arithmetic == "chip":
             slopes, depth = self._chip(frames, monitor, gains)
             depth = zeroed(depth, self.config, monitor, self._zero)
@@ -368,7 +369,7 @@ class Pipeline:
             gains = None if light is None else light[start : start + step]
             codes = slope_codes(part, self.sensor, self.config, monitor, tables=self._tables, light=gains)
             slopes.append(codes * self.config.gradient_lsb)
-            depths.append(solve(divergence(codes, self.config.neumann), self.config, monitor))
+            depths.append(solve(divergence(codes, self.config.neumann), self.config, monitor, fastest()))
         return np.concatenate(slopes), np.concatenate(depths)
 
     def _exact(self, frames: np.ndarray, light: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
@@ -395,7 +396,7 @@ class Pipeline:
         self._exact_tables = exact.slope_tables(self.sensor, self.config)
 
     def _use_zero(self, frames: np.ndarray) -> None:
-        light = light_of(frames, self._tables, self.config)
+        light = light_of(frames, self._tables, self.config, cores=fastest())
         self._zero = captured_zero(self._chip(frames, Monitor(), light)[1], self.config)
         self._exact_zero = -exact_zero(np.zeros(self.grid), self._exact(frames, light)[1], self.config)
 

@@ -28,6 +28,7 @@ from tactile_depth.configuration import (
     RATIO,
     Configuration,
 )
+from tactile_depth.cores import NUMPY, Cores
 from tactile_depth.depth.zero_capture import LARGEST_LOG2
 from tactile_depth.depth.zero_offset import no_zero, zero_offset
 from tactile_depth.errors import Argument, InputError
@@ -44,7 +45,7 @@ from tactile_depth.gradient.flat_field import (
     reference_gains,
 )
 from tactile_depth.gradient.gradient_lookup import gradient_codes, gradient_lookup
-from tactile_depth.gradient.light_gains import Light, LightFilter, settled
+from tactile_depth.gradient.light_gains import Light, LightFilter
 from tactile_depth.gradient.polynomial_gradient import (
     coefficient_map,
     correction_entries,
@@ -198,14 +199,18 @@ def slope_codes(
 
 
 def light_of(
-    frames: np.ndarray, tables: Tables, config: Configuration, stream: LightFilter | None = None
+    frames: np.ndarray,
+    tables: Tables,
+    config: Configuration,
+    stream: LightFilter | None = None,
+    cores: Cores = NUMPY,
 ) -> np.ndarray | None:
     """Return the light gains of frames, int64 (..., 3): of single pictures, or of a stream; None without them."""
     if not config.light_gains:
         return None
     assert tables.gains is not None
     relative = ratios(frames, tables.gains, config)
-    return settled(relative, Light.of(config)) if stream is None else stream.take_all(relative)
+    return cores.settled(relative, Light.of(config)) if stream is None else stream.take_all(relative)
 
 
 def _lit_deviations(
@@ -225,11 +230,11 @@ def _lit_deviations(
     return Light.of(config).deviations(relative, light[..., None, None, :], monitor)
 
 
-def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def solve(f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY) -> np.ndarray:
     """Return the depth codes of divergence codes (..., rows, columns) by the configuration's solver."""
     if config.solver == "tridiagonal":
-        return tridiagonal_solver.tridiagonal_solver(f, config, monitor)
-    return spectral_solver.spectral_solver(f, config, monitor)
+        return tridiagonal_solver.tridiagonal_solver(f, config, monitor, cores)
+    return spectral_solver.spectral_solver(f, config, monitor, cores)
 
 
 def top_parameters(

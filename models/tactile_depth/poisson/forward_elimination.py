@@ -28,9 +28,8 @@ def forward_elimination(
     Under Neumann the constant of the singular mode (position 0) is chosen so that its column has zero mean. A last row
     of 0 would give the mean sum over i of (i + 1) d[i] / rows; the last row is minus this mean.
     """
-    table = thomas_table(config)
     rows, width, drop = f.shape[-2], config.arithmetic_width, config.coefficient_width - 1
-    coefficients = np.concatenate((table.rows(rows - 1), [table.last << table.last_shift]))
+    coefficients = coefficient_rows(config, rows)
     difference, divided = node + ".difference", node + ".state"
     f_rows = np.ascontiguousarray(np.moveaxis(f, -2, 0))
     d = np.empty(f.shape, f.dtype)
@@ -40,6 +39,21 @@ def forward_elimination(
         x = round_saturate(f_rows[row] - state, 0, width, monitor, difference)
         state = round_saturate(x * coefficients[row], drop, width, monitor, divided)
         d_rows[row] = state
+    return stored(d, config, monitor, node)
+
+
+def coefficient_rows(config: Configuration, rows: int) -> np.ndarray:
+    """Return c of each row, int64 (rows, columns)."""
+    table = thomas_table(config)
+    return np.concatenate((table.rows(rows - 1), [table.last << table.last_shift]))
+
+
+def stored(d: np.ndarray, config: Configuration, monitor: Monitor | None, node: str) -> np.ndarray:
+    """Return the words of the frame store from the rows of the recursion.
+
+    Under Neumann the last row of mode 0 is first written into `d`: see `forward_elimination`.
+    """
+    rows, width = d.shape[-2], config.arithmetic_width
     if config.neumann:
         reciprocal, mean_drop = mean_reciprocal(config)
         moment = (d[..., :-1, 0] * np.arange(1, rows)).sum(axis=-1)

@@ -7,11 +7,10 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tactile_depth.cores import NUMPY, Cores
 from tactile_depth.poisson.spectral_divide import LATENCY as SPECTRAL_DIVIDE
 from tactile_depth.poisson.spectral_divide import reciprocals, spectral_divide
-from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_forward import latency as forward_latency
-from tactile_depth.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.poisson.transform.dst_inverse import latency as inverse_latency
 from tactile_depth.poisson.transform.row_reorder import LATENCY as ROW_REORDER
 from tactile_depth.poisson.transform.row_reorder import row_reorder
@@ -38,7 +37,9 @@ def solver_parameters(config: Configuration) -> dict[str, int]:
     }
 
 
-def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def spectral_solver(
+    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Solve the Poisson equation for frames of divergence codes.
 
     Parameters
@@ -49,21 +50,25 @@ def spectral_solver(f: np.ndarray, config: Configuration, monitor: Monitor | Non
     -------
     int64 array (..., N, N), codes of `config.depth`; depth_px = code * config.depth_lsb_px
     """
-    modes = row_forward(f, config, monitor)
+    modes = row_forward(f, config, monitor, cores)
     modes = column_forward(
-        transpose(modes, makhoul_in=False, makhoul_out=True), config, monitor
+        transpose(modes, makhoul_in=False, makhoul_out=True), config, monitor, cores
     )  # bursts are columns now
     modes = spectral_divide(modes, config, monitor)
-    modes = column_inverse(modes, config, monitor)
-    return row_inverse(transpose(modes, makhoul_in=True, makhoul_out=False), config, monitor)  # bursts are rows again
+    modes = column_inverse(modes, config, monitor, cores)
+    return row_inverse(
+        transpose(modes, makhoul_in=True, makhoul_out=False), config, monitor, cores
+    )  # bursts are rows again
 
 
 # The four transforms. Each takes bursts (..., N).
 
 
-def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def row_forward(
+    rows: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Return the modes of rows in natural order, for the first frame store."""
-    return dst_forward(
+    return cores.dst_forward(
         row_reorder(rows, to_burst=True),
         input_drop=config.divergence.fraction - config.row_forward.fraction,
         output_drop=config.row_forward.fraction - config.row_modes.fraction,
@@ -74,9 +79,11 @@ def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None
     )
 
 
-def column_forward(columns: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def column_forward(
+    columns: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Return the modes of columns in Makhoul order."""
-    return dst_forward(
+    return cores.dst_forward(
         columns,
         input_drop=config.row_modes.fraction - config.column_forward.fraction,
         output_drop=0,
@@ -87,9 +94,11 @@ def column_forward(columns: np.ndarray, config: Configuration, monitor: Monitor 
     )
 
 
-def column_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def column_inverse(
+    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Return columns in Makhoul order from their modes, for the second frame store."""
-    return dst_inverse(
+    return cores.dst_inverse(
         modes,
         input_drop=0,
         output_drop=config.column_inverse.fraction - config.depth_modes.fraction,
@@ -100,9 +109,11 @@ def column_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | 
     )
 
 
-def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def row_inverse(
+    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Return rows of depth in natural order from their modes."""
-    depth = dst_inverse(
+    depth = cores.dst_inverse(
         modes,
         input_drop=config.depth_modes.fraction - config.row_inverse.fraction,
         output_drop=config.row_inverse.fraction - config.depth.fraction,

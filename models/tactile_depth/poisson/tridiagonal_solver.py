@@ -7,17 +7,15 @@ import numpy as np
 
 from tactile_depth.common.td_round_saturate import Monitor
 from tactile_depth.configuration import Configuration
+from tactile_depth.cores import NUMPY, Cores
 from tactile_depth.poisson.back_substitution import LATENCY as BACK_SUBSTITUTION
-from tactile_depth.poisson.back_substitution import back_substitution
 from tactile_depth.poisson.forward_elimination import LATENCY as FORWARD_ELIMINATION
-from tactile_depth.poisson.forward_elimination import forward_elimination, mean_reciprocal
+from tactile_depth.poisson.forward_elimination import mean_reciprocal
 from tactile_depth.poisson.frame_stack import LATENCY as FRAME_STACK
 from tactile_depth.poisson.frame_stack import frame_stack
 from tactile_depth.poisson.thomas_table import thomas_table
 from tactile_depth.poisson.transform.corner_turn import LATENCY as CORNER_TURN
-from tactile_depth.poisson.transform.dst_forward import dst_forward
 from tactile_depth.poisson.transform.dst_forward import latency as forward_latency
-from tactile_depth.poisson.transform.dst_inverse import dst_inverse
 from tactile_depth.poisson.transform.dst_inverse import latency as inverse_latency
 from tactile_depth.poisson.transform.row_reorder import LATENCY as ROW_REORDER
 from tactile_depth.poisson.transform.row_reorder import row_reorder
@@ -62,7 +60,9 @@ def row_inverse_drops(config: Configuration) -> tuple[int, int]:
     )
 
 
-def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def tridiagonal_solver(
+    f: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Solve the Poisson equation for frames of divergence codes.
 
     Parameters
@@ -73,14 +73,16 @@ def tridiagonal_solver(f: np.ndarray, config: Configuration, monitor: Monitor | 
     -------
     int64 array (..., rows, columns), codes of `config.depth`, bottom row first
     """
-    d = forward_elimination(row_forward(f, config, monitor), config, monitor)
-    z = back_substitution(frame_stack(d), config, monitor)
-    return row_inverse(z, config, monitor)
+    d = cores.forward_elimination(row_forward(f, config, monitor, cores), config, monitor)
+    z = cores.back_substitution(frame_stack(d), config, monitor)
+    return row_inverse(z, config, monitor, cores)
 
 
-def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def row_forward(
+    rows: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Return the modes of rows (..., columns) in natural order, codes of `config.elimination`."""
-    return dst_forward(
+    return cores.dst_forward(
         row_reorder(rows, to_burst=True),
         input_drop=0,
         output_drop=row_forward_drop(config),
@@ -91,10 +93,12 @@ def row_forward(rows: np.ndarray, config: Configuration, monitor: Monitor | None
     )
 
 
-def row_inverse(modes: np.ndarray, config: Configuration, monitor: Monitor | None = None) -> np.ndarray:
+def row_inverse(
+    modes: np.ndarray, config: Configuration, monitor: Monitor | None = None, cores: Cores = NUMPY
+) -> np.ndarray:
     """Return rows of depth in natural order from their modes."""
     input_drop, output_drop = row_inverse_drops(config)
-    depth = dst_inverse(
+    depth = cores.dst_inverse(
         modes,
         input_drop=input_drop,
         output_drop=output_drop,
